@@ -1,0 +1,207 @@
+#pragma once
+
+#include <omp.h>
+
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/dispatch.hpp>
+#include <pliant/backend/host_recording.hpp>
+#include <pliant/error.hpp>
+#include <pliant/openmp/patches.hpp>
+#include <pliant/openmp/transpose.hpp>
+
+#if !defined(_OPENMP)
+#error "pliant/openmp.hpp needs OpenMP: link pliant::openmp, or compile with -fopenmp."
+#endif
+
+namespace pliant {
+
+struct OpenMPOptions {
+  int threads = 0;  // 0: as many as the OpenMP runtime gives
+};
+
+/// Threads over patches of elements, SIMD lanes over the elements of a patch. The results have the
+/// same bits for any number of threads.
+template <std::floating_point T>
+class OpenMP {
+ public:
+  using scalar = T;
+  using Scalar = Pack<T>;
+  template <class U>
+  using Array = HostArray<U>;
+  using Recording = HostRecording;
+  static constexpr char const* name() { return "OpenMP"; }
+
+  OpenMP(OpenMPOptions options = {}) : threads_(options.threads) {
+    if (threads_ < 0)
+      throw Error("OpenMP: " + std::to_string(threads_) +
+                  " threads asked for; give a positive number, or 0 for all");
+    if (threads_ == 0) threads_ = omp_get_max_threads();
+  }
+  int threads() const { return threads_; }
+
+  template <int Nodes>
+  class Elements : public detail::Patches<Nodes> {
+   public:
+    Elements() = default;
+    Elements(OpenMP const&, std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
+             std::vector<Tag> const& tags, Index nodes)
+        : detail::Patches<Nodes>(connectivity, groups, tags, nodes) {}
+  };
+
+  template <class F>
+  void for_each(Index n, F const& f) const {
+#pragma omp parallel for schedule(static) num_threads(threads_) if (n > small_loop)
+    for (Index i = 0; i < n; ++i) f(i);
+  }
+  template <class F>
+  double sum(Index n, F const& f) const {
+    return ordered_sum((n + sum_block - 1) / sum_block, [&](Index block) {
+      double total = 0;
+      Index const last = std::min(n, (block + 1) * sum_block);
+      for (Index i = block * sum_block; i < last; ++i) total += static_cast<double>(f(i));
+      return total;
+    });
+  }
+  template <class F>
+  double maximum(Index n, F const& f) const {
+    double largest = -std::numeric_limits<double>::infinity();
+#pragma omp parallel for schedule(static) num_threads(threads_) reduction(max : largest)
+    for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));
+    return largest;
+  }
+  Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
+  void synchronize() const {}
+
+  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
+  void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
+                  Fields const&... fields) const {
+#pragma omp parallel num_threads(threads_) if (elements.patch_count() > 1)
+    {
+#pragma omp for schedule(dynamic)
+      for (Index p = 0; p < elements.patch_count(); ++p) {
+        auto const [first, last] = elements.scratch_of(p);
+        std::fill(&out(first, 0), &out(first, 0) + std::ptrdiff_t{node_stride} * (last - first),
+                  T(0));
+        for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
+          auto const values = kernel(group, gather_pack<Nodes>(elements, m, fields)...);
+          for (int a = 0; a < Nodes; ++a) {
+            Index rows[Scalar::lanes];
+            for (int l = 0; l < Scalar::lanes; ++l) rows[l] = elements.targets(m.element[l])[a];
+            typename Scalar::Register r[4] = {};
+            for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
+            detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
+          }
+        });
+      }
+#pragma omp for schedule(static)
+      for (Index k = 0; k < elements.folded_count(); ++k) {
+        auto const f = elements.folded(k);
+        for (Index row : f.rows)
+          for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
+      }
+    }
+  }
+
+  template <int Groups, int Nodes, class Kernel, class... Fields>
+  double sum_elements(Elements<Nodes> const& elements, Kernel const& kernel,
+                      Fields const&... fields) const {
+    return ordered_sum(elements.patch_count(), [&](Index p) {
+      double total = 0;
+      for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
+        Scalar const values = kernel(group, gather_pack<Nodes>(elements, m, fields)...);
+        for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
+      });
+      return total;
+    });
+  }
+
+  template <int Groups, int Nodes, class Visitor, class... Fields>
+  void visit(Elements<Nodes> const& elements, Visitor const& visitor, HostArray<double>& counters,
+             Fields const&... fields) const {
+    constexpr int count = Visitor::counters;
+    std::vector<std::array<double, count>> partial(
+        static_cast<std::size_t>(elements.patch_count()));
+#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (elements.patch_count() > 1)
+    for (Index p = 0; p < elements.patch_count(); ++p) {
+      std::array<double, count> mine{};
+      auto const tally = [&mine](int k, double x) { mine[static_cast<std::size_t>(k)] += x; };
+      for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
+        auto const values =
+            visitor.evaluate(group, gather_pack<Nodes>(elements, m, fields)...);
+        for (int l = 0; l < m.count; ++l) {
+          Index const e = m.element[l];
+          Vector<T, values.count> own;
+          for (int k = 0; k < values.count; ++k) own[k] = values.v[k][l];
+          visitor.finish(
+              group, e, own,
+              [&] { return std::tuple{gather<Nodes>(fields, elements.nodes(e))...}; }, tally);
+        }
+      });
+      partial[static_cast<std::size_t>(p)] = mine;
+    }
+    for (auto const& mine : partial)
+      for (int k = 0; k < count; ++k) counters.data()[k] += mine[static_cast<std::size_t>(k)];
+  }
+
+ private:
+  static constexpr Index small_loop = 4096;  // below, waking threads costs more than the loop
+  static constexpr Index sum_block = 4096;
+
+  /// The elements in the lanes of one pack; behind `count` the last one repeats.
+  struct PackMembers {
+    Index element[Scalar::lanes];
+    int count;
+  };
+
+  template <int Groups, int Nodes, class F>
+  static void for_each_pack(Elements<Nodes> const& elements, Index patch, F const& f) {
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      (for_each_pack_of<G>(elements, patch, f), ...);
+    }(std::make_integer_sequence<int, Groups>());
+  }
+  template <int Group, int Nodes, class F>
+  static void for_each_pack_of(Elements<Nodes> const& elements, Index patch, F const& f) {
+    auto const members = elements.members(patch, Group);
+    for (std::size_t first = 0; first < members.size(); first += Scalar::lanes) {
+      PackMembers m;
+      m.count = static_cast<int>(std::min<std::size_t>(Scalar::lanes, members.size() - first));
+      for (int l = 0; l < Scalar::lanes; ++l)
+        m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
+      f(GroupNumber<Group>{}, m);
+    }
+  }
+
+  template <int Nodes, int C, class U>
+  static Matrix<Scalar, Nodes, C> gather_pack(Elements<Nodes> const& elements,
+                                              PackMembers const& m,
+                                              NodeField<U, C> const& field) {
+    Matrix<Scalar, Nodes, C> values;
+    for (int a = 0; a < Nodes; ++a) {
+      Index nodes[Scalar::lanes];
+      for (int l = 0; l < Scalar::lanes; ++l) nodes[l] = elements.nodes(m.element[l])[a];
+      typename Scalar::Register r[4];
+      detail::gather_nodes<T, Scalar::lanes>(field.data, nodes, r);
+      for (int k = 0; k < C; ++k) values(a, k).v = r[k];
+    }
+    return values;
+  }
+
+  /// Sums f(block) over blocks in their order, whatever thread computed each.
+  template <class F>
+  double ordered_sum(Index blocks, F const& f) const {
+    std::vector<double> partial(static_cast<std::size_t>(blocks));
+#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (blocks > 1)
+    for (Index b = 0; b < blocks; ++b) partial[static_cast<std::size_t>(b)] = f(b);
+    double total = 0;
+    for (double x : partial) total += x;
+    return total;
+  }
+
+  int threads_;
+};
+
+}  // namespace pliant

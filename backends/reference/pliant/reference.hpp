@@ -1,0 +1,103 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <tuple>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/dispatch.hpp>
+#include <pliant/backend/host_array.hpp>
+#include <pliant/backend/host_recording.hpp>
+
+namespace pliant {
+
+/// The serial oracle: plain loops in the order of the elements, one number at a time.
+template <std::floating_point T>
+class Reference {
+ public:
+  using scalar = T;
+  template <class U>
+  using Array = HostArray<U>;
+  using Recording = HostRecording;
+  static constexpr char const* name() { return "Reference"; }
+
+  template <int Nodes>
+  class Elements {
+   public:
+    Elements() = default;
+    Elements(Reference const&, std::vector<std::array<Index, Nodes>> connectivity, int,
+             std::vector<Tag> const& tags, Index /* nodes */)
+        : connectivity_(std::move(connectivity)), tags_(tags.size()) {
+      tags_.upload(tags);
+    }
+    Index count() const { return static_cast<Index>(connectivity_.size()); }
+    Index scratch_nodes() const { return 0; }
+    HostArray<Tag>& tags() { return tags_; }
+    HostArray<Tag> const& tags() const { return tags_; }
+    void regroup() {}
+    Index const* nodes(Index e) const { return connectivity_[static_cast<std::size_t>(e)].data(); }
+
+   private:
+    std::vector<std::array<Index, Nodes>> connectivity_;
+    HostArray<Tag> tags_;
+  };
+
+  template <class F>
+  void for_each(Index n, F const& f) const {
+    for (Index i = 0; i < n; ++i) f(i);
+  }
+  template <class F>
+  double sum(Index n, F const& f) const {
+    double total = 0;
+    for (Index i = 0; i < n; ++i) total += static_cast<double>(f(i));
+    return total;
+  }
+  template <class F>
+  double maximum(Index n, F const& f) const {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));
+    return largest;
+  }
+  Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
+  void synchronize() const {}
+
+  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
+  void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
+                  Fields const&... fields) const {
+    loop<Groups>(elements, [&](auto group, Index e) {
+      Index const* nodes = elements.nodes(e);
+      auto const values = kernel(group, gather<Nodes>(fields, nodes)...);
+      for (int a = 0; a < Nodes; ++a)
+        for (int k = 0; k < C; ++k) out(nodes[a], k) += values(a, k);
+    });
+  }
+  template <int Groups, int Nodes, class Kernel, class... Fields>
+  double sum_elements(Elements<Nodes> const& elements, Kernel const& kernel,
+                      Fields const&... fields) const {
+    double total = 0;
+    loop<Groups>(elements, [&](auto group, Index e) {
+      total += static_cast<double>(kernel(group, gather<Nodes>(fields, elements.nodes(e))...));
+    });
+    return total;
+  }
+  template <int Groups, int Nodes, class Visitor, class... Fields>
+  void visit(Elements<Nodes> const& elements, Visitor const& visitor, HostArray<double>& counters,
+             Fields const&... fields) const {
+    auto const tally = [&counters](int k, double x) { counters.data()[k] += x; };
+    loop<Groups>(elements, [&](auto group, Index e) {
+      auto const again = [&] { return std::tuple{gather<Nodes>(fields, elements.nodes(e))...}; };
+      auto const values = visitor.evaluate(group, gather<Nodes>(fields, elements.nodes(e))...);
+      visitor.finish(group, e, values, again, tally);
+    });
+  }
+
+ private:
+  template <int Groups, int Nodes, class F>
+  static void loop(Elements<Nodes> const& elements, F const& f) {
+    for (Index e = 0; e < elements.count(); ++e)
+      dispatch<Groups>(elements.tags().data()[e], [&](auto group) { f(group, e); });
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <vector>
+
+#include <pliant/backend/field.hpp>
+
+// What a backend must offer: arrays, loops over nodes, loops over elements. A backend knows nothing
+// of mechanics; mechanics calls these verbs and knows nothing of threads. `Reference` is the
+// shortest model, and the oracle of the others.
+//
+// Arrays        Array<U> owns memory where the loops run.
+//   Array<U>(count)            zeroed; throws Error when memory runs out
+//   .data() .size() .upload(span<U const>) .download(span<U>)
+//
+// Node loops    f is a functor marked for host and device, called once for each i in [0, n).
+//   for_each(n, f)             f(i)
+//   sum(n, f) maximum(n, f)    double; of f(i)
+//   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
+//                              that return nothing, the same ones with the same arguments each time
+//                              (a GPU records them once as a graph).
+//
+// Element loops run over Elements<Nodes>, which holds connectivity and a tag per element: the number
+// of the element's group. Each kernel is called with the group as a compile-time constant,
+// kernel(GroupNumber<g>{}, v...), where v are the values of the node fields at the element's
+// nodes, Matrix<S, Nodes, Components>, and S is a scalar of the backend's choice (a pack of elements
+// in SIMD lanes, or a plain number). Elements whose tag is `no_group` are passed over.
+//   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
+//   .count() .tags() .regroup()   regroup: call after tags changed
+//   .scratch_nodes()           rows that a field to accumulate into needs behind its nodes
+//   accumulate<Groups>(elements, kernel, out, fields...)
+//                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`
+//   sum_elements<Groups>(elements, kernel, fields...)
+//                              double; the sum of kernel's S
+//   visit<Groups>(elements, visitor, counters, fields...)
+//                              values = visitor.evaluate(GroupNumber<g>{}, v...) in S, any array;
+//                              then visitor.finish(GroupNumber<g>{}, element, values of that
+//                              element, again, tally), where again() gathers its v... as plain
+//                              numbers and tally(k, x) adds x to counters[k] of the array counters,
+//                              k < Visitor::counters
+namespace pliant {
+
+template <int G>
+struct GroupNumber {
+  static constexpr int value = G;
+};
+
+/// The tag of an element that no group holds.
+inline constexpr Tag no_group = 255;
+
+/// An owning array in a backend's memory.
+template <class A, class U>
+concept BackendArray = std::constructible_from<A, std::size_t> && std::movable<A> &&
+                       requires(A a, A const& c, std::span<U const> in, std::span<U> out) {
+                         { a.data() } -> std::same_as<U*>;
+                         { c.size() } -> std::convertible_to<std::size_t>;
+                         a.upload(in);
+                         c.download(out);
+                       };
+
+namespace detail {
+struct NodeProbe {
+  PLIANT_HOST_DEVICE double operator()(Index) const { return 0; }
+  void operator()() const {}
+};
+}  // namespace detail
+
+/// Where arrays live and loops run.
+template <class B>
+concept Backend =
+    std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
+    BackendArray<typename B::template Array<typename B::scalar>, typename B::scalar> &&
+    requires(B const& b, Index n, detail::NodeProbe f) {
+      b.for_each(n, f);
+      { b.sum(n, f) } -> std::same_as<double>;
+      { b.maximum(n, f) } -> std::same_as<double>;
+      { b.record(f) } -> std::same_as<typename B::Recording>;
+      b.synchronize();
+      { B::name() } -> std::convertible_to<char const*>;
+      typename B::template Elements<4>;
+    };
+
+/// The array with the values of a vector.
+template <Backend B, class U>
+typename B::template Array<U> upload(B const&, std::vector<U> const& values) {
+  typename B::template Array<U> array(values.size());
+  array.upload(values);
+  return array;
+}
+/// The values of an array, on the host.
+template <class U, class A>
+std::vector<U> download(A const& array) {
+  std::vector<U> values(array.size());
+  array.download(values);
+  return values;
+}
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+
+#include <pliant/math/matrix.hpp>
+
+namespace pliant {
+
+/// Values per node that are padded inside a backend: node i starts at `data[4 i]`, whatever the
+/// number of components, so that a node is one aligned vector.
+inline constexpr int node_stride = 4;
+
+/// A view of vectors per node in a backend's memory, `Components` of each read or written.
+template <class T, int Components>
+struct NodeField {
+  static constexpr int components = Components;
+  T* data;  // (nodes, 4)
+
+  PLIANT_HOST_DEVICE T& operator()(Index node, int k) const {
+    return data[static_cast<std::ptrdiff_t>(node_stride) * node + k];
+  }
+  PLIANT_HOST_DEVICE auto at(Index node) const {
+    Vector<std::remove_const_t<T>, Components> v;
+    for (int k = 0; k < Components; ++k) v[k] = (*this)(node, k);
+    return v;
+  }
+  PLIANT_HOST_DEVICE void set(Index node, Vector<std::remove_const_t<T>, Components> const& v) const {
+    for (int k = 0; k < Components; ++k) (*this)(node, k) = v[k];
+  }
+};
+
+/// The values of a field at the nodes of one element: (nodes, components).
+template <int Nodes, class T, int Components>
+PLIANT_HOST_DEVICE auto gather(NodeField<T, Components> const& field, Index const* nodes) {
+  Matrix<std::remove_const_t<T>, Nodes, Components> values;
+  for (int a = 0; a < Nodes; ++a)
+    for (int k = 0; k < Components; ++k) values(a, k) = field(nodes[a], k);
+  return values;
+}
+
+}  // namespace pliant

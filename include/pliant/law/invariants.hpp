@@ -1,0 +1,108 @@
+#pragma once
+
+#include <pliant/math/dual.hpp>
+#include <pliant/math/matrix.hpp>
+
+// Sets of invariants in which an isotropic energy may be written. Each is computed from the
+// displacement gradient H = F − I, shifted so that it vanishes at rest (nothing is rounded away at
+// small strain), and knows how its derivatives make up the first Piola-Kirchhoff stress
+// P = Σ ∂W/∂i · ∂i/∂F. In 2D, plane strain: F₃₃ = 1.
+namespace pliant {
+
+/// Of the small strain e = sym H: tr e and e:e.
+template <class S>
+struct StrainInvariants {
+  static constexpr int count = 2;
+  S trace;    // tr e
+  S squares;  // e:e
+
+  template <class T>
+  using rebind = StrainInvariants<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? trace : squares; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? trace : squares; }
+
+  template <int Dim>
+  PLIANT_HOST_DEVICE static StrainInvariants of(Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> const e = symmetric_part(h);
+    return {pliant::trace(e), dot(e, e)};
+  }
+  /// P from the derivatives `w` of the energy by each invariant.
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(StrainInvariants const& w,
+                                                  Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> p = (w.squares + w.squares) * symmetric_part(h);
+    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.trace;
+    return p;
+  }
+};
+
+/// Of the right Cauchy-Green tensor C = FᵀF: the distortion D = I₁ − 3 − 2(J − 1), which is of
+/// second order in the strain, and J − 1 with J = det F. I₁ − 3 follows from both.
+template <class S>
+struct CauchyGreenInvariants {
+  static constexpr int count = 2;
+  S D;    // I₁ − 3 − 2(J − 1)
+  S J_1;  // J − 1
+
+  PLIANT_HOST_DEVICE S I1_3() const { return D + (J_1 + J_1); }  // I₁ − 3
+
+  template <class T>
+  using rebind = CauchyGreenInvariants<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? D : J_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? D : J_1; }
+
+  template <int Dim>
+  PLIANT_HOST_DEVICE static CauchyGreenInvariants of(Tensor<S, Dim> const& h) {
+    S const j_1 = determinant_less_one(h);
+    S const second = j_1 - pliant::trace(h);  // the nonlinear part of J − 1
+    return {dot(h, h) - (second + second), j_1};
+  }
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(CauchyGreenInvariants const& w,
+                                                  Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> const c = cofactor_less_identity(h);
+    Tensor<S, Dim> p = (w.D + w.D) * (h - c) + w.J_1 * c;
+    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.J_1;
+    return p;
+  }
+};
+
+/// Of the Green strain E = (FᵀF − I)/2: tr E and tr E².
+template <class S>
+struct GreenInvariants {
+  static constexpr int count = 2;
+  S trace;    // tr E
+  S squares;  // tr E²
+
+  template <class T>
+  using rebind = GreenInvariants<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? trace : squares; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? trace : squares; }
+
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> strain(Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> e;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = i; j < Dim; ++j) {
+        S product = h(0, i) * h(0, j);
+        for (int k = 1; k < Dim; ++k) product = product + h(k, i) * h(k, j);
+        e(i, j) = (h(i, j) + h(j, i) + product) / S(2);
+        e(j, i) = e(i, j);
+      }
+    return e;
+  }
+  template <int Dim>
+  PLIANT_HOST_DEVICE static GreenInvariants of(Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> const e = strain(h);
+    return {pliant::trace(e), dot(e, e)};
+  }
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(GreenInvariants const& w,
+                                                  Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> second = (w.squares + w.squares) * strain(h);  // second Piola-Kirchhoff
+    for (int i = 0; i < Dim; ++i) second(i, i) = second(i, i) + w.trace;
+    return second + h * second;  // F S
+  }
+};
+
+}  // namespace pliant

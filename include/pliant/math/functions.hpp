@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <type_traits>
+
+#include <pliant/config.hpp>
+
+// The elementary functions that physics uses, for built-in scalars. Packs of elements and dual
+// numbers overload the same names; physics calls them unqualified.
+namespace pliant {
+
+template <class T>
+concept Arithmetic = std::is_arithmetic_v<T>;
+
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T sqrt(T x) {
+  return std::sqrt(x);
+}
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T log(T x) {
+  return std::log(x);
+}
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T log1p(T x) {
+  return std::log1p(x);
+}
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T exp(T x) {
+  return std::exp(x);
+}
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T abs(T x) {
+  return std::fabs(x);
+}
+
+/// `condition ? a : b`, evaluated without a branch on packs of elements.
+template <Arithmetic T>
+PLIANT_HOST_DEVICE T select(bool condition, T a, T b) {
+  return condition ? a : b;
+}
+
+template <class T>
+PLIANT_HOST_DEVICE T max(T const& a, T const& b) {
+  return select(a < b, b, a);
+}
+template <class T>
+PLIANT_HOST_DEVICE T min(T const& a, T const& b) {
+  return select(b < a, b, a);
+}
+template <class T>
+PLIANT_HOST_DEVICE T square(T const& x) {
+  return x * x;
+}
+
+/// x − ln(1 + x), without the cancellation that the plain difference suffers for small x.
+template <class T>
+PLIANT_HOST_DEVICE T excess_of_log1p(T const& x) {
+  // Truncation below 2e-17 relative to x²/2 for |x| < 1/16; beyond, the difference loses < 6 bits.
+  T series = T(1) / T(14);
+  for (int k = 13; k >= 2; --k) series = T(1) / T(k) - x * series;
+  return select(abs(x) < T(0.0625), x * x * series, x - log1p(x));
+}
+
+/// The scalar in which a value's parts are stored: `float` for a pack of floats or their duals.
+template <class T>
+struct BuiltinScalar {
+  using type = T;
+};
+template <class T>
+using builtin_scalar = typename BuiltinScalar<T>::type;
+
+}  // namespace pliant
