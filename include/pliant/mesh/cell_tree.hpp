@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <pliant/config.hpp>
-#include <pliant/error.hpp>
-#include <pliant/mesh/edge_tree.hpp>
 #include <string>
 #include <unordered_set>
 #include <utility>
 #include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/error.hpp>
+#include <pliant/mesh/edge_tree.hpp>
 
 namespace pliant {
 

@@ -4,9 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <pliant/config.hpp>
 #include <unordered_map>
 #include <vector>
+
+#include <pliant/config.hpp>
 
 namespace pliant {
 

@@ -6,14 +6,15 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <pliant/config.hpp>
-#include <pliant/error.hpp>
-#include <pliant/mesh/cell_tree.hpp>
-#include <pliant/mesh/slave.hpp>
 #include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/error.hpp>
+#include <pliant/mesh/cell_tree.hpp>
+#include <pliant/mesh/slave.hpp>
 
 namespace pliant {
 

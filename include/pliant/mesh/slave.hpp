@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <pliant/config.hpp>
-#include <pliant/error.hpp>
 #include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/error.hpp>
 
 namespace pliant {
 
