@@ -11,9 +11,7 @@
 
 namespace pliant {
 
-inline constexpr struct Version {
-  int major = 0, minor = 1, patch = 0;
-} version{};
+inline constexpr struct Version { int major = 0, minor = 1, patch = 0; } version{};
 
 /// Numbers nodes and elements.
 using Index = std::int32_t;

@@ -122,29 +122,13 @@ class OpenMP {
   template <int Groups, int Nodes, class Visitor, class... Fields>
   void visit(Elements<Nodes> const& elements, Visitor const& visitor, HostArray<double>& counters,
              Fields const&... fields) const {
-    constexpr int count = Visitor::counters;
-    std::vector<std::array<double, count>> partial(
+    std::vector<std::array<double, Visitor::counters>> partial(
         static_cast<std::size_t>(elements.patch_count()));
 #pragma omp parallel for schedule(dynamic) num_threads(threads_) if (elements.patch_count() > 1)
-    for (Index p = 0; p < elements.patch_count(); ++p) {
-      std::array<double, count> mine{};
-      auto const tally = [&mine](int k, double x) { mine[static_cast<std::size_t>(k)] += x; };
-      for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
-        auto const values =
-            visitor.evaluate(group, gather_pack<Nodes>(elements, m, fields)...);
-        for (int l = 0; l < m.count; ++l) {
-          Index const e = m.element[l];
-          Vector<T, values.count> own;
-          for (int k = 0; k < values.count; ++k) own[k] = values.v[k][l];
-          visitor.finish(
-              group, e, own,
-              [&] { return std::tuple{gather<Nodes>(fields, elements.nodes(e))...}; }, tally);
-        }
-      });
-      partial[static_cast<std::size_t>(p)] = mine;
-    }
+    for (Index p = 0; p < elements.patch_count(); ++p)
+      partial[static_cast<std::size_t>(p)] = visit_patch<Groups>(elements, p, visitor, fields...);
     for (auto const& mine : partial)
-      for (int k = 0; k < count; ++k) counters.data()[k] += mine[static_cast<std::size_t>(k)];
+      for (std::size_t k = 0; k < mine.size(); ++k) counters.data()[k] += mine[k];
   }
 
  private:
@@ -161,7 +145,8 @@ class OpenMP {
   static void for_each_pack(Elements<Nodes> const& elements, Index patch, F const& f) {
     [&]<int... G>(std::integer_sequence<int, G...>) {
       (for_each_pack_of<G>(elements, patch, f), ...);
-    }(std::make_integer_sequence<int, Groups>());
+    }
+    (std::make_integer_sequence<int, Groups>());
   }
   template <int Group, int Nodes, class F>
   static void for_each_pack_of(Elements<Nodes> const& elements, Index patch, F const& f) {
@@ -175,9 +160,23 @@ class OpenMP {
     }
   }
 
+  template <int Groups, int Nodes, class Visitor, class... Fields>
+  static auto visit_patch(Elements<Nodes> const& elements, Index patch, Visitor const& visitor,
+                          Fields const&... fields) {
+    std::array<double, Visitor::counters> counters{};
+    auto const tally = [&](int k, double x) { counters[static_cast<std::size_t>(k)] += x; };
+    for_each_pack<Groups>(elements, patch, [&](auto group, PackMembers const& m) {
+      auto const values = visitor.evaluate(group, gather_pack<Nodes>(elements, m, fields)...);
+      for (int l = 0; l < m.count; ++l) {
+        Gather<Nodes, Fields...> const again{elements.nodes(m.element[l]), {fields...}};
+        visitor.finish(group, m.element[l], lane_of(values, l), again, tally);
+      }
+    });
+    return counters;
+  }
+
   template <int Nodes, int C, class U>
-  static Matrix<Scalar, Nodes, C> gather_pack(Elements<Nodes> const& elements,
-                                              PackMembers const& m,
+  static Matrix<Scalar, Nodes, C> gather_pack(Elements<Nodes> const& elements, PackMembers const& m,
                                               NodeField<U, C> const& field) {
     Matrix<Scalar, Nodes, C> values;
     for (int a = 0; a < Nodes; ++a) {
@@ -188,6 +187,13 @@ class OpenMP {
       for (int k = 0; k < C; ++k) values(a, k).v = r[k];
     }
     return values;
+  }
+
+  template <int N>
+  static Vector<T, N> lane_of(Vector<Scalar, N> const& values, int lane) {
+    Vector<T, N> own;
+    for (int k = 0; k < N; ++k) own[k] = values[k][lane];
+    return own;
   }
 
   /// Sums f(block) over blocks in their order, whatever thread computed each.

@@ -86,9 +86,9 @@ class Reference {
              Fields const&... fields) const {
     auto const tally = [&counters](int k, double x) { counters.data()[k] += x; };
     loop<Groups>(elements, [&](auto group, Index e) {
-      auto const again = [&] { return std::tuple{gather<Nodes>(fields, elements.nodes(e))...}; };
       auto const values = visitor.evaluate(group, gather<Nodes>(fields, elements.nodes(e))...);
-      visitor.finish(group, e, values, again, tally);
+      visitor.finish(group, e, values, Gather<Nodes, Fields...>{elements.nodes(e), {fields...}},
+                     tally);
     });
   }
 

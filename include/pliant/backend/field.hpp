@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
+#include <utility>
 
 #include <pliant/math/matrix.hpp>
 
@@ -24,7 +26,8 @@ struct NodeField {
     for (int k = 0; k < Components; ++k) v[k] = (*this)(node, k);
     return v;
   }
-  PLIANT_HOST_DEVICE void set(Index node, Vector<std::remove_const_t<T>, Components> const& v) const {
+  PLIANT_HOST_DEVICE void set(Index node,
+                              Vector<std::remove_const_t<T>, Components> const& v) const {
     for (int k = 0; k < Components; ++k) (*this)(node, k) = v[k];
   }
 };
@@ -37,5 +40,20 @@ PLIANT_HOST_DEVICE auto gather(NodeField<T, Components> const& field, Index cons
     for (int k = 0; k < Components; ++k) values(a, k) = field(nodes[a], k);
   return values;
 }
+
+/// Gathers several fields at the nodes of one element, when called: the `again` of `visit`.
+template <int Nodes, class... Fields>
+struct Gather {
+  Index const* nodes;
+  std::tuple<Fields...> fields;
+
+  PLIANT_HOST_DEVICE auto operator()() const { return at(std::index_sequence_for<Fields...>()); }
+
+ private:
+  template <std::size_t... I>
+  PLIANT_HOST_DEVICE auto at(std::index_sequence<I...>) const {
+    return std::tuple{gather<Nodes>(std::get<I>(fields), nodes)...};
+  }
+};
 
 }  // namespace pliant

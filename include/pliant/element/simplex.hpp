@@ -16,9 +16,7 @@ struct Tri3 {
   PLIANT_HOST_DEVICE static constexpr Matrix<double, 3, 2> gradient(Vector<double, 2> const&) {
     return {{{-1, -1}, {1, 0}, {0, 1}}};
   }
-  static constexpr std::array<std::array<int, 2>, 3> sides() {
-    return {{{0, 1}, {1, 2}, {2, 0}}};
-  }
+  static constexpr std::array<std::array<int, 2>, 3> sides() { return {{{0, 1}, {1, 2}, {2, 0}}}; }
   static constexpr std::array<std::array<int, 2>, 3> edges() { return sides(); }
 };
 

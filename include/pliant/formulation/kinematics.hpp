@@ -38,8 +38,7 @@ PLIANT_HOST_DEVICE void add_parametric_divergence(Tensor<S, E::dim> const& t, Ta
       for (int k = 0; k < E::dim; ++k) f(k + 1, i) = f(k + 1, i) + t(i, k);
     } else {
       for (int a = 0; a < E::nodes; ++a)
-        for (int k = 0; k < E::dim; ++k)
-          f(a, i) = f(a, i) + t(i, k) * T(table.gradient[q][a][k]);
+        for (int k = 0; k < E::dim; ++k) f(a, i) = f(a, i) + t(i, k) * T(table.gradient[q][a][k]);
     }
   }
 }

@@ -45,8 +45,8 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force(L const& law,
 /// The change of the nodal forces under displacements du: −∂²W_E/∂u² du, N.
 template <class F, class L, class S>
 PLIANT_HOST_DEVICE Nodal<typename F::element, S> force_change(
-    L const& law, Nodal<typename F::element, S> const& rest,
-    Nodal<typename F::element, S> const& u, Nodal<typename F::element, S> const& du) {
+    L const& law, Nodal<typename F::element, S> const& rest, Nodal<typename F::element, S> const& u,
+    Nodal<typename F::element, S> const& du) {
   using E = typename F::element;
   using T = builtin_scalar<S>;
   constexpr auto table = tabulate<E, typename F::quadrature, T>();
@@ -61,9 +61,10 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force_change(
   return df;
 }
 
-/// The stiffness matrix K = ∂²W_E/∂u², N/m; rows and columns run over (node, direction).
+/// The stiffness matrix K = ∂²W_E/∂u², N/m; rows and columns run over (node, direction). Large and
+/// seldom called, so kept out of line; constexpr is what lets device code call it.
 template <class F, class L, class S>
-PLIANT_HOST_DEVICE Tensor<S, F::nodes * F::dim> stiffness(
+[[gnu::noinline]] constexpr Tensor<S, F::nodes * F::dim> stiffness(
     L const& law, Nodal<typename F::element, S> const& rest,
     Nodal<typename F::element, S> const& u) {
   constexpr int n = F::nodes * F::dim;

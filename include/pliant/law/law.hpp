@@ -35,7 +35,7 @@ concept EnergyInGradient = requires(L const& law, Tensor<Dual<double, 1>, 3> con
 /// A strain energy density and its parameters.
 template <class L>
 concept Law = EnergyIn<L, StrainInvariants> || EnergyIn<L, CauchyGreenInvariants> ||
-              EnergyIn<L, GreenInvariants> || EnergyInGradient<L>;
+    EnergyIn<L, GreenInvariants> || EnergyInGradient<L>;
 
 /// A law whose parameters follow from an `Elastic`.
 template <class L>
@@ -59,8 +59,7 @@ template <class Family, class L, class S, int Dim>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress_by_invariants(L const& law, Tensor<S, Dim> const& h) {
   Family const i = Family::of(h);
   typename Family::template rebind<Dual<S, Family::count>> variables;
-  for (int k = 0; k < Family::count; ++k)
-    variables[k] = Dual<S, Family::count>::variable(i[k], k);
+  for (int k = 0; k < Family::count; ++k) variables[k] = Dual<S, Family::count>::variable(i[k], k);
   Dual<S, Family::count> const w = law.energy(variables);
   Family slopes;
   for (int k = 0; k < Family::count; ++k) slopes[k] = w.derivative[k];

@@ -15,8 +15,8 @@ struct Dual {
 
   /// A constant: its derivatives are zero.
   template <class C>
-    requires std::constructible_from<T, C const&>
-  PLIANT_HOST_DEVICE Dual(C const& constant) : value(constant) {}
+  requires std::constructible_from<T, C const&> PLIANT_HOST_DEVICE Dual(C const& constant)
+      : value(constant) {}
 
   /// The variable number `direction`.
   PLIANT_HOST_DEVICE static Dual variable(T const& value, int direction) {
@@ -141,8 +141,7 @@ PLIANT_HOST_DEVICE Dual<T, N> select(Condition const& condition, Dual<T, N> cons
                                      Dual<T, N> const& y) {
   Dual<T, N> z;
   z.value = select(condition, x.value, y.value);
-  for (int k = 0; k < N; ++k)
-    z.derivative[k] = select(condition, x.derivative[k], y.derivative[k]);
+  for (int k = 0; k < N; ++k) z.derivative[k] = select(condition, x.derivative[k], y.derivative[k]);
   return z;
 }
 

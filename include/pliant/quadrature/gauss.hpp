@@ -9,10 +9,10 @@ namespace detail {
 /// Gauss-Legendre on [−1, 1] (Abramowitz and Stegun, table 25.4).
 template <int N>
 PLIANT_HOST_DEVICE constexpr QuadratureRule<1, N> gauss_legendre() {
-  static_assert(N >= 1 && N <= 4, "Gauss<n> on quadrilaterals and hexahedra has 1 to 4 points per direction");
+  static_assert(N >= 1 && N <= 4,
+                "Gauss<n> on quadrilaterals and hexahedra has 1 to 4 points per direction");
   if constexpr (N == 1) return {{{0}}, {2}};
-  if constexpr (N == 2)
-    return {{{-0.57735026918962576451}, {0.57735026918962576451}}, {1, 1}};
+  if constexpr (N == 2) return {{{-0.57735026918962576451}, {0.57735026918962576451}}, {1, 1}};
   if constexpr (N == 3)
     return {{{-0.77459666924148337704}, {0}, {0.77459666924148337704}},
             {5.0 / 9, 8.0 / 9, 5.0 / 9}};
@@ -45,7 +45,8 @@ PLIANT_HOST_DEVICE constexpr auto triangle_rule() {
 /// Tetrahedra: the centroid, 4 points of degree 2, Walkington's 14 points of degree 5.
 template <int Degree>
 PLIANT_HOST_DEVICE constexpr auto tetrahedron_rule() {
-  static_assert(Degree >= 1 && Degree <= 5, "Gauss<n> on tetrahedra is exact for degree n = 1 to 5");
+  static_assert(Degree >= 1 && Degree <= 5,
+                "Gauss<n> on tetrahedra is exact for degree n = 1 to 5");
   if constexpr (Degree == 1) return QuadratureRule<3, 1>{{{0.25, 0.25, 0.25}}, {1.0 / 6}};
   if constexpr (Degree == 2) {
     constexpr double a = 0.13819660112501051518, b = 0.58541019662496845446, w = 1.0 / 24;
@@ -56,9 +57,20 @@ PLIANT_HOST_DEVICE constexpr auto tetrahedron_rule() {
     constexpr double c = 0.04550370412564964949, d = 0.5 - c;
     constexpr double u = 0.11268792571801585080 / 6, v = 0.07349304311636194934 / 6;
     constexpr double w = 0.04254602077708146644 / 6;
-    return QuadratureRule<3, 14>{{{a, a, a}, {1 - 3 * a, a, a}, {a, 1 - 3 * a, a}, {a, a, 1 - 3 * a},
-                                  {b, b, b}, {1 - 3 * b, b, b}, {b, 1 - 3 * b, b}, {b, b, 1 - 3 * b},
-                                  {c, c, d}, {c, d, c}, {d, c, c}, {d, d, c}, {d, c, d}, {c, d, d}},
+    return QuadratureRule<3, 14>{{{a, a, a},
+                                  {1 - 3 * a, a, a},
+                                  {a, 1 - 3 * a, a},
+                                  {a, a, 1 - 3 * a},
+                                  {b, b, b},
+                                  {1 - 3 * b, b, b},
+                                  {b, 1 - 3 * b, b},
+                                  {b, b, 1 - 3 * b},
+                                  {c, c, d},
+                                  {c, d, c},
+                                  {d, c, c},
+                                  {d, d, c},
+                                  {d, c, d},
+                                  {c, d, d}},
                                  {u, u, u, u, v, v, v, v, w, w, w, w, w, w}};
   }
 }

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
+
+#include <Eigen/Core>
 
 #include <pliant/math/functions.hpp>
 

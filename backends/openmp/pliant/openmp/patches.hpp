@@ -63,7 +63,8 @@ class Patches {
   };
   Folded folded(Index k) const {
     auto const i = static_cast<std::size_t>(k);
-    return {folded_[i], {fold_rows_.data() + fold_first_[i], fold_rows_.data() + fold_first_[i + 1]}};
+    return {folded_[i],
+            {fold_rows_.data() + fold_first_[i], fold_rows_.data() + fold_first_[i + 1]}};
   }
 
   /// Orders the elements of each patch by group, stably.
@@ -92,7 +93,8 @@ class Patches {
       scratch_first_.push_back(next);
       std::size_t const seen = foreign.size();
       Index const first = p * patch_size, last = std::min(count(), first + patch_size);
-      for (std::ptrdiff_t k = std::ptrdiff_t{Nodes} * first; k < std::ptrdiff_t{Nodes} * last; ++k) {
+      for (std::ptrdiff_t k = std::ptrdiff_t{Nodes} * first; k < std::ptrdiff_t{Nodes} * last;
+           ++k) {
         auto const node = static_cast<std::size_t>(connectivity_.data()[k]);
         if (owner[node] < 0) owner[node] = p;
         if (owner[node] != p && row[node] < 0) {
@@ -120,10 +122,10 @@ class Patches {
   int groups_ = 1;
   HostArray<Index> connectivity_, target_;  // (elements, Nodes)
   HostArray<Tag> tags_;
-  HostArray<Index> order_;      // elements, ordered by group inside each patch
-  std::vector<Index> bounds_;   // (patches, groups + 1)
+  HostArray<Index> order_;     // elements, ordered by group inside each patch
+  std::vector<Index> bounds_;  // (patches, groups + 1)
   Index scratch_nodes_ = 0;
-  std::vector<Index> scratch_first_;                   // (patches + 1)
+  std::vector<Index> scratch_first_;                    // (patches + 1)
   std::vector<Index> folded_, fold_first_, fold_rows_;  // compressed rows
 };
 

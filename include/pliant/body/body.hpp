@@ -1,0 +1,184 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <pliant/body/layout.hpp>
+#include <pliant/mesh/check.hpp>
+
+namespace pliant {
+
+/// A deformable body: nodes, elements in groups of formulations, conditions and loads, on one backend
+/// in one precision. Everything a user hands in or reads is in the user's own order of nodes and
+/// elements.
+template <Backend B, class M, class... Fs>
+class Body {
+ public:
+  static constexpr int dim = M::dim;
+  using backend_type = B;
+  using scalar = typename B::scalar;
+  using T = scalar;
+  using mesh_type = M;
+  using layout_type = Layout<B, M, Fs...>;
+  using Field = NodeField<T, dim>;
+  using ConstField = NodeField<T const, dim>;
+
+  /// Checks the mesh and the material (throws Error) and starts at rest, undeformed. All elements of
+  /// a type start in the first group given for that type.
+  Body(B backend, M mesh, Elastic const& material, Group<Fs>... groups)
+      : backend_(std::move(backend)),
+        material_(material.checked()),
+        groups_(std::move(groups)...),
+        layout_(first_layout(std::move(mesh))) {}
+
+  // What it is made of.
+  B const& backend() const { return backend_; }
+  Elastic const& material() const { return material_; }
+  M const& mesh() const { return layout_.mesh; }
+  Index nodes() const { return layout_.nodes; }
+  double time() const { return time_; }  // s
+  long steps() const { return steps_; }
+  /// The group of each element, as the number among the groups given for its type.
+  template <Element E>
+  std::vector<Tag> groups_of() const;
+  /// Puts elements into the group of a formulation.
+  template <class F>
+  void assign(std::vector<Index> const& elements);
+  /// Lumped masses of the nodes, kg; those of slaves are with their masters.
+  std::vector<double> const& masses() const { return layout_.mass_list; }
+
+  // What holds and pulls it.
+  void clamp(std::vector<Facet<dim>> const& facets) { hold(facets, all_directions<dim>); }
+  void clamp(std::vector<Index> const& nodes) { hold(nodes, all_directions<dim>); }
+  /// Holds directions (bit k: direction k) where they are now.
+  void hold(std::vector<Facet<dim>> const& facets, DirectionMask directions) {
+    add_condition({facets, nodes_of(facets), directions, {}});
+  }
+  void hold(std::vector<Index> const& nodes, DirectionMask directions) {
+    add_condition({{}, nodes, directions, {}});
+  }
+  /// Moves nodes: their displacement is motion(time).
+  void drive(std::vector<Facet<dim>> const& facets, Motion<dim> motion) {
+    add_condition({facets, nodes_of(facets), all_directions<dim>, std::move(motion)});
+  }
+  void drive(std::vector<Index> const& nodes, Motion<dim> motion) {
+    add_condition({{}, nodes, all_directions<dim>, std::move(motion)});
+  }
+  void set_gravity(Point<dim> const& g) { gravity_ = g; }  // m/s²
+  void set_damping(double per_mass);                       // 1/s
+  void set_load(Index node, Point<dim> const& force);      // N, constant in direction
+  Point<dim> const& gravity() const { return gravity_; }
+  double damping() const { return damping_; }
+  std::vector<Point<dim>> const& loads() const { return loads_; }  // empty, or one per node
+  std::vector<Condition<dim>> const& conditions() const { return conditions_; }
+
+  // Its state.
+  std::vector<Point<dim>> displacements() const { return layout_.in_user_order(layout_.u); }
+  std::vector<Point<dim>> velocities();
+  void set_displacements(std::vector<Point<dim>> const& u);
+  void set_velocities(std::vector<Point<dim>> const& v);
+  /// Internal forces −∂W/∂u of the present displacements, N; those of slaves are with their masters.
+  std::vector<Point<dim>> forces();
+  double strain_energy() const { return energy_at(layout_.u); }  // J
+  double kinetic_energy();                                       // J
+  double potential_energy() const;                               // J, of gravity and loads
+  double total_energy() { return strain_energy() + kinetic_energy() + potential_energy(); }
+
+  // For a simulator that owns its state: arrays in the backend's memory, node i at [stride i], which
+  // are added to and never overwritten.
+  void add_force(T const* u, T* f, int stride = dim);
+  /// f += factor · ∂F/∂u · du, at the displacement u.
+  void add_tangent_product(T const* u, T const* du, T* f, double factor = 1, int stride = dim);
+  double energy(T const* u, int stride = dim);
+  void add_lumped_mass(T* m) const;  // (nodes)
+
+  // For solvers and adaptation.
+  layout_type& layout() { return layout_; }
+  layout_type const& layout() const { return layout_; }
+  std::tuple<Group<Fs>...> const& groups() const { return groups_; }
+  template <class F>
+  auto law_of() const {
+    return std::get<Group<F>>(groups_).law_for(material_);
+  }
+  template <class Visit>
+  void for_each_table(Visit const& visit) {
+    std::apply([&](auto&... table) { (visit(table), ...); }, layout_.tables);
+  }
+  template <class Visit>
+  void for_each_table(Visit const& visit) const {
+    std::apply([&](auto const&... table) { (visit(table), ...); }, layout_.tables);
+  }
+  Field displacement_field() { return {layout_.u.data()}; }
+  ConstField rest_field() const { return {layout_.rest.data()}; }
+  ConstField displacement_field() const { return {layout_.u.data()}; }
+  ExternalForces<T, dim> external_forces() const;
+  /// Brings `layout().f` up to date.
+  void evaluate_forces();
+  /// Call after a change of displacements or groups.
+  void forget_forces() { forces_current_ = false; }
+  /// Velocities and displacements go forward: see Advance. Leaves a half kick of `open` owed.
+  void advance(double lag, double kick, double drift);
+  void owe(double half_kick) { owed_ = half_kick; }
+  double owed() const { return owed_; }
+  /// Pays the half kick that the last step left open, so that velocities belong to time().
+  void synchronize_velocities();
+  void prescribe(double time, double over);
+  bool has_motions() const;
+  void tick(double dt, int steps) {
+    time_ += dt;
+    steps_ += steps;
+  }
+  void rewind(double time, long steps) {
+    time_ = time;
+    steps_ = steps;
+  }
+  /// Swaps in another mesh with its state; used by refinement.
+  void replace(layout_type layout, std::vector<Condition<dim>> conditions,
+               std::vector<Point<dim>> loads);
+
+ private:
+  layout_type first_layout(M mesh) const {
+    check(mesh);
+    auto const tags = first_groups(mesh);
+    return {backend_, std::move(mesh), {}, material_, groups_, tags};
+  }
+  template <Element... Es>
+  static auto first_groups(Mesh<Es...> const& mesh) {
+    return std::array<std::vector<Tag>, sizeof...(Es)>{
+        std::vector<Tag>(mesh.template elements<Es>().size(), 0)...};
+  }
+  void add_condition(Condition<dim> condition);
+  void upload_conditions();
+  double energy_at(typename B::template Array<T> const& u) const;
+  void accumulate_forces(ConstField u, Field f) const;
+  void clear(Field field, Index rows) const { backend_.for_each(rows, Clear<T>{field.data}); }
+  struct Scratch {
+    typename B::template Array<T> u, du, f;
+  };
+  Scratch& scratch();
+
+  B backend_;
+  Elastic material_;
+  std::tuple<Group<Fs>...> groups_;
+  layout_type layout_;
+  std::vector<Condition<dim>> conditions_;
+  struct ListedCondition {
+    typename B::template Array<Index> nodes;
+    std::size_t condition;
+  };
+  std::vector<ListedCondition> motions_;
+  std::vector<Point<dim>> loads_;
+  Point<dim> gravity_{};
+  double damping_ = 0, time_ = 0, owed_ = 0;
+  long steps_ = 0;
+  bool forces_current_ = false;
+  std::optional<Scratch> scratch_;
+};
+
+template <Backend B, class M, class... Gs>
+Body(B, M, Elastic, Gs...) -> Body<B, M, typename Gs::formulation...>;
+
+}  // namespace pliant
+
+#include <pliant/body/body_members.hpp>

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+
+#include <pliant/formulation/formulation.hpp>
+
+namespace pliant {
+
+/// The elements that share a formulation at this moment. All elements of a type start in the first
+/// group given for that type.
+template <class F>
+struct Group {
+  using formulation = F;
+  /// The parameters of the law; when not given they follow from the body's `Elastic`.
+  std::optional<typename F::template law<double>> law{};
+
+  typename F::template law<double> law_for(Elastic const& material) const {
+    using L = typename F::template law<double>;
+    if (law) return *law;
+    if constexpr (LawFromElastic<L>)
+      return L::from(material);
+    else
+      throw Error(
+          "body: a law that has no from(Elastic) needs its parameters: write Group<F>{law}");
+  }
+};
+
+namespace detail {
+
+template <class... Ts>
+struct TypeList {
+  static constexpr int size = sizeof...(Ts);
+};
+
+template <class List, class T>
+struct Append;
+template <class... Ts, class T>
+struct Append<TypeList<Ts...>, T> {
+  using type = TypeList<Ts..., T>;
+};
+
+/// The formulations of an element type, in their order.
+template <class E, class Found, class... Fs>
+struct FormulationsOf {
+  using type = Found;
+};
+template <class E, class Found, class F, class... Fs>
+struct FormulationsOf<E, Found, F, Fs...> {
+  using next = std::conditional_t<std::same_as<typename F::element, E>,
+                                  typename Append<Found, F>::type, Found>;
+  using type = typename FormulationsOf<E, next, Fs...>::type;
+};
+
+/// The position of T in a list; the list's size when it is not there.
+template <class T, class... Ts>
+constexpr int position_in(TypeList<Ts...>) {
+  int k = 0;
+  (void)((std::same_as<T, Ts> ? false : (++k, true)) && ...);
+  return k;
+}
+
+}  // namespace detail
+}  // namespace pliant

@@ -1,0 +1,175 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <pliant/body/element_table.hpp>
+#include <pliant/body/motion.hpp>
+#include <pliant/body/numbering.hpp>
+#include <pliant/body/slaves.hpp>
+
+namespace pliant {
+
+/// The part of a body that depends on its mesh: arrays in the backend's memory, in internal order. A
+/// refinement makes a new one and swaps it in, so that a failure leaves the body as it was.
+template <Backend B, class M, class... Fs>
+struct Layout;
+
+template <Backend B, Element... Es, class... Fs>
+struct Layout<B, Mesh<Es...>, Fs...> {
+  static constexpr int dim = Mesh<Es...>::dim;
+  using T = typename B::scalar;
+  template <class U>
+  using Array = typename B::template Array<U>;
+  template <class E>
+  using Table =
+      ElementTable<B, E, typename detail::FormulationsOf<E, detail::TypeList<>, Fs...>::type>;
+  static_assert(((Table<Es>::groups > 0) && ...),
+                "every element type of the mesh needs a Group of a formulation on that element");
+
+  Mesh<Es...> mesh;                             // in the user's order, of the elements that act now
+  std::vector<Slave> slave_list;                // in the user's order
+  std::vector<double> mass_list;                // kg, in the user's order, slaves' handed on
+  std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
+  Index nodes = 0;
+  Array<Index> user_node_array;
+  Array<T> rest, u, v, f;     // (nodes, 4); f with scratch rows behind
+  Array<T> mass;              // (nodes)
+  Array<DirectionMask> held;  // (nodes)
+  Array<T> load;              // (nodes, 4), or empty
+  std::tuple<Table<Es>...> tables;
+  Slaves<B> slaves;
+
+  /// `tags`: the group of each element, by the user's number; one list per element type.
+  Layout(B const& backend, Mesh<Es...> m, std::vector<Slave> hanging, Elastic const& material,
+         std::tuple<Group<Fs>...> const& groups,
+         std::array<std::vector<Tag>, sizeof...(Es)> const& tags)
+      : mesh(std::move(m)), slave_list(std::move(hanging)) {
+    Numbering<Es...> numbering(mesh);
+    internal_node = std::move(numbering.internal_node);
+    user_node = std::move(numbering.user_node);
+    nodes = static_cast<Index>(user_node.size());
+    user_node_array = upload(backend, user_node);
+
+    Index scratch = 0;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (make_table<I>(backend, numbering, material, groups, tags[I], scratch), ...);
+    }
+    (std::index_sequence_for<Es...>());
+
+    auto const padded = static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes);
+    upload_rest();
+    u = Array<T>(padded);
+    v = Array<T>(padded);
+    f = Array<T>(padded +
+                 static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(scratch));
+    held = Array<DirectionMask>(static_cast<std::size_t>(nodes));
+
+    std::vector<Slave> internal = slave_list;
+    for (auto& slave : internal) {
+      slave.node = internal_of(slave.node);
+      for (auto& [master, weight] : slave.masters) master = internal_of(master);
+    }
+    slaves = Slaves<B>(backend, internal);
+    lump_mass(material.density);
+    std::vector<T> masses(mass_list.size());
+    for (std::size_t i = 0; i < masses.size(); ++i)
+      masses[static_cast<std::size_t>(internal_node[i])] = static_cast<T>(mass_list[i]);
+    mass = upload(backend, masses);
+  }
+
+  Index internal_of(Index user) const { return internal_node[static_cast<std::size_t>(user)]; }
+
+  template <class E>
+  Table<E>& table() {
+    return std::get<Table<E>>(tables);
+  }
+  template <class E>
+  Table<E> const& table() const {
+    return std::get<Table<E>>(tables);
+  }
+
+  /// A field given per node in the user's order, padded and in internal order.
+  std::vector<T> padded(std::vector<Point<dim>> const& values) const {
+    std::vector<T> field(static_cast<std::size_t>(node_stride) * values.size(), T(0));
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (std::size_t k = 0; k < dim; ++k)
+        field[node_stride * static_cast<std::size_t>(internal_node[i]) + k] =
+            static_cast<T>(values[i][k]);
+    return field;
+  }
+  /// The inverse of `padded`.
+  std::vector<Point<dim>> in_user_order(Array<T> const& array) const {
+    std::vector<T> field(static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes));
+    array.download(field);
+    std::vector<Point<dim>> values(static_cast<std::size_t>(nodes));
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (std::size_t k = 0; k < dim; ++k)
+        values[i][k] = static_cast<double>(
+            field[node_stride * static_cast<std::size_t>(internal_node[i]) + k]);
+    return values;
+  }
+
+ private:
+  template <std::size_t I>
+  void make_table(B const& backend, Numbering<Es...>& numbering, Elastic const& material,
+                  std::tuple<Group<Fs>...> const& groups, std::vector<Tag> const& user_tags,
+                  Index& scratch) {
+    auto& table = std::get<I>(tables);
+    using TableType = std::remove_reference_t<decltype(table)>;
+    table.user_element = std::move(numbering.user_element[I]);
+    std::vector<Tag> tags(table.user_element.size());
+    for (std::size_t e = 0; e < tags.size(); ++e)
+      tags[e] = user_tags[static_cast<std::size_t>(table.user_element[e])];
+    table.elements = {backend, std::move(std::get<I>(numbering.tables)), TableType::groups, tags,
+                      nodes};
+    scratch = std::max(scratch, table.elements.scratch_nodes());
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      ((std::get<G>(table.laws.laws) = law_cast<T>(
+            std::get<Group<typename TableType::template formulation<G>>>(groups).law_for(
+                material))),
+       ...);
+    }
+    (std::make_integer_sequence<int, TableType::groups>());
+  }
+
+  /// Positions relative to the middle of the body: single precision keeps its digits.
+  void upload_rest() {
+    Point<dim> low, high;
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    for (auto const& p : mesh.nodes)
+      for (std::size_t k = 0; k < dim; ++k) {
+        low[k] = std::min(low[k], p[k]);
+        high[k] = std::max(high[k], p[k]);
+      }
+    std::vector<Point<dim>> relative = mesh.nodes;
+    for (auto& p : relative)
+      for (std::size_t k = 0; k < dim; ++k) p[k] -= (low[k] + high[k]) / 2;
+    std::vector<T> const values = padded(relative);
+    rest = Array<T>(values.size());
+    rest.upload(values);
+  }
+
+  void lump_mass(double density) {
+    mass_list.assign(mesh.nodes.size(), 0.0);
+    (add_mass<Es>(density), ...);
+    for (auto const& slave : slave_list) {
+      double& own = mass_list[static_cast<std::size_t>(slave.node)];
+      for (auto const& [master, weight] : slave.masters)
+        mass_list[static_cast<std::size_t>(master)] += weight * own;
+      own = 0;
+    }
+  }
+  template <Element E>
+  void add_mass(double density) {
+    for (auto const& nodes_of_element : mesh.template elements<E>()) {
+      auto const share = nodal_volumes<E>(nodal(mesh, nodes_of_element));
+      for (int a = 0; a < E::nodes; ++a)
+        mass_list[static_cast<std::size_t>(nodes_of_element[static_cast<std::size_t>(a)])] +=
+            density * share[a];
+    }
+  }
+};
+
+}  // namespace pliant

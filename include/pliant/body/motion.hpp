@@ -1,0 +1,145 @@
+#pragma once
+
+#include <pliant/backend/field.hpp>
+#include <pliant/body/conditions.hpp>
+
+// The node loops of a moving body.
+namespace pliant {
+
+/// What pulls at nodes besides their elements.
+template <class T, int Dim>
+struct ExternalForces {
+  Vector<T, Dim> gravity;  // m/s²
+  T damping;               // per mass: the force −damping · m v, 1/s
+  T const* load;           // (nodes, 4), N; may be null
+};
+
+/// Brings velocities and displacements forward:
+///   v ← (v + lag a)/(1 + damping lag)       the half kick that the last step left open
+///   v ← v (1 − damping kick) + kick a       the first half kick of this step
+///   u ← u + drift v
+/// Both half kicks together are central differences with centred mass damping, whose stable step is
+/// that without damping. Directions that are held keep u and have v = 0.
+template <class T, int Dim>
+struct Advance {
+  NodeField<T, Dim> u, v;
+  NodeField<T const, Dim> f;
+  T const* mass;
+  DirectionMask const* held;
+  ExternalForces<T, Dim> external;
+  T lag, kick, drift;  // s
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    T const m = mass[i];
+    if (!(m > T(0))) return;  // slaves follow their masters; nodes of no element rest
+    DirectionMask const mask = held[i];
+    T const inverse_mass = T(1) / m;
+    T const release = T(1) / (T(1) + external.damping * lag);
+    for (int k = 0; k < Dim; ++k) {
+      if (mask >> k & 1) continue;
+      T a = f(i, k) * inverse_mass + external.gravity[k];
+      if (external.load)
+        a += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k] * inverse_mass;
+      T speed = (v(i, k) + lag * a) * release;
+      speed = speed * (T(1) - external.damping * kick) + kick * a;
+      v(i, k) = speed;
+      u(i, k) += drift * speed;
+    }
+  }
+};
+
+/// Puts the nodes of a list at a prescribed displacement and velocity.
+template <class T, int Dim>
+struct Prescribe {
+  NodeField<T, Dim> u, v;
+  Index const* nodes;
+  DirectionMask directions;
+  Vector<T, Dim> displacement, velocity;
+
+  PLIANT_HOST_DEVICE void operator()(Index n) const {
+    for (int k = 0; k < Dim; ++k)
+      if (directions >> k & 1) {
+        u(nodes[n], k) = displacement[k];
+        v(nodes[n], k) = velocity[k];
+      }
+  }
+};
+
+template <class T>
+struct Fill {
+  T* data;
+  T value;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { data[i] = value; }
+};
+
+/// Sets the rows [0, nodes) of a field to zero.
+template <class T>
+struct Clear {
+  T* data;  // (nodes, 4)
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < node_stride; ++k)
+      data[node_stride * static_cast<std::ptrdiff_t>(i) + k] = T(0);
+  }
+};
+
+/// m v²/2 of a node.
+template <class T, int Dim>
+struct KineticEnergy {
+  NodeField<T const, Dim> v;
+  T const* mass;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    auto const speed = v.at(i);
+    return static_cast<double>(mass[i] * dot(speed, speed) / T(2));
+  }
+};
+
+/// −(m g + load)·u of a node.
+template <class T, int Dim>
+struct PotentialEnergy {
+  NodeField<T const, Dim> u;
+  T const* mass;
+  ExternalForces<T, Dim> external;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    double work = 0;
+    for (int k = 0; k < Dim; ++k) {
+      T force = mass[i] * external.gravity[k];
+      if (external.load) force += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k];
+      work += static_cast<double>(force * u(i, k));
+    }
+    return -work;
+  }
+};
+
+/// Moves rows between the user's numbering and stride and the padded internal one.
+template <class T, int Dim>
+struct FromUser {
+  NodeField<T, Dim> to;
+  T const* from;
+  int stride;
+  Index const* user_node;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < Dim; ++k)
+      to(i, k) = from[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k];
+  }
+};
+template <class T, int Dim>
+struct AddToUser {
+  NodeField<T const, Dim> from;
+  T* to;
+  int stride;
+  Index const* user_node;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < Dim; ++k)
+      to[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k] += from(i, k);
+  }
+};
+
+template <class T>
+struct AddMass {
+  T const* mass;
+  T* to;
+  Index const* user_node;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[user_node[i]] += mass[i]; }
+};
+
+}  // namespace pliant

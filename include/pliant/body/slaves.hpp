@@ -1,0 +1,98 @@
+#pragma once
+
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/mesh/slave.hpp>
+
+namespace pliant {
+
+/// The hanging nodes of a body: compressed rows in both directions, so that values are interpolated
+/// from masters to slaves, and forces handed from slaves to masters, without two writers of a node.
+template <Backend B>
+class Slaves {
+  using T = typename B::scalar;
+
+ public:
+  Slaves() = default;
+  Slaves(B const& backend, std::vector<Slave> const& slaves)
+      : to_slaves_(backend, rows_by_slave(slaves)), to_masters_(backend, rows_by_master(slaves)) {}
+
+  bool empty() const { return to_slaves_.count == 0; }
+
+  /// Sets a field at the slaves from their masters: v_s = Σ_i T_si v_i.
+  template <int C>
+  void interpolate(B const& backend, NodeField<T, C> field) const {
+    if (!empty()) backend.for_each(to_slaves_.count, to_slaves_.template apply<C, false>(field));
+  }
+  /// Adds to a field at the masters what the slaves hold: f_i += Σ_s T_si f_s.
+  template <int C>
+  void hand_to_masters(B const& backend, NodeField<T, C> field) const {
+    if (!empty()) backend.for_each(to_masters_.count, to_masters_.template apply<C, true>(field));
+  }
+
+ private:
+  struct HostRows {
+    std::vector<Index> node, first{0}, other;
+    std::vector<T> weight;
+  };
+  template <int C, bool Add>
+  struct Apply {
+    NodeField<T, C> field;
+    Index const *node, *first, *other;
+    T const* weight;
+    PLIANT_HOST_DEVICE void operator()(Index k) const {
+      auto sum = Vector<T, C>::zero();
+      if constexpr (Add) sum = field.at(node[k]);
+      for (Index j = first[k]; j < first[k + 1]; ++j) sum = sum + weight[j] * field.at(other[j]);
+      field.set(node[k], sum);
+    }
+  };
+  struct Rows {
+    Index count = 0;
+    typename B::template Array<Index> node, first, other;
+    typename B::template Array<T> weight;
+    Rows() = default;
+    Rows(B const& backend, HostRows const& rows)
+        : count(static_cast<Index>(rows.node.size())),
+          node(upload(backend, rows.node)),
+          first(upload(backend, rows.first)),
+          other(upload(backend, rows.other)),
+          weight(upload(backend, rows.weight)) {}
+    template <int C, bool Add>
+    Apply<C, Add> apply(NodeField<T, C> field) const {
+      return {field, node.data(), first.data(), other.data(), weight.data()};
+    }
+  };
+
+  static HostRows rows_by_slave(std::vector<Slave> const& slaves) {
+    HostRows rows;
+    for (auto const& [node, masters] : slaves) {
+      rows.node.push_back(node);
+      for (auto const& [master, weight] : masters) {
+        rows.other.push_back(master);
+        rows.weight.push_back(static_cast<T>(weight));
+      }
+      rows.first.push_back(static_cast<Index>(rows.other.size()));
+    }
+    return rows;
+  }
+  static HostRows rows_by_master(std::vector<Slave> const& slaves) {
+    std::vector<Slave> transposed;
+    std::vector<std::pair<Index, std::pair<Index, double>>> entries;
+    for (auto const& slave : slaves)
+      for (auto const& [master, weight] : slave.masters)
+        entries.push_back({master, {slave.node, weight}});
+    std::ranges::sort(entries);
+    for (auto const& [master, entry] : entries) {
+      if (transposed.empty() || transposed.back().node != master)
+        transposed.push_back({master, {}});
+      transposed.back().masters.push_back(entry);
+    }
+    return rows_by_slave(transposed);
+  }
+
+  Rows to_slaves_, to_masters_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <pliant/element/element.hpp>
+#include <pliant/error.hpp>
+
+namespace pliant {
+
+template <int Dim>
+using Point = std::array<double, Dim>;
+
+/// One side of an element on the boundary: the numbers of its corner nodes; behind a triangle's
+/// three, −1.
+template <int Dim>
+using Facet = std::array<Index, Dim == 2 ? 2 : 4>;
+
+/// Nodes at rest, and the elements of each type that join them. Plain data, in the user's order.
+template <Element... Es>
+struct Mesh {
+  static constexpr int dim = std::tuple_element_t<0, std::tuple<Es...>>::dim;
+  static_assert(((Es::dim == dim) && ...), "all elements of a mesh live in the same dimension");
+
+  std::vector<Point<dim>> nodes;                        // m
+  std::tuple<std::vector<Connectivity<Es>>...> tables;  // one list of elements per type
+  std::map<std::string, std::vector<Facet<dim>>> boundaries{};
+
+  template <Element E>
+  std::vector<Connectivity<E>>& elements() {
+    return std::get<std::vector<Connectivity<E>>>(tables);
+  }
+  template <Element E>
+  std::vector<Connectivity<E>> const& elements() const {
+    return std::get<std::vector<Connectivity<E>>>(tables);
+  }
+  /// The facets of a named part of the boundary. Throws Error when there is none of that name.
+  std::vector<Facet<dim>> const& boundary(std::string const& name) const {
+    auto const found = boundaries.find(name);
+    if (found != boundaries.end()) return found->second;
+    std::string known;
+    for (auto const& [other, facets] : boundaries) known += (known.empty() ? "" : ", ") + other;
+    throw Error("mesh: no boundary is called \"" + name + "\"; there are: " + known);
+  }
+};
+
+/// The positions of an element's nodes: (nodes, dim).
+template <std::size_t Nodes, Element... Es>
+auto nodal(Mesh<Es...> const& mesh, std::array<Index, Nodes> const& element) {
+  Matrix<double, int{Nodes}, Mesh<Es...>::dim> rest;
+  for (std::size_t a = 0; a < Nodes; ++a)
+    for (int k = 0; k < Mesh<Es...>::dim; ++k)
+      rest(static_cast<int>(a), k) =
+          mesh.nodes[static_cast<std::size_t>(element[a])][static_cast<std::size_t>(k)];
+  return rest;
+}
+
+/// The nodes on some facets, ascending, each once.
+template <std::size_t N>
+std::vector<Index> nodes_of(std::vector<std::array<Index, N>> const& facets) {
+  std::vector<Index> nodes;
+  for (auto const& facet : facets)
+    for (Index node : facet)
+      if (node >= 0) nodes.push_back(node);
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace pliant

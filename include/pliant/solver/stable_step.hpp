@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cmath>
+
+#include <pliant/body/body.hpp>
+
+namespace pliant {
+
+namespace detail {
+
+/// Row sums Σ_j |K_ij| of an element's stiffness, per node and direction.
+template <class Laws>
+struct StiffnessRows {
+  Laws groups;
+  template <int G, class V>
+  PLIANT_HOST_DEVICE V operator()(GroupNumber<G>, V const& rest, V const& u) const {
+    using F = typename Laws::template formulation<G>;
+    auto const k = stiffness<F>(groups.template law<G>(), rest, u);
+    V rows = V::zero();
+    for (int i = 0; i < F::nodes * F::dim; ++i)
+      for (int j = 0; j < F::nodes * F::dim; ++j)
+        rows(i / F::dim, i % F::dim) = rows(i / F::dim, i % F::dim) + abs(k(i, j));
+    return rows;
+  }
+};
+
+/// An upper bound of the largest |eigenvalue| of a symmetric matrix, within a factor N^(1/8): the
+/// Frobenius norm ‖A⁴‖^(1/4), computed from A scaled to norm one.
+template <class S, int N>
+PLIANT_HOST_DEVICE S spectral_bound(Tensor<S, N> a) {
+  S largest = S(0);
+  for (int i = 0; i < N; ++i) {
+    S row = S(0);
+    for (int j = 0; j < N; ++j) row = row + abs(a(i, j));
+    largest = max(largest, row);
+  }
+  using T = builtin_scalar<S>;
+  S const scale = S(1) / max(largest, S(std::numeric_limits<T>::min()));
+  a = scale * a;
+  for (int power = 0; power < 2; ++power) {
+    Tensor<S, N> squared;
+    for (int i = 0; i < N; ++i)
+      for (int j = i; j < N; ++j) {
+        S sum = S(0);
+        for (int k = 0; k < N; ++k) sum = sum + a(i, k) * a(j, k);
+        squared(i, j) = sum;
+        squared(j, i) = sum;
+      }
+    a = squared;
+  }
+  return largest * sqrt(sqrt(norm(a)));
+}
+
+/// Writes a bound of the largest eigenvalue of M_e⁻¹ K_e, 1/s², for each element.
+template <class T, class Laws>
+struct ElementSpectra {
+  static constexpr int counters = 1;
+  Laws groups;
+  T density;
+  T* bound;  // (elements)
+
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
+    using F = typename Laws::template formulation<G>;
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    auto k = stiffness<F>(groups.template law<G>(), rest, u);
+    auto const volumes = nodal_volumes<typename F::element>(rest);
+    Vector<S, F::nodes> scale;
+    for (int a = 0; a < F::nodes; ++a) scale[a] = S(1) / sqrt(density * volumes[a]);
+    for (int i = 0; i < F::nodes * F::dim; ++i)
+      for (int j = 0; j < F::nodes * F::dim; ++j)
+        k(i, j) = k(i, j) * scale[i / F::dim] * scale[j / F::dim];
+    Vector<S, 1> result;
+    result[0] = spectral_bound(k);
+    return result;
+  }
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& value, Again const&,
+                                 Tally const&) const {
+    bound[e] = value[0];
+  }
+};
+
+template <class T>
+struct ValueAt {
+  T const* data;
+  PLIANT_HOST_DEVICE double operator()(Index i) const { return static_cast<double>(data[i]); }
+};
+
+/// The largest row sum over mass of a free direction.
+template <class T, int Dim>
+struct RowOverMass {
+  NodeField<T const, Dim> rows;
+  T const* mass;
+  DirectionMask const* held;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    double largest = 0;
+    if (mass[i] > T(0))
+      for (int k = 0; k < Dim; ++k)
+        if (!(held[i] >> k & 1))
+          largest = max(largest, static_cast<double>(rows(i, k)) / static_cast<double>(mass[i]));
+    return largest;
+  }
+};
+
+}  // namespace detail
+
+/// A time step, s, below which central differences are certain to be stable for the body frozen in
+/// its present state: 2/ω with ω² bounded in two ways, of which the better is taken. Either by the
+/// largest element eigenvalue of M_e⁻¹ K_e (Irons and Treharne 1971), or by unassembled Gershgorin
+/// discs, max_i Σ_e Σ_j |K_e,ij| / m_i, rows of slaves added to their masters'. Both hold with
+/// hanging nodes, whose interpolation weights are not negative. Centred mass damping does not lower
+/// the limit. Throws Error when the state is not finite.
+template <class TheBody>
+double stable_step(TheBody& body) {
+  using T = typename TheBody::scalar;
+  using B = typename TheBody::backend_type;
+  constexpr int dim = TheBody::dim;
+  B const& backend = body.backend();
+  auto& layout = body.layout();
+  typename B::template Array<T> rows(layout.f.size());
+  double by_elements = 0;
+  std::as_const(body).for_each_table([&](auto const& table) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    if (table.count() == 0) return;
+    using Laws = typename Table::Laws;
+    auto const u = std::as_const(body).displacement_field();
+    backend.template accumulate<Table::groups>(
+        table.elements, detail::StiffnessRows<Laws>{table.laws}, NodeField<T, dim>{rows.data()},
+        body.rest_field(), u);
+    typename B::template Array<T> bounds(static_cast<std::size_t>(table.count()));
+    typename B::template Array<double> counters(1);
+    backend.template visit<Table::groups>(
+        table.elements,
+        detail::ElementSpectra<T, Laws>{table.laws, static_cast<T>(body.material().density),
+                                        bounds.data()},
+        counters, body.rest_field(), u);
+    by_elements =
+        std::max(by_elements, backend.maximum(table.count(), detail::ValueAt<T>{bounds.data()}));
+  });
+  layout.slaves.hand_to_masters(backend, NodeField<T, dim>{rows.data()});
+  double const by_rows = backend.maximum(
+      layout.nodes,
+      detail::RowOverMass<T, dim>{{rows.data()}, layout.mass.data(), layout.held.data()});
+  double const eigenvalue = std::min(by_elements, by_rows);
+  if (!std::isfinite(eigenvalue) || !(eigenvalue > 0))
+    throw Error("stable_step: the stiffness of the body is " +
+                std::string(eigenvalue > 0 ? "not finite" : "zero") + " at time " +
+                std::to_string(body.time()) +
+                " s; an element has collapsed, or every node is held");
+  return 2 / std::sqrt(eigenvalue);
+}
+
+}  // namespace pliant
