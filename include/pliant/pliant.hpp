@@ -1,7 +1,14 @@
 #pragma once
 
-// Everything that is independent of a backend but the assembled solvers, which need Eigen's sparse
-// matrices: <pliant/solver/newton.hpp>.
+// Everything that is independent of a backend, but the solvers that assemble sparse matrices:
+// <pliant/solver/newton.hpp>.
+#include <pliant/adaptation/adaptation.hpp>
+#include <pliant/adaptation/criterion/combine.hpp>
+#include <pliant/adaptation/criterion/deformation.hpp>
+#include <pliant/adaptation/criterion/force_intensity.hpp>
+#include <pliant/adaptation/criterion/shape.hpp>
+#include <pliant/adaptation/ledger.hpp>
+#include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/body.hpp>
 #include <pliant/config.hpp>

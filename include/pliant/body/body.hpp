@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include <pliant/body/history.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/mesh/check.hpp>
 
@@ -133,19 +134,29 @@ class Body {
     time_ = time;
     steps_ = steps;
   }
-  /// Swaps in another mesh with its state; used by refinement.
+  History<dim> const& history() const { return history_; }
+  /// The largest mesh that refinement may make; one that would be larger throws Error.
+  void set_capacity(Capacity capacity) { history_.capacity = capacity; }
+  /// A layout of another mesh. `tags`: groups by the user's number, one list per element type.
+  layout_type make_layout(M mesh, std::vector<Slave> slaves,
+                          std::vector<std::vector<Tag>> const& tags) const {
+    return {backend_, std::move(mesh), std::move(slaves), material_, groups_, tags};
+  }
+  /// Swaps in another mesh; used by refinement.
   void replace(layout_type layout, std::vector<Condition<dim>> conditions,
-               std::vector<Point<dim>> loads);
+               std::vector<Point<dim>> loads, std::shared_ptr<Hierarchy const> tree,
+               std::vector<typename History<dim>::Totals> totals);
+  void add_refinement(LedgerEntry<dim> entry) { history_.refinements.push_back(std::move(entry)); }
 
  private:
   layout_type first_layout(M mesh) const {
     check(mesh);
     auto const tags = first_groups(mesh);
-    return {backend_, std::move(mesh), {}, material_, groups_, tags};
+    return make_layout(std::move(mesh), {}, tags);
   }
   template <Element... Es>
   static auto first_groups(Mesh<Es...> const& mesh) {
-    return std::array<std::vector<Tag>, sizeof...(Es)>{
+    return std::vector<std::vector<Tag>>{
         std::vector<Tag>(mesh.template elements<Es>().size(), 0)...};
   }
   void add_condition(Condition<dim> condition);
@@ -173,6 +184,7 @@ class Body {
   double damping_ = 0, time_ = 0, owed_ = 0;
   long steps_ = 0;
   bool forces_current_ = false;
+  History<dim> history_;
   std::optional<Scratch> scratch_;
 };
 

@@ -50,6 +50,10 @@ void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
     if (node < 0 || node >= nodes())
       throw Error("body: a condition names node " + std::to_string(node) +
                   ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
+  if (history_.tree && !condition.facets.empty())
+    throw Error(
+        "body: a condition on facets comes after a refinement, and would not be inherited; hold "
+        "facets before the first refinement, or nodes");
   conditions_.push_back(std::move(condition));
   upload_conditions();
   prescribe(time_, 0);
@@ -249,8 +253,13 @@ void Body<B, M, Fs...>::synchronize_velocities() {
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> conditions,
-                                std::vector<Point<dim>> loads) {
+                                std::vector<Point<dim>> loads,
+                                std::shared_ptr<Hierarchy const> tree,
+                                std::vector<typename History<dim>::Totals> totals) {
   layout_ = std::move(layout);
+  history_.tree = std::move(tree);
+  history_.totals = std::move(totals);
+  history_.born = steps_;
   conditions_ = std::move(conditions);
   loads_ = std::move(loads);
   if (!loads_.empty()) layout_.load = upload(backend_, layout_.padded(loads_));

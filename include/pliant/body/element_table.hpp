@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <pliant/body/bookkeeping.hpp>
 #include <pliant/body/kernels.hpp>
 
 namespace pliant {
@@ -26,6 +27,7 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   typename B::template Elements<E::nodes> elements;
   Laws laws;
   std::vector<Index> user_element;  // by the internal number
+  Bookkeeping<B, groups> books;
 
   Index count() const { return elements.count(); }
 };

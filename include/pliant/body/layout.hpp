@@ -42,8 +42,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
   /// `tags`: the group of each element, by the user's number; one list per element type.
   Layout(B const& backend, Mesh<Es...> m, std::vector<Slave> hanging, Elastic const& material,
-         std::tuple<Group<Fs>...> const& groups,
-         std::array<std::vector<Tag>, sizeof...(Es)> const& tags)
+         std::tuple<Group<Fs>...> const& groups, std::vector<std::vector<Tag>> const& tags)
       : mesh(std::move(m)), slave_list(std::move(hanging)) {
     Numbering<Es...> numbering(mesh);
     internal_node = std::move(numbering.internal_node);

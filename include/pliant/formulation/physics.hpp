@@ -5,7 +5,8 @@
 
 // The physics of one element, as functions of its nodal values: positions at rest X and
 // displacements u. Values in, values out; the scalar S may be float, double, a pack of elements or
-// a dual number.
+// a dual number. Tables are static: a GPU then reads them from its memory, where a local one would be
+// built on the stack of every thread.
 namespace pliant {
 
 /// The strain energy W_E = Σ_q w_q det J W(H(ξ_q)), J.
@@ -14,7 +15,7 @@ PLIANT_HOST_DEVICE S energy(L const& law, Nodal<typename F::element, S> const& r
                             Nodal<typename F::element, S> const& u) {
   using E = typename F::element;
   using T = builtin_scalar<S>;
-  constexpr auto table = tabulate<E, typename F::quadrature, T>();
+  static constexpr auto table = tabulate<E, typename F::quadrature, T>();
   S sum = S(0);
   for (int q = 0; q < F::points; ++q) {
     auto const map = RestMap<E, S>::at(rest, table, q);
@@ -31,7 +32,7 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force(L const& law,
                                                        Nodal<typename F::element, S> const& u) {
   using E = typename F::element;
   using T = builtin_scalar<S>;
-  constexpr auto table = tabulate<E, typename F::quadrature, T>();
+  static constexpr auto table = tabulate<E, typename F::quadrature, T>();
   auto f = Nodal<E, S>::zero();
   for (int q = 0; q < F::points; ++q) {
     auto const map = RestMap<E, S>::at(rest, table, q);
@@ -49,7 +50,7 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force_change(
     Nodal<typename F::element, S> const& du) {
   using E = typename F::element;
   using T = builtin_scalar<S>;
-  constexpr auto table = tabulate<E, typename F::quadrature, T>();
+  static constexpr auto table = tabulate<E, typename F::quadrature, T>();
   auto df = Nodal<E, S>::zero();
   for (int q = 0; q < F::points; ++q) {
     auto const map = RestMap<E, S>::at(rest, table, q);
@@ -82,7 +83,7 @@ template <class F, class L, class S>
 template <Element E, class Q, class S>
 PLIANT_HOST_DEVICE S volume(Nodal<E, S> const& rest) {
   using T = builtin_scalar<S>;
-  constexpr auto table = tabulate<E, Q, T>();
+  static constexpr auto table = tabulate<E, Q, T>();
   S sum = S(0);
   for (int q = 0; q < table.count; ++q)
     sum = sum + RestMap<E, S>::at(rest, table, q).volume * T(table.weight[q]);
@@ -94,7 +95,7 @@ PLIANT_HOST_DEVICE S volume(Nodal<E, S> const& rest) {
 template <Element E, class S>
 PLIANT_HOST_DEVICE Vector<S, E::nodes> nodal_volumes(Nodal<E, S> const& rest) {
   using T = builtin_scalar<S>;
-  constexpr auto table = tabulate<E, Gauss<2>, T>();
+  static constexpr auto table = tabulate<E, Gauss<2>, T>();
   auto m = Vector<S, E::nodes>::zero();
   for (int q = 0; q < table.count; ++q) {
     S const v = RestMap<E, S>::at(rest, table, q).volume * T(table.weight[q]);

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <chrono>
+
+#include <pliant/adaptation/refinement.hpp>
+#include <pliant/adaptation/switching.hpp>
+
+namespace pliant {
+
+/// Where the time of adaptation goes, s.
+struct AdaptationTimes {
+  double criteria = 0;   // evaluating criteria, deciding, changing tags
+  double migration = 0;  // ordering groups, refining
+};
+
+/// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
+/// for the elements of its formulation, and the elements that it marks act. Where several rules look
+/// at one formulation, the first that holds acts. Rules that switch go before rules that refine.
+template <class... Rules>
+class Adaptation {
+ public:
+  explicit Adaptation(Rules... rules) : rules_(std::move(rules)...) {}
+
+  /// Looks at every n-th call only; 8 when not said.
+  Adaptation&& every(int calls) && {
+    set_interval(calls);
+    return std::move(*this);
+  }
+  Adaptation& every(int calls) & {
+    set_interval(calls);
+    return *this;
+  }
+  /// Measures times(); every check then waits for the backend.
+  void profile() { profile_ = true; }
+  AdaptationTimes const& times() const { return times_; }
+
+  /// Call after each step.
+  template <class TheBody>
+  void operator()(TheBody& body) {
+    if (++calls_ % interval_ == 0) now(body);
+  }
+
+  /// Looks and acts at once, whatever the interval.
+  template <class TheBody>
+  void now(TheBody& body) {
+    constexpr bool refines = (!detail::Switches<Rules> || ...);
+    auto clock = start(body);
+    body.for_each_table([&](auto& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      detail::switch_groups(body, table, switching<Table>());
+    });
+    lap(body, clock, times_.criteria);
+    body.for_each_table([&](auto& table) { table.elements.regroup(); });
+    lap(body, clock, times_.migration);
+    body.forget_forces();
+    if constexpr (refines) {
+      int max_level = 0;
+      std::vector<std::vector<Index>> marked;
+      body.for_each_table(
+          [&](auto& table) { marked.push_back(marked_in(body, table, max_level)); });
+      lap(body, clock, times_.criteria);
+      refine(body, marked, max_level);
+      lap(body, clock, times_.migration);
+    }
+  }
+
+ private:
+  template <class Table>
+  auto switching() const {
+    return std::apply(
+        [](auto const&... rule) { return std::tuple_cat(detail::only_switching<Table>(rule)...); },
+        rules_);
+  }
+
+  /// The elements that rules want refined, by the user's number.
+  template <class TheBody, class Table>
+  std::vector<Index> marked_in(TheBody& body, Table& table, int& max_level) const {
+    std::vector<Index> marked;
+    auto const look = [&](auto const& rule) {
+      using Rule = std::remove_cvref_t<decltype(rule)>;
+      if constexpr (!detail::Switches<Rule> && detail::On<Rule, Table>) {
+        static_assert(Table::template group_of<typename Rule::from> < Table::groups,
+                      "a rule names a formulation of which the body has no Group");
+        auto const values = detail::criterion_values(body, table, rule);
+        auto const threshold =
+            threshold_of(rule.marking, body.backend(), values.data(), table.count());
+        auto const on_host = download<typename TheBody::scalar>(values);
+        for (std::size_t e = 0; e < on_host.size(); ++e)
+          if (rule.marking.below() ? on_host[e] < threshold : on_host[e] > threshold)
+            marked.push_back(table.user_element[e]);
+        max_level = std::max(max_level, rule.options.max_level);
+      }
+    };
+    std::apply([&](auto const&... rule) { (look(rule), ...); }, rules_);
+    return marked;
+  }
+
+  using Clock = std::chrono::steady_clock;
+  template <class TheBody>
+  Clock::time_point start(TheBody const& body) const {
+    if (profile_) body.backend().synchronize();
+    return Clock::now();
+  }
+  template <class TheBody>
+  void lap(TheBody const& body, Clock::time_point& since, double& sum) const {
+    if (!profile_) return;
+    body.backend().synchronize();
+    auto const now = Clock::now();
+    sum += std::chrono::duration<double>(now - since).count();
+    since = now;
+  }
+  void set_interval(int calls) {
+    if (calls < 1)
+      throw Error("Adaptation.every: " + std::to_string(calls) + " calls; give at least 1");
+    interval_ = calls;
+  }
+
+  std::tuple<Rules...> rules_;
+  int interval_ = 8, calls_ = 0;
+  bool profile_ = false;
+  AdaptationTimes times_;
+};
+
+}  // namespace pliant

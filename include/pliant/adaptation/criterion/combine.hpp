@@ -1,0 +1,46 @@
+#pragma once
+
+#include <tuple>
+
+#include <pliant/adaptation/criterion/element_state.hpp>
+
+namespace pliant {
+
+namespace detail {
+enum class Extreme { largest, smallest };
+
+template <Extreme X, class First, class... Rest>
+struct ExtremeOf {
+  std::tuple<First, Rest...> criteria;
+
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    return from<0>(e);
+  }
+
+ private:
+  template <std::size_t I, class State>
+  PLIANT_HOST_DEVICE auto from(State const& e) const {
+    auto const value = std::get<I>(criteria)(e);
+    if constexpr (I == sizeof...(Rest))
+      return value;
+    else if constexpr (X == Extreme::largest)
+      return max(value, from<I + 1>(e));
+    else
+      return min(value, from<I + 1>(e));
+  }
+};
+}  // namespace detail
+
+/// The largest of several criteria.
+template <class... Cs>
+auto largest(Cs... criteria) {
+  return detail::ExtremeOf<detail::Extreme::largest, Cs...>{{criteria...}};
+}
+/// The smallest of several criteria.
+template <class... Cs>
+auto smallest(Cs... criteria) {
+  return detail::ExtremeOf<detail::Extreme::smallest, Cs...>{{criteria...}};
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <pliant/formulation/physics.hpp>
+#include <pliant/quadrature/gauss.hpp>
+
+// A criterion is a functor that gives a number for the present state of an element:
+//
+//   struct MyCriterion {
+//     template <class State>
+//     PLIANT_HOST_DEVICE auto operator()(State const& e) const { return norm(e.gradient()); }
+//   };
+//
+// The state's numbers may be packs of elements: write `select`, `max`, `min`, never `if`, on them.
+namespace pliant {
+
+/// What a criterion may look at: the element's law, positions at rest and displacements.
+template <class F, class L, class S>
+struct ElementState {
+  using formulation = F;
+  using element = typename F::element;
+  using scalar = S;
+  static constexpr int dim = F::dim, nodes = F::nodes;
+
+  L const& law;
+  Nodal<element, S> const& rest;  // (nodes, dim), m
+  Nodal<element, S> const& u;     // (nodes, dim), m
+
+  /// The displacement gradient H = F − I in the middle of the cell.
+  PLIANT_HOST_DEVICE Tensor<S, dim> gradient() const {
+    constexpr auto table = tabulate<element, Gauss<1>, builtin_scalar<S>>();
+    return RestMap<element, S>::at(rest, table, 0)
+        .in_rest_space(parametric_gradient<element>(u, table, 0));
+  }
+  /// Where the nodes are now.
+  PLIANT_HOST_DEVICE Nodal<element, S> current() const { return rest + u; }
+
+  /// Rest and current vectors along edge k, and their lengths.
+  struct Edge {
+    Vector<S, dim> at_rest, change;
+    S squared_rest, squared_change;  // L² and l² − L², without cancellation
+    S rest_length, length;
+  };
+  PLIANT_HOST_DEVICE Edge edge(int k) const {
+    constexpr auto edges = element::edges();
+    int const a = edges[static_cast<std::size_t>(k)][0], b = edges[static_cast<std::size_t>(k)][1];
+    Edge e;
+    for (int i = 0; i < dim; ++i) {
+      e.at_rest[i] = rest(b, i) - rest(a, i);
+      e.change[i] = u(b, i) - u(a, i);
+    }
+    e.squared_rest = dot(e.at_rest, e.at_rest);
+    S const cross = dot(e.at_rest, e.change);
+    e.squared_change = cross + cross + dot(e.change, e.change);
+    e.rest_length = sqrt(e.squared_rest);
+    e.length = sqrt(e.squared_rest + e.squared_change);
+    return e;
+  }
+  static constexpr int edge_count = static_cast<int>(element::edges().size());
+};
+
+}  // namespace pliant

@@ -1,0 +1,228 @@
+#pragma once
+
+#include <map>
+
+#include <pliant/adaptation/ledger.hpp>
+#include <pliant/element/simplex.hpp>
+#include <pliant/element/tensor.hpp>
+#include <pliant/mesh/hierarchy.hpp>
+
+namespace pliant {
+
+namespace detail {
+
+template <class E, Element... Es>
+std::vector<Connectivity<E>> elements_or_none(Mesh<Es...> const& mesh) {
+  if constexpr ((std::same_as<E, Es> || ...))
+    return mesh.template elements<E>();
+  else
+    return {};
+}
+
+/// The refinement tree of a plane body: the one it has, or a new one. Named boundaries and the
+/// facets of conditions are marked, in this order, so that children inherit them.
+template <class TheBody>
+Hierarchy tree_of(TheBody const& body) {
+  if (body.history().tree) return *body.history().tree;
+  auto const& mesh = body.mesh();
+  Hierarchy tree(mesh.nodes, elements_or_none<Tri3>(mesh), elements_or_none<Quad4>(mesh));
+  int mark = 0;
+  for (auto const& [name, facets] : mesh.boundaries) tree.add_boundary(mark++, facets);
+  for (auto const& condition : body.conditions()) tree.add_boundary(mark++, condition.facets);
+  return tree;
+}
+
+template <Element E>
+inline constexpr int sides_of = static_cast<int>(E::sides().size());
+
+/// The leaves of a tree that are elements of a type, in the order of the mesh's list.
+template <Element E>
+std::vector<Index> leaves_of(Hierarchy const& tree) {
+  std::vector<Index> cells;
+  for (Index c : tree.leaves())
+    if (tree.cell(c).sides == sides_of<E>) cells.push_back(c);
+  return cells;
+}
+
+inline std::vector<Facet<2>> facets_of(Hierarchy const& tree, int mark) {
+  std::vector<Facet<2>> facets;
+  for (auto const& facet : tree.facets_of(mark)) facets.push_back(facet.nodes);
+  return facets;
+}
+
+/// The area that each node of a cell carries.
+inline std::array<double, 4> nodal_areas(Hierarchy const& tree, HierarchyCell const& cell) {
+  std::array<double, 4> areas{};
+  auto const fill = [&]<Element E>(E) {
+    Nodal<E, double> rest;
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      for (std::size_t k = 0; k < 2; ++k)
+        rest(static_cast<int>(a), static_cast<int>(k)) =
+            tree.points()[static_cast<std::size_t>(cell.nodes[a])][k];
+    auto const share = nodal_volumes<E>(rest);
+    for (std::size_t a = 0; a < E::nodes; ++a) areas[a] = share[static_cast<int>(a)];
+  };
+  if (cell.sides == 3)
+    fill(Tri3{});
+  else
+    fill(Quad4{});
+  return areas;
+}
+
+/// The momentum that a cell carries, kg m/s, from velocities at nodes.
+inline Point<2> momentum(Hierarchy const& tree, HierarchyCell const& cell, double density,
+                         std::vector<Point<2>> const& v) {
+  auto const areas = nodal_areas(tree, cell);
+  Point<2> p{};
+  for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
+    for (std::size_t k = 0; k < 2; ++k)
+      p[k] += density * areas[a] * v[static_cast<std::size_t>(cell.nodes[a])][k];
+  return p;
+}
+
+/// What each node must be given so that the family of a refined cell keeps its momentum: the
+/// difference that lumping made, shared in proportion to the family's nodal masses.
+inline void add_family_impulse(Hierarchy const& tree, Index parent, double density,
+                               std::vector<Point<2>> const& v, std::vector<Point<2>>& impulse) {
+  HierarchyCell const& cell = tree.cell(parent);
+  Point<2> lost = momentum(tree, cell, density, v);
+  double area = 0;
+  for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
+    Point<2> const p = momentum(tree, tree.cell(c), density, v);
+    for (std::size_t k = 0; k < 2; ++k) lost[k] -= p[k];
+    for (double a : nodal_areas(tree, tree.cell(c))) area += a;
+  }
+  for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
+    auto const areas = nodal_areas(tree, tree.cell(c));
+    for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
+      for (std::size_t k = 0; k < 2; ++k)
+        impulse[static_cast<std::size_t>(tree.cell(c).nodes[a])][k] += lost[k] * areas[a] / area;
+  }
+}
+
+}  // namespace detail
+
+/// What a refinement did.
+struct RefinementReport {
+  std::size_t refined = 0;  // elements split, those included that keep neighbours within one level
+  std::size_t new_nodes = 0;
+};
+
+/// Splits elements of a plane body into four. `marked` has, for each element type in the order of the
+/// mesh, the elements to split by the user's number. Neighbours differ by one level at most; hanging
+/// nodes become slaves. New nodes take displacement and velocity from the parent's shape functions,
+/// nodes that stay keep theirs and their number; each family then gets back the momentum that
+/// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
+/// exactly. Children inherit groups, conditions and named boundaries. What it did to the energy is
+/// in ledger(body). Throws Error, with the body as it was, where an element is unknown or the
+/// capacity would be exceeded.
+template <class TheBody>
+RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
+                        int max_level = 30) {
+  static_assert(TheBody::dim == 2, "refinement is available for plane meshes of Tri3 and Quad4");
+  Hierarchy const before = detail::tree_of(body);
+  auto after = std::make_shared<Hierarchy>(before);
+
+  std::vector<Index> cells;
+  std::size_t which = 0;
+  body.for_each_table([&](auto const& table) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    auto const leaves = detail::leaves_of<E>(before);
+    for (Index e : marked[which]) {
+      if (e < 0 || e >= table.count())
+        throw Error("refine: there is no " + std::string(E::name()) + " element " +
+                    std::to_string(e) + "; they are numbered 0 to " +
+                    std::to_string(table.count() - 1));
+      cells.push_back(leaves[static_cast<std::size_t>(e)]);
+    }
+    ++which;
+  });
+  auto const& capacity = body.history().capacity;
+  Refinement const done = after->refine(cells, {capacity.nodes, capacity.elements, max_level});
+  if (done.parents.empty()) return {};
+
+  // State on the new nodes.
+  auto u = body.displacements(), v = body.velocities();
+  double const strain_before = body.strain_energy(), kinetic_before = body.kinetic_energy();
+  for (NewNode const& n : done.new_nodes) {
+    Point<2> at{}, speed{};
+    for (int p = 0; p < n.count; ++p)
+      for (std::size_t k = 0; k < 2; ++k) {
+        auto const parent = static_cast<std::size_t>(n.parents[static_cast<std::size_t>(p)]);
+        at[k] += u[parent][k] / n.count;
+        speed[k] += v[parent][k] / n.count;
+      }
+    u.push_back(at);
+    v.push_back(speed);
+  }
+
+  // The new mesh, with the groups that its elements inherit.
+  auto mesh = body.mesh();
+  mesh.nodes = after->points();
+  std::vector<std::vector<Tag>> inherited;
+  body.for_each_table([&](auto const& table) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    std::map<Index, Tag> tag_of;  // by cell
+    auto const old_leaves = detail::leaves_of<E>(before);
+    auto const old_tags = body.template groups_of<E>();
+    for (std::size_t e = 0; e < old_leaves.size(); ++e) tag_of[old_leaves[e]] = old_tags[e];
+    for (Index parent : done.parents)
+      if (auto const found = tag_of.find(parent); found != tag_of.end())
+        for (Index c = 0; c < 4; ++c) tag_of[after->cell(parent).first_child + c] = found->second;
+    auto& elements = mesh.template elements<E>();
+    elements.clear();
+    inherited.emplace_back();
+    for (Index c : detail::leaves_of<E>(*after)) {
+      Connectivity<E> nodes;
+      std::copy_n(after->cell(c).nodes.begin(), nodes.size(), nodes.begin());
+      elements.push_back(nodes);
+      inherited.back().push_back(tag_of.at(c));
+    }
+  });
+  int mark = 0;
+  for (auto& [name, facets] : mesh.boundaries) facets = detail::facets_of(*after, mark++);
+  auto conditions = body.conditions();
+  for (auto& condition : conditions) {
+    condition.facets = detail::facets_of(*after, mark++);
+    auto nodes = nodes_of(condition.facets);
+    nodes.insert(nodes.end(), condition.nodes.begin(), condition.nodes.end());
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    condition.nodes = std::move(nodes);
+  }
+  auto loads = body.loads();
+  if (!loads.empty()) loads.resize(mesh.nodes.size(), Point<2>{});
+
+  // Momentum: slaves hand their impulse to their masters, held directions keep it from moving.
+  auto layout = body.make_layout(std::move(mesh), after->slaves(), inherited);
+  std::vector<Point<2>> impulse(v.size(), Point<2>{});
+  for (Index parent : done.parents)
+    detail::add_family_impulse(*after, parent, body.material().density, v, impulse);
+  for (Slave const& slave : layout.slave_list) {
+    Point<2> const own = std::exchange(impulse[static_cast<std::size_t>(slave.node)], Point<2>{});
+    for (auto const& [master, weight] : slave.masters)
+      for (std::size_t k = 0; k < 2; ++k)
+        impulse[static_cast<std::size_t>(master)][k] += weight * own[k];
+  }
+  std::vector<DirectionMask> held(v.size(), 0);
+  for (auto const& condition : conditions)
+    for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
+  Point<2> taken{};
+  for (std::size_t i = 0; i < v.size(); ++i)
+    for (std::size_t k = 0; k < 2; ++k)
+      if (held[i] >> k & 1)
+        taken[k] += impulse[i][k];
+      else if (layout.mass_list[i] > 0)
+        v[i][k] += impulse[i][k] / layout.mass_list[i];
+
+  body.replace(std::move(layout), std::move(conditions), std::move(loads), after,
+               detail::closed_totals(body));
+  body.set_displacements(u);
+  body.set_velocities(v);
+  body.add_refinement({body.time(), "refine", static_cast<double>(done.parents.size()),
+                       body.strain_energy() - strain_before, body.kinetic_energy() - kinetic_before,
+                       taken});
+  return {done.parents.size(), done.new_nodes.size()};
+}
+
+}  // namespace pliant

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <pliant/adaptation/marking.hpp>
+#include <pliant/formulation/formulation.hpp>
+
+// Strategies read as sentences:
+//   when<Linear>(largest(EdgeLengthRatio{}, Rotation{})).above(0.1).become<Nonlinear>()
+//   when<Linear>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine({.max_level = 6})
+namespace pliant {
+
+/// Elements of From that a criterion marks go over to To.
+template <class From, class To, class Criterion>
+struct SwitchRule {
+  using from = From;
+  using to = To;
+  Criterion criterion;
+  Marking marking;
+  long stay;  // steps that an element stays in a group at the least
+};
+
+struct RefineOptions {
+  int max_level = 30;  // elements refined this often are left alone
+};
+
+/// Elements of From that a criterion marks are split into four.
+template <class From, class Criterion>
+struct RefineRule {
+  using from = From;
+  Criterion criterion;
+  Marking marking;
+  RefineOptions options;
+};
+
+/// A criterion with a marking, waiting for what to do.
+template <class From, class Criterion>
+class Marked {
+ public:
+  Marked(Criterion criterion, Marking marking) : criterion_(criterion), marking_(marking) {}
+
+  /// No element with a smaller value acts, whatever the others have.
+  Marked floor(double value) const {
+    Marked m = *this;
+    m.marking_.floor = value;
+    return m;
+  }
+  /// At most so many elements act in one check: those of the most extreme values.
+  Marked budget(long elements) const {
+    if (elements < 1)
+      throw Error("strategy: a budget of " + std::to_string(elements) +
+                  " elements lets nobody act; give at least 1");
+    Marked m = *this;
+    m.marking_.budget = elements;
+    return m;
+  }
+  /// An element acts only after so many steps in its group.
+  Marked stay(long steps) const {
+    Marked m = *this;
+    m.stay_ = steps;
+    return m;
+  }
+
+  template <class To>
+  auto become() const {
+    static_assert(std::same_as<typename From::element, typename To::element>,
+                  "become<To>: From and To must be formulations on the same element");
+    return SwitchRule<From, To, Criterion>{criterion_, marking_, stay_};
+  }
+  auto refine(RefineOptions options = {}) const {
+    static_assert(From::dim == 2 && From::nodes == From::element::sides().size(),
+                  "refine: available for Tri3 and Quad4");
+    return RefineRule<From, Criterion>{criterion_, marking_, options};
+  }
+
+ private:
+  Criterion criterion_;
+  Marking marking_;
+  long stay_ = 0;
+};
+
+/// A criterion, looked at for the elements of one formulation.
+template <class From, class Criterion>
+class When {
+ public:
+  explicit When(Criterion criterion) : criterion_(criterion) {}
+
+  auto above(double value) const { return marked(MarkingKind::above, value); }
+  auto below(double value) const { return marked(MarkingKind::below, value); }
+  auto above_fraction_of_largest(double fraction) const {
+    return marked(MarkingKind::fraction_of_largest, checked(fraction));
+  }
+  auto top_share(double share) const { return marked(MarkingKind::top_share, checked(share)); }
+  auto bulk(double share) const { return marked(MarkingKind::bulk, checked(share)); }
+
+ private:
+  Marked<From, Criterion> marked(MarkingKind kind, double amount) const {
+    return {criterion_, {kind, amount}};
+  }
+  static double checked(double share) {
+    if (!(share >= 0 && share <= 1))
+      throw Error("strategy: " + std::to_string(share) + " is no share; give a number in [0, 1]");
+    return share;
+  }
+  Criterion criterion_;
+};
+
+template <class From, class Criterion>
+When<From, Criterion> when(Criterion criterion) {
+  return When<From, Criterion>{criterion};
+}
+
+}  // namespace pliant

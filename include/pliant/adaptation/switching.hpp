@@ -1,0 +1,195 @@
+#pragma once
+
+#include <array>
+#include <tuple>
+
+#include <pliant/adaptation/criterion/element_state.hpp>
+#include <pliant/adaptation/strategy.hpp>
+#include <pliant/body/body.hpp>
+
+namespace pliant::detail {
+
+template <class Rule>
+concept Switches = requires {
+  typename Rule::to;
+};
+template <class Rule, class Table>
+concept On = std::same_as<typename Rule::from::element, typename Table::element>;
+
+/// The criterion of one rule, for every element that it looks at.
+template <class Table, class Rule>
+struct RankVisitor {
+  using T = typename Table::scalar;
+  using Laws = typename Table::Laws;
+  static constexpr int counters = 1;
+  Laws groups;
+  Rule rule;
+  T* values;  // (elements)
+
+  template <int G>
+  static constexpr bool looks_at =
+      std::same_as<typename Table::template formulation<G>, typename Rule::from>;
+
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    Vector<S, 1> value{};
+    if constexpr (looks_at<G>) {
+      auto const& law = groups.template law<G>();
+      value[0] = rule.criterion(
+          ElementState<typename Rule::from, std::remove_cvref_t<decltype(law)>, S>{law, rest, u});
+    }
+    return value;
+  }
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& value, Again const&,
+                                 Tally const&) const {
+    values[e] = looks_at<G> ? value[0] : std::numeric_limits<T>::quiet_NaN();
+  }
+};
+
+/// One pass over a table: evaluates the criteria of the rules that look at each element's group, and
+/// lets the first rule that holds act: the tag changes, the books are kept.
+template <class Table, class... Rules>
+struct SwitchVisitor {
+  using T = typename Table::scalar;
+  using Laws = typename Table::Laws;
+  using Counters = CounterLayout<Table::groups>;
+  static constexpr int counters = Counters::count;
+  static constexpr int rule_count = sizeof...(Rules);
+
+  Laws groups;
+  std::tuple<Rules...> rules;
+  T threshold[rule_count];
+  Tag* tags;
+  Index* since;
+  std::uint16_t* switches;
+  Index step;
+
+  template <int R>
+  using rule = std::tuple_element_t<R, std::tuple<Rules...>>;
+  template <int G, int R>
+  static constexpr bool looks_at =
+      std::same_as<typename Table::template formulation<G>, typename rule<R>::from>;
+
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    Vector<S, rule_count> values{};
+    evaluate_rules<G, 0>(rest, u, values);
+    return values;
+  }
+
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, rule_count> const& values,
+                                 Again const& again, Tally const& tally) const {
+    act<G, 0>(e, values, again, tally);
+  }
+
+ private:
+  template <int G, int R, class V, class Values>
+  PLIANT_HOST_DEVICE void evaluate_rules(V const& rest, V const& u, Values& values) const {
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    if constexpr (R < rule_count) {
+      if constexpr (looks_at<G, R>) {
+        auto const& law = groups.template law<G>();
+        using L = std::remove_cvref_t<decltype(law)>;
+        values[R] = std::get<R>(rules).criterion(
+            ElementState<typename Table::template formulation<G>, L, S>{law, rest, u});
+      }
+      evaluate_rules<G, R + 1>(rest, u, values);
+    }
+  }
+
+  template <int G, int R, class Again, class Tally>
+  PLIANT_HOST_DEVICE void act(Index e, Vector<T, rule_count> const& values, Again const& again,
+                              Tally const& tally) const {
+    if constexpr (R < rule_count) {
+      if constexpr (looks_at<G, R>) {
+        auto const& r = std::get<R>(rules);
+        bool const holds = r.marking.kind == MarkingKind::below ? values[R] < threshold[R]
+                                                                : values[R] > threshold[R];
+        if (holds && step - since[e] >= r.stay) {
+          move<G, Table::template group_of<typename rule<R>::to>>(e, again, tally);
+          return;
+        }
+      }
+      act<G, R + 1>(e, values, again, tally);
+    }
+  }
+
+  template <int From, int To, class Again, class Tally>
+  PLIANT_HOST_DEVICE void move(Index e, Again const& again, Tally const& tally) const {
+    auto const [rest, u] = again();
+    T const before =
+        energy<typename Table::template formulation<From>>(groups.template law<From>(), rest, u);
+    T const after =
+        energy<typename Table::template formulation<To>>(groups.template law<To>(), rest, u);
+    tally(Counters::steps_of(From), static_cast<double>(step - since[e]));
+    tally(Counters::moves(From, To), 1.0);
+    tally(Counters::energy(From, To), static_cast<double>(after - before));
+    tags[e] = static_cast<Tag>(To);
+    since[e] = step;
+    switches[e] = static_cast<std::uint16_t>(switches[e] + 1);
+  }
+};
+
+/// The rules of a list that switch, on this table.
+template <class Table, class Rule>
+auto only_switching(Rule const& rule) {
+  if constexpr (Switches<Rule> && On<Rule, Table>) {
+    static_assert(Table::template group_of<typename Rule::from> < Table::groups &&
+                      Table::template group_of<typename Rule::to> < Table::groups,
+                  "a rule names a formulation of which the body has no Group");
+    return std::tuple<Rule>{rule};
+  } else {
+    return std::tuple<>{};
+  }
+}
+
+/// Values of a rule's criterion in the backend's memory, NaN where it does not look.
+template <class TheBody, class Table, class Rule>
+auto criterion_values(TheBody& body, Table& table, Rule const& rule) {
+  using B = typename TheBody::backend_type;
+  using T = typename TheBody::scalar;
+  typename B::template Array<T> values(static_cast<std::size_t>(table.count()));
+  typename B::template Array<double> counters(1);
+  body.backend().template visit<Table::groups>(
+      table.elements, RankVisitor<Table, Rule>{table.laws, rule, values.data()}, counters,
+      body.rest_field(), std::as_const(body).displacement_field());
+  return values;
+}
+
+/// Lets the switching rules act on one table, once.
+template <class TheBody, class Table, class... Rules>
+void switch_groups(TheBody& body, Table& table, std::tuple<Rules...> const& rules) {
+  if constexpr (sizeof...(Rules) > 0) {
+    using T = typename TheBody::scalar;
+    if (!table.books.open) table.books.start(body.backend(), table.count(), body.history().born);
+    SwitchVisitor<Table, Rules...> visitor{table.laws,
+                                           rules,
+                                           {},
+                                           table.elements.tags().data(),
+                                           table.books.since.data(),
+                                           table.books.switches.data(),
+                                           static_cast<Index>(body.steps())};
+    int r = 0;
+    std::apply(
+        [&](auto const&... rule) {
+          ((visitor.threshold[r++] =
+                rule.marking.ranks()
+                    ? threshold_of(rule.marking, body.backend(),
+                                   criterion_values(body, table, rule).data(), table.count())
+                : rule.marking.below()
+                    ? static_cast<T>(rule.marking.amount)
+                    : static_cast<T>(std::max(rule.marking.amount, rule.marking.floor))),
+           ...);
+        },
+        rules);
+    body.backend().template visit<Table::groups>(table.elements, visitor, table.books.counters,
+                                                 body.rest_field(),
+                                                 std::as_const(body).displacement_field());
+  }
+}
+
+}  // namespace pliant::detail
