@@ -1,0 +1,123 @@
+#pragma once
+
+#if !defined(__CUDACC__)
+#error "pliant/cuda.hpp needs nvcc: compile this file as CUDA (.cu), and link pliant::cuda."
+#endif
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <pliant/backend/backend.hpp>
+#include <pliant/cuda/accumulate.cuh>
+#include <pliant/cuda/launch.hpp>
+#include <pliant/cuda/recording.hpp>
+#include <pliant/cuda/reduce.cuh>
+#include <pliant/cuda/visit.cuh>
+
+namespace pliant {
+
+namespace detail {
+template <class F>
+__global__ void __launch_bounds__(node_threads)
+    call_for_each(Index n, __grid_constant__ F const f) {
+  Index const i = static_cast<Index>(blockIdx.x * node_threads + threadIdx.x);
+  if (i < n) f(i);
+}
+}  // namespace detail
+
+/// One NVIDIA GPU. Verbs are queued on a stream; those that return a value wait for it. Sums over
+/// elements and nodes have the same bits each time; accumulation adds in no fixed order. Copies
+/// share the stream; use them from one thread at a time. Throws Error when there is no GPU.
+template <std::floating_point T>
+class Cuda {
+ public:
+  using scalar = T;
+  template <class U>
+  using Array = DeviceArray<U>;
+  template <int Nodes>
+  using Elements = CudaElements<T, Nodes>;
+  using Recording = CudaRecording;
+  static constexpr char const* name() { return "Cuda"; }
+
+  Cuda(CudaOptions const& options = {})
+      : context_(std::make_shared<detail::CudaContext>(options)) {}
+
+  cudaStream_t stream() const { return context_->stream(); }
+  /// Makes the backend's device the one of the calling thread; arrays are made there.
+  void make_current() const { context_->make_current(); }
+  void synchronize() const { context_->synchronize(); }
+  Recording record(std::function<void()> const& f) const { return {context_, f}; }
+
+  template <class F>
+  void for_each(Index n, F const& f) const {
+    if (n <= 0) return;
+    launch("for_each", {blocks(n, detail::node_threads), detail::node_threads},
+           detail::call_for_each<F>, n, f);
+  }
+  template <class F>
+  double sum(Index n, F const& f) const {
+    return n <= 0 ? 0.0 : reduce<detail::Sum>("sum", n, f);
+  }
+  template <class F>
+  double maximum(Index n, F const& f) const {
+    return n <= 0 ? -std::numeric_limits<double>::infinity()
+                  : reduce<detail::Maximum>("maximum", n, f);
+  }
+
+  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
+  void accumulate(CudaElements<T, Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
+                  Fields const&... fields) const {
+    static_assert((std::same_as<std::remove_const_t<decltype(*fields.data + 0)>, T> && ...),
+                  "the fields of accumulate have the backend's scalar");
+    if (elements.count() == 0) return;
+    using Memory = detail::PatchMemory<T, Nodes, C, (Fields::components + ... + 0)>;
+    auto const patches = elements.patch_view();
+    void (*const patch_kernel)(detail::PatchView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
+        detail::accumulate_patches<Groups, Nodes, T, C, Kernel, Fields...>;
+    launch("accumulate", {elements.patches(), elements.threads(), Memory::bytes(patches)},
+           patch_kernel, patches, kernel, out, fields...);
+  }
+  template <int Groups, int Nodes, class Kernel, class... Fields>
+  double sum_elements(CudaElements<T, Nodes> const& elements, Kernel const& kernel,
+                      Fields const&... fields) const {
+    if (elements.count() == 0) return 0;
+    return reduce<detail::Sum>("sum_elements", elements.count(),
+                               detail::ElementTerm<Groups, Nodes, Kernel, Fields...>{
+                                   elements.view(), kernel, {fields...}});
+  }
+  template <int Groups, int Nodes, class Visitor, class... Fields>
+  void visit(CudaElements<T, Nodes> const& elements, Visitor const& visitor,
+             DeviceArray<double>& counters, Fields const&... fields) const {
+    if (elements.count() == 0) return;
+    void (*const visit_kernel)(detail::ElementView<Nodes>, Visitor, double*, Fields...) =
+        detail::visit_elements<Groups, Nodes, Visitor, Fields...>;
+    launch("visit", {blocks(elements.count(), detail::visit_threads), detail::visit_threads},
+           visit_kernel, elements.view(), visitor, counters.data(), fields...);
+  }
+
+ private:
+  static Index blocks(Index n, int threads) { return n / threads + (n % threads != 0); }
+
+  template <class... Parameters, class... Arguments>
+  void launch(char const* verb, detail::LaunchShape const& shape, void (*kernel)(Parameters...),
+              Arguments const&... arguments) const {
+    context_->make_current();
+    detail::launch(verb, shape, stream(), kernel, arguments...);
+  }
+  template <class Reduction, class F>
+  double reduce(char const* verb, Index n, F const& f) const {
+    Index const count =
+        std::min<Index>(blocks(n, detail::reduce_threads), detail::CudaContext::max_partials);
+    double* const partials = context_->partials();
+    launch(verb, {count, detail::reduce_threads}, detail::reduce_to_partials<Reduction, F>, n, f,
+           partials);
+    launch(verb, {1, detail::CudaContext::max_partials}, detail::reduce_partials<Reduction>, count,
+           partials, context_->result());
+    context_->synchronize();
+    return *context_->result();
+  }
+
+  std::shared_ptr<detail::CudaContext> context_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <pliant/error.hpp>
+#include <string>
+
+namespace pliant::detail {
+
+/// Throws Error when a CUDA call failed.
+inline void check(cudaError_t status, char const* call) {
+  if (status == cudaSuccess) return;
+  cudaGetLastError();  // a failure reported here must not be reported again by the next call
+  std::string advice;
+  switch (status) {
+    case cudaErrorNoKernelImageForDevice:
+    case cudaErrorUnsupportedPtxVersion:
+      advice = "; compile for the architecture of this GPU (CMAKE_CUDA_ARCHITECTURES)";
+      break;
+    case cudaErrorStreamCaptureUnsupported:
+    case cudaErrorStreamCaptureInvalidated:
+      advice = "; a function given to record may only call verbs that return nothing";
+      break;
+    case cudaErrorIllegalAddress:
+    case cudaErrorLaunchFailure:
+    case cudaErrorMisalignedAddress:
+      advice =
+          "; an earlier kernel left its arrays and the GPU context is lost: start the program "
+          "anew, under compute-sanitizer to see which kernel";
+      break;
+    default:
+      advice = "; look the code up in the CUDA runtime's list of errors";
+  }
+  throw Error(std::string("CUDA: ") + call + " failed: " + cudaGetErrorString(status) + " (" +
+              cudaGetErrorName(status) + ")" + advice);
+}
+
+}  // namespace pliant::detail

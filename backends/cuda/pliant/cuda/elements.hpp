@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <pliant/cuda/array.hpp>
+#include <pliant/cuda/patch_plan.hpp>
+#include <pliant/cuda/tuning.hpp>
+#include <vector>
+
+namespace pliant {
+
+template <std::floating_point T>
+class Cuda;
+
+namespace detail {
+
+/// An element table as kernels see it.
+template <int Nodes>
+struct ElementView {
+  static constexpr int width = (Nodes + 3) / 4 * 4;
+  Index count;
+  Index const* connectivity;  // (elements, width)
+  Tag const* tags;
+};
+
+/// The patches of an element table as kernels see them.
+template <int Nodes>
+struct PatchView {
+  Index count;  // elements
+  int patch_size, node_capacity, diagonal_capacity;
+  Tag const* tags;
+  PatchRow<Nodes> const* rows;     // (elements)
+  Index const* nodes;              // (patches, node_capacity)
+  std::uint16_t const* valences;   // (patches, node_capacity)
+  std::uint16_t const* diagonals;  // (patches, diagonal_capacity)
+};
+
+}  // namespace detail
+
+/// Connectivity, tags and patches on the device.
+template <std::floating_point T, int Nodes>
+class CudaElements {
+  using View = detail::ElementView<Nodes>;
+
+ public:
+  CudaElements() = default;
+  CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
+               int /* groups */, std::vector<Tag> const& tags, Index nodes)
+      : CudaElements(backend, connectivity, tags, nodes, tuned(connectivity.size())) {}
+  /// With patches of a given size and threads per block, for tuning.
+  CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
+               std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads)
+      : count_(static_cast<Index>(connectivity.size())), threads_(size_and_threads[1]) {
+    backend.make_current();
+    tags_ = uploaded(tags);
+    connectivity_ = padded(connectivity);
+    auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, size_and_threads[0]).plan();
+    patch_size_ = plan.patch_size;
+    patches_ = plan.patches;
+    node_capacity_ = plan.node_capacity;
+    diagonal_capacity_ = plan.diagonal_capacity;
+    rows_ = uploaded(plan.rows);
+    nodes_ = uploaded(plan.nodes);
+    valences_ = uploaded(plan.valences);
+    diagonals_ = uploaded(plan.diagonals);
+  }
+
+  Index count() const { return count_; }
+  Index scratch_nodes() const { return 0; }
+  DeviceArray<Tag>& tags() { return tags_; }
+  DeviceArray<Tag> const& tags() const { return tags_; }
+  /// Nothing to do: kernels read the tags.
+  void regroup() {}
+
+  Index patches() const { return patches_; }
+  int threads() const { return threads_; }
+  View view() const { return {count_, connectivity_.data(), tags_.data()}; }
+  detail::PatchView<Nodes> patch_view() const {
+    return {count_,       patch_size_,   node_capacity_,   diagonal_capacity_, tags_.data(),
+            rows_.data(), nodes_.data(), valences_.data(), diagonals_.data()};
+  }
+
+ private:
+  static std::array<int, 2> tuned(std::size_t count) {
+    constexpr auto t = detail::patch_tuning<T, Nodes>();
+    if (static_cast<Index>(count) < t.large_from) return {t.small_size, t.small_size};
+    return {t.patch_size, t.threads};
+  }
+  template <class U>
+  static DeviceArray<U> uploaded(std::vector<U> const& values) {
+    DeviceArray<U> array(values.size());
+    array.upload(values);
+    return array;
+  }
+  static DeviceArray<Index> padded(std::vector<std::array<Index, Nodes>> const& connectivity) {
+    std::vector<Index> rows(connectivity.size() * View::width);
+    for (std::size_t e = 0; e < connectivity.size(); ++e)
+      for (std::size_t a = 0; a < Nodes; ++a) rows[e * View::width + a] = connectivity[e][a];
+    return uploaded(rows);
+  }
+
+  Index count_ = 0, patches_ = 0;
+  int threads_ = 1, patch_size_ = 0, node_capacity_ = 0, diagonal_capacity_ = 0;
+  DeviceArray<Tag> tags_;
+  DeviceArray<Index> connectivity_, nodes_;
+  DeviceArray<detail::PatchRow<Nodes>> rows_;
+  DeviceArray<std::uint16_t> valences_, diagonals_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cuda/std/limits>
+#include <pliant/backend/dispatch.hpp>
+#include <pliant/cuda/elements.hpp>
+#include <pliant/cuda/vector_memory.cuh>
+#include <tuple>
+
+namespace pliant::detail {
+
+struct Sum {
+  __device__ static double identity() { return 0; }
+  __device__ static double combine(double a, double b) { return a + b; }
+};
+struct Maximum {
+  __device__ static double identity() { return -cuda::std::numeric_limits<double>::infinity(); }
+  __device__ static double combine(double a, double b) { return a < b ? b : a; }
+};
+
+/// The block's values combined in a fixed order; thread 0 has the result.
+template <class Reduction>
+__device__ double reduce_block(double value) {
+  __shared__ double of_warp[1024 / warp_size];
+  int const lane = static_cast<int>(threadIdx.x) % warp_size;
+  auto const within_warp = [](double v) {
+    for (int step = warp_size / 2; step > 0; step /= 2)
+      v = Reduction::combine(v, __shfl_down_sync(0xffffffffu, v, step));
+    return v;
+  };
+  value = within_warp(value);
+  if (lane == 0) of_warp[threadIdx.x / warp_size] = value;
+  __syncthreads();
+  if (threadIdx.x >= warp_size) return value;
+  return within_warp(lane < static_cast<int>(blockDim.x) / warp_size ? of_warp[lane]
+                                                                     : Reduction::identity());
+}
+
+/// One partial result per block.
+template <class Reduction, class F>
+__global__ void __launch_bounds__(reduce_threads)
+    reduce_to_partials(Index n, __grid_constant__ F const f, double* partials) {
+  double value = Reduction::identity();
+  // 64 bits: the last step may pass the largest Index.
+  for (std::int64_t i = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x; i < n;
+       i += std::int64_t{gridDim.x} * blockDim.x)
+    value = Reduction::combine(value, static_cast<double>(f(static_cast<Index>(i))));
+  value = reduce_block<Reduction>(value);
+  if (threadIdx.x == 0) partials[blockIdx.x] = value;
+}
+
+/// One block.
+template <class Reduction>
+__global__ void reduce_partials(int count, double const* partials, double* result) {
+  int const i = static_cast<int>(threadIdx.x);
+  double const value = reduce_block<Reduction>(i < count ? partials[i] : Reduction::identity());
+  if (i == 0) *result = value;
+}
+
+/// A kernel's value of an element, as a function of the element's number.
+template <int Groups, int Nodes, class Kernel, class... Fields>
+struct ElementTerm {
+  ElementView<Nodes> elements;
+  Kernel kernel;
+  std::tuple<Fields...> fields;
+
+  __device__ double operator()(Index e) const {
+    double value = 0;
+    Index const* const row =
+        elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
+    dispatch<Groups>(elements.tags[e], [&](auto group) {
+      value = std::apply(
+          [&](auto const&... field) {
+            return static_cast<double>(kernel(group, gather_nodes<Nodes>(field, row)...));
+          },
+          fields);
+    });
+    return value;
+  }
+};
+
+}  // namespace pliant::detail

@@ -1,0 +1,129 @@
+#include <pliant/cuda/patch_plan.hpp>
+
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+#else
+#include <catch2/catch.hpp>
+#endif
+
+#include <random>
+#include <set>
+
+using namespace pliant;
+
+namespace {
+
+template <int Nodes>
+using Table = std::vector<std::array<Index, Nodes>>;
+
+/// Elements whose nodes lie near each other, with a few far ones and a few nodes that repeat.
+template <int Nodes>
+Table<Nodes> random_table(Index elements, Index nodes, unsigned seed) {
+  std::mt19937 random(seed);
+  Table<Nodes> table(static_cast<std::size_t>(elements));
+  for (Index e = 0; e < elements; ++e)
+    for (Index& node : table[static_cast<std::size_t>(e)]) {
+      Index const near = static_cast<Index>(std::int64_t{e} * nodes / elements);
+      node = random() % 50 == 0 ? static_cast<Index>(random() % static_cast<unsigned>(nodes))
+                                : std::min(nodes - 1, near + static_cast<Index>(random() % 20));
+    }
+  return table;
+}
+
+template <int Nodes>
+detail::PatchPlan<Nodes> plan_of(Table<Nodes> const& table, Index nodes, int patch_size) {
+  return detail::PatchPlanner<Nodes>(table, nodes, patch_size).plan();
+}
+
+template <int Nodes>
+double share(std::size_t element, std::size_t a) {
+  return static_cast<double>(element * Nodes + a + 1);  // integers add up without rounding
+}
+
+/// What the kernels do: shares to slots, slots summed along diagonals, sums added to nodes.
+template <int Nodes>
+std::vector<double> accumulate_by(detail::PatchPlan<Nodes> const& plan, Index nodes) {
+  std::vector<double> out(static_cast<std::size_t>(nodes));
+  for (std::size_t p = 0; p < static_cast<std::size_t>(plan.patches); ++p) {
+    auto const size = static_cast<std::size_t>(plan.patch_size);
+    std::vector<double> staging(size * Nodes);
+    for (std::size_t e = p * size; e < std::min(plan.rows.size(), (p + 1) * size); ++e)
+      for (std::size_t a = 0; a < Nodes; ++a) staging[plan.rows[e].slot[a]] = share<Nodes>(e, a);
+    auto const capacity = static_cast<std::size_t>(plan.node_capacity);
+    for (std::size_t r = 0; r < capacity; ++r) {
+      Index const node = plan.nodes[p * capacity + r];
+      if (node < 0) break;
+      for (std::size_t d = 0; d < plan.valences[p * capacity + r]; ++d)
+        out[static_cast<std::size_t>(node)] +=
+            staging[plan.diagonals[p * static_cast<std::size_t>(plan.diagonal_capacity) + d] + r];
+    }
+  }
+  return out;
+}
+
+template <int Nodes>
+void check_plan(Index elements, Index nodes, int patch_size) {
+  auto const table = random_table<Nodes>(elements, nodes, 7u + static_cast<unsigned>(elements));
+  auto const plan = plan_of<Nodes>(table, nodes, patch_size);
+
+  std::vector<double> expected(static_cast<std::size_t>(nodes));
+  bool same_nodes = true, inside = true;
+  std::set<std::pair<std::size_t, int>> used;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    std::size_t const patch = e / static_cast<std::size_t>(patch_size);
+    std::size_t const first = patch * static_cast<std::size_t>(patch_size);
+    std::size_t const slots =
+        std::min(table.size() - first, static_cast<std::size_t>(patch_size)) * Nodes;
+    for (std::size_t a = 0; a < Nodes; ++a) {
+      auto const& row = plan.rows[e];
+      expected[static_cast<std::size_t>(table[e][a])] += share<Nodes>(e, a);
+      same_nodes &=
+          plan.nodes[patch * static_cast<std::size_t>(plan.node_capacity) + row.local[a]] ==
+          table[e][a];
+      inside &= row.slot[a] < slots;
+      used.emplace(patch, row.slot[a]);
+    }
+  }
+  CHECK(same_nodes);
+  CHECK(inside);
+  CHECK(used.size() == table.size() * Nodes);
+  CHECK(accumulate_by<Nodes>(plan, nodes) == expected);
+  CHECK(plan.node_capacity % 4 == 0);
+  CHECK(plan.diagonal_capacity % 4 == 0);
+}
+
+}  // namespace
+
+TEST_CASE("slots summed along diagonals equal direct accumulation", "[cuda][patch plan]") {
+  check_plan<3>(1000, 500, 128);
+  check_plan<4>(5000, 1200, 512);
+  check_plan<4>(5000, 1200, 128);
+  check_plan<8>(700, 900, 128);
+  check_plan<27>(300, 2000, 64);
+  check_plan<4>(1, 30, 128);
+}
+
+TEST_CASE("a node that all elements of a patch share has one slot for each", "[cuda][patch plan]") {
+  Table<3> fan;
+  for (Index e = 0; e < 200; ++e) fan.push_back({0, e + 1, (e + 1) % 200 + 1});
+  auto const plan = plan_of<3>(fan, 201, 256);
+
+  CHECK(plan.patches == 1);
+  CHECK(plan.nodes[0] == 0);
+  CHECK(plan.valences[0] == 200);
+  CHECK(plan.diagonal_capacity == 200);
+}
+
+TEST_CASE("no elements make no patches", "[cuda][patch plan]") {
+  CHECK(plan_of<4>({}, 10, 128).patches == 0);
+}
+
+TEST_CASE("a node that does not exist is refused, with its element", "[cuda][patch plan]") {
+  Table<3> const table{{0, 1, 2}, {1, 2, 3}};
+  CHECK_THROWS_WITH(plan_of<3>(table, 3, 128),
+                    "element 1 has node 3, but nodes are numbered from 0 to 2; mend the mesh");
+}
+
+TEST_CASE("a patch with more slots than 16 bits can number is refused", "[cuda][patch plan]") {
+  CHECK_THROWS_AS(plan_of<8>({}, 1, 8192), Error);
+}

@@ -1,0 +1,283 @@
+#include <pliant/cuda.hpp>
+#include <pliant/element/simplex.hpp>
+#include <pliant/element/tensor.hpp>
+#include <pliant/formulation/physics.hpp>
+#include <pliant/law/hooke.hpp>
+#include <pliant/law/neo_hookean.hpp>
+#include <pliant/law/saint_venant_kirchhoff.hpp>
+#include <pliant/reference.hpp>
+
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+#else
+#include <catch2/catch.hpp>
+#endif
+
+#include <random>
+
+using namespace pliant;
+
+static_assert(Backend<Cuda<float>> && Backend<Cuda<double>>);
+
+namespace {
+
+// Two groups of one table, and what mechanics does with them.
+template <class First, class Second, class T>
+struct Laws {
+  typename First::template law<T> first;
+  typename Second::template law<T> second;
+
+  template <int G>
+  PLIANT_HOST_DEVICE auto const& of(GroupNumber<G>) const {
+    if constexpr (G == 0)
+      return first;
+    else
+      return second;
+  }
+  template <int G>
+  using formulation = std::conditional_t<G == 0, First, Second>;
+};
+
+template <class L>
+struct Force {
+  L laws;
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G> g, V const& rest, V const& u) const {
+    return force<typename L::template formulation<G>>(laws.of(g), rest, u);
+  }
+};
+template <class L>
+struct Energy {
+  L laws;
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G> g, V const& rest, V const& u) const {
+    return energy<typename L::template formulation<G>>(laws.of(g), rest, u);
+  }
+};
+/// Writes each element's energy, counts the elements of each group and those above a bound.
+template <class L, class T>
+struct EnergyVisitor {
+  static constexpr int counters = 3;
+  L laws;
+  T bound;
+  T* energies;      // (elements)
+  T* first_values;  // (elements)
+
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G> g, V const& rest, V const& u) const {
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    return Vector<S, 1>{{{energy<typename L::template formulation<G>>(laws.of(g), rest, u)}}};
+  }
+  template <int G, class V, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, V const& values, Again const& again,
+                                 Tally const& tally) const {
+    energies[e] = values[0];
+    first_values[e] = std::get<1>(again())(0, 0);
+    tally(G, 1);
+    if (values[0] > bound) tally(2, 1);
+  }
+};
+
+/// A grid of cells, warped, cut into elements, with random displacements and tags.
+template <class E>
+struct Scene {
+  std::vector<std::array<Index, E::nodes>> connectivity;
+  std::vector<double> rest, displacement;  // (nodes, 4)
+  std::vector<Tag> tags;
+  Index nodes = 0;
+
+  explicit Scene(int n) {
+    int const layers = E::dim == 3 ? n : 0;
+    auto const number = [n](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };
+    for (int k = 0; k < std::max(layers, 1); ++k)
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+          cut([&](int x, int y, int z) { return number(i + x, j + y, k + z); });
+    nodes = (n + 1) * (n + 1) * (layers + 1);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> small(-0.15 / n, 0.15 / n);
+    for (Index v = 0; v < nodes; ++v)
+      for (int k = 0; k < node_stride; ++k) {
+        int const place[] = {v % (n + 1), v / (n + 1) % (n + 1), v / (n + 1) / (n + 1), 0};
+        bool const used = k < E::dim;
+        rest.push_back(used ? double(place[k]) / n + small(random) : 0);
+        displacement.push_back(used ? small(random) : 0);
+      }
+    for (std::size_t e = 0; e < connectivity.size(); ++e)
+      tags.push_back(std::array<Tag, 4>{0, 1, 1, no_group}[random() % 4]);
+  }
+
+ private:
+  template <class Corner>
+  void cut(Corner const& v) {
+    if constexpr (E::nodes == 3) {
+      connectivity.push_back({v(0, 0, 0), v(1, 0, 0), v(1, 1, 0)});
+      connectivity.push_back({v(0, 0, 0), v(1, 1, 0), v(0, 1, 0)});
+    } else if constexpr (E::nodes == 8) {
+      connectivity.push_back({v(0, 0, 0), v(1, 0, 0), v(1, 1, 0), v(0, 1, 0), v(0, 0, 1),
+                              v(1, 0, 1), v(1, 1, 1), v(0, 1, 1)});
+    } else if constexpr (E::dim == 2) {
+      connectivity.push_back({v(0, 0, 0), v(1, 0, 0), v(1, 1, 0), v(0, 1, 0)});
+    } else {  // Kuhn's six
+      connectivity.push_back({v(0, 0, 0), v(1, 0, 0), v(1, 1, 0), v(1, 1, 1)});
+      connectivity.push_back({v(0, 0, 0), v(1, 1, 0), v(0, 1, 0), v(1, 1, 1)});
+      connectivity.push_back({v(0, 0, 0), v(0, 1, 0), v(0, 1, 1), v(1, 1, 1)});
+      connectivity.push_back({v(0, 0, 0), v(0, 1, 1), v(0, 0, 1), v(1, 1, 1)});
+      connectivity.push_back({v(0, 0, 0), v(0, 0, 1), v(1, 0, 1), v(1, 1, 1)});
+      connectivity.push_back({v(0, 0, 0), v(1, 0, 1), v(1, 0, 0), v(1, 1, 1)});
+    }
+  }
+};
+
+struct Outcome {
+  std::vector<double> forces, energies, first_values, counters;
+  double energy;
+};
+
+template <class T>
+std::vector<T> cast(std::vector<double> const& values) {
+  return {values.begin(), values.end()};
+}
+template <class T>
+std::vector<double> widened(std::vector<T> const& values) {
+  return {values.begin(), values.end()};
+}
+
+template <class First, class Second, class B>
+Outcome outcome(B const& backend, Scene<typename First::element> const& scene) {
+  using T = typename B::scalar;
+  constexpr int nodes = First::nodes, dim = First::dim;
+  using L = Laws<First, Second, T>;
+  L const laws{{T(2), T(1)}, {T(3), T(2)}};
+  typename B::template Elements<nodes> elements(backend, scene.connectivity, 2, scene.tags,
+                                                scene.nodes);
+  auto rest = upload(backend, cast<T>(scene.rest));
+  auto displacement = upload(backend, cast<T>(scene.displacement));
+  typename B::template Array<T> out(
+      static_cast<std::size_t>(node_stride * (scene.nodes + elements.scratch_nodes())));
+  typename B::template Array<T> energies(scene.connectivity.size());
+  typename B::template Array<T> first_values(scene.connectivity.size());
+  typename B::template Array<double> counters(3);
+  NodeField<T const, dim> const x{rest.data()}, u{displacement.data()};
+
+  backend.template accumulate<2>(elements, Force<L>{laws}, NodeField<T, dim>{out.data()}, x, u);
+  double const sum = backend.template sum_elements<2>(elements, Energy<L>{laws}, x, u);
+  backend.template visit<2>(elements,
+                            EnergyVisitor<L, T>{laws, T(sum / double(scene.tags.size())),
+                                                energies.data(), first_values.data()},
+                            counters, x, u);
+  backend.synchronize();
+  return {widened(download<T>(out)), widened(download<T>(energies)),
+          widened(download<T>(first_values)), download<double>(counters), sum};
+}
+
+void check_equal(std::vector<double> const& got, std::vector<double> const& expected,
+                 double tolerance) {
+  double largest = 0, difference = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    largest = std::max(largest, std::abs(expected[i]));
+    // Written so that a NaN fails.
+    if (!(std::abs(got[i] - expected[i]) <= difference))
+      difference = std::abs(got[i] - expected[i]);
+  }
+  REQUIRE(largest > 0);
+  CHECK(difference <= tolerance * largest);
+}
+
+template <class First, class Second, class T>
+void compare(int n) {
+  Scene<typename First::element> const scene(n);
+  auto const expected = outcome<First, Second>(Reference<T>{}, scene);
+  auto const got = outcome<First, Second>(Cuda<T>{}, scene);
+  double const tolerance = sizeof(T) == 8 ? 1e-13 : 1e-5;
+  auto expected_forces = expected.forces;
+  expected_forces.resize(got.forces.size());
+  check_equal(got.forces, expected_forces, tolerance);
+  check_equal(got.energies, expected.energies, tolerance);
+  CHECK(got.first_values == expected.first_values);
+  CHECK(got.energy == Approx(expected.energy).epsilon(tolerance));
+  CHECK(got.counters[0] == expected.counters[0]);
+  CHECK(got.counters[1] == expected.counters[1]);
+  CHECK(got.counters[2] == Approx(expected.counters[2]).epsilon(0.01));  // bounds round
+}
+
+template <class E, class Q>
+void compare_laws(int n) {
+  using Linear = Formulation<E, Q, Hooke>;
+  using Green = Formulation<E, Q, SaintVenantKirchhoff>;
+  using Log = Formulation<E, Q, NeoHookean>;
+  compare<Linear, Green, float>(n);
+  compare<Linear, Green, double>(n);
+  compare<Log, Green, float>(n);
+  compare<Log, Green, double>(n);
+}
+
+struct Square {
+  double const* x;
+  PLIANT_HOST_DEVICE double operator()(Index i) const { return x[i] * x[i]; }
+};
+struct AddOne {
+  double* x;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { x[i] += 1; }
+};
+
+}  // namespace
+
+TEST_CASE("forces, energies and visits on the GPU equal the reference", "[cuda]") {
+  SECTION("Tri3") { compare_laws<Tri3, Gauss<1>>(20); }
+  SECTION("Quad4") { compare_laws<Quad4, Gauss<2>>(20); }
+  SECTION("Tet4") { compare_laws<Tet4, Gauss<1>>(6); }
+  SECTION("Hex8") { compare_laws<Hex8, Gauss<2>>(7); }
+}
+
+TEST_CASE("large patches give the forces of small ones", "[cuda]") {
+  using F = Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>;
+  compare<F, F, float>(30);
+  compare<F, F, double>(30);
+}
+
+TEST_CASE("elements of no group leave everything as it was", "[cuda]") {
+  using F = Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>;
+  Scene<Tet4> scene(3);
+  std::ranges::fill(scene.tags, no_group);
+  auto const got = outcome<F, F>(Cuda<double>{}, scene);
+  for (double f : got.forces) CHECK(f == 0);
+  CHECK(got.energy == 0);
+  CHECK(got.counters == std::vector<double>{0, 0, 0});
+}
+
+TEST_CASE("node loops reach every node once", "[cuda]") {
+  Cuda<double> const backend;
+  for (Index n : {0, 1, 31, 1000, 1 << 20}) {
+    std::vector<double> values(static_cast<std::size_t>(n));
+    double sum = 0, maximum = -std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < n; ++i) {
+      double const x = values[static_cast<std::size_t>(i)] = std::sin(i + 1.0) - 2;
+      sum += (x + 1) * (x + 1);
+      maximum = std::max(maximum, (x + 1) * (x + 1));
+    }
+    auto array = upload(backend, values);
+    backend.for_each(n, AddOne{array.data()});
+    CHECK(backend.sum(n, Square{array.data()}) == Approx(sum).epsilon(1e-13));
+    CHECK(backend.sum(n, Square{array.data()}) == backend.sum(n, Square{array.data()}));
+    CHECK(backend.maximum(n, Square{array.data()}) == maximum);
+  }
+}
+
+TEST_CASE("a recording does nothing until it is replayed", "[cuda]") {
+  Cuda<double> const backend;
+  Cuda<double>::Array<double> array(1000);
+  auto const recording = backend.record([&] { backend.for_each(1000, AddOne{array.data()}); });
+  CHECK(download<double>(array) == std::vector<double>(1000, 0));
+  recording.replay(3);
+  CHECK(download<double>(array) == std::vector<double>(1000, 3));
+  CHECK_THROWS_AS(backend.record([&] { backend.sum(1000, Square{array.data()}); }), Error);
+  backend.for_each(1000, AddOne{array.data()});
+  CHECK(download<double>(array) == std::vector<double>(1000, 4));
+}
+
+TEST_CASE("too large an array is refused with the numbers of bytes", "[cuda]") {
+  CHECK_THROWS_WITH(DeviceArray<double>(std::size_t{1} << 45),
+                    Catch::Contains("out of memory") && Catch::Contains("281474976710656"));
+  CHECK_THROWS_AS(Cuda<float>(CudaOptions{.device = 99}), Error);
+}
