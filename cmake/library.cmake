@@ -1,0 +1,44 @@
+# The three targets, header-only all of them:
+#   pliant::pliant   the library and its serial Reference backend; needs Eigen
+#   pliant::openmp   with the OpenMP backend
+#   pliant::cuda     with the CUDA backend
+# The last two exist under these names only where this build has what they need. They are
+# installed all the same: an installed copy looks for OpenMP or CUDA when a project asks for them.
+
+# pliant_add_headers(<target> <include root>...): an interface library of all headers there.
+function(pliant_add_headers target)
+  list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/" OUTPUT_VARIABLE roots)
+  foreach(root IN LISTS roots)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS "${root}/*.hpp" "${root}/*.cuh")
+    list(APPEND headers ${found})
+  endforeach()
+  add_library(${target} INTERFACE)
+  target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS ${roots} FILES ${headers})
+endfunction()
+
+pliant_add_headers(pliant include backends/reference)
+add_library(pliant::pliant ALIAS pliant)
+target_compile_features(pliant INTERFACE cxx_std_20)
+target_link_libraries(pliant INTERFACE Eigen3::Eigen)
+
+pliant_add_headers(pliant_openmp backends/openmp)
+set_target_properties(pliant_openmp PROPERTIES EXPORT_NAME openmp)
+target_link_libraries(pliant_openmp INTERFACE pliant OpenMP::OpenMP_CXX)
+if(pliant_has_openmp)
+  add_library(pliant::openmp ALIAS pliant_openmp)
+endif()
+
+pliant_add_headers(pliant_cuda backends/cuda)
+set_target_properties(pliant_cuda PROPERTIES EXPORT_NAME cuda)
+target_link_libraries(pliant_cuda INTERFACE pliant CUDA::cudart)
+# The standard as an option, since CMake knows C++20 for nvcc from 3.26 on only. Kernels call
+# constexpr functions of the standard library; Eigen and the defaulted members of types for host and
+# device set off warning 20012, which tells of markers that nvcc ignores.
+target_compile_options(
+  pliant_cuda
+  INTERFACE
+    "$<$<COMPILE_LANGUAGE:CUDA>:-std=c++20>"
+    "$<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:--expt-relaxed-constexpr;--diag-suppress=20012>")
+if(pliant_has_cuda)
+  add_library(pliant::cuda ALIAS pliant_cuda)
+endif()

@@ -1,0 +1,26 @@
+# pliant_test(NAME <area>/<name> SOURCES <file>... [OPENMP | CUDA] [LINK <library>...])
+# One program and one test, labelled with its area. OPENMP and CUDA mark tests that need this
+# backend; they are left out where it is missing. The others get every CPU backend that this build
+# has: the serial one always, <pliant/openmp.hpp> where _OPENMP is defined.
+function(pliant_test)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "OPENMP;CUDA" "NAME" "SOURCES;LINK")
+  if((arg_OPENMP AND NOT pliant_has_openmp) OR (arg_CUDA AND NOT pliant_has_cuda))
+    return()
+  endif()
+  string(MAKE_C_IDENTIFIER "test_${arg_NAME}" target)
+  string(REGEX REPLACE "/.*" "" labels "${arg_NAME}")
+
+  if(arg_CUDA)
+    list(APPEND labels gpu)
+    pliant_add_program(${target} CUDA SOURCES ${arg_SOURCES} LINK pliant_gpu_test_main ${arg_LINK})
+  else()
+    pliant_add_program(${target} SOURCES ${arg_SOURCES} LINK pliant_test_main ${arg_LINK})
+  endif()
+
+  set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")
+  add_test(NAME ${arg_NAME} COMMAND ${target})
+  # Tests run side by side: threads that wait must not keep the cores from those that work.
+  set_tests_properties(
+    ${arg_NAME} PROPERTIES LABELS "${labels}" TIMEOUT 600 SKIP_RETURN_CODE 77
+                           ENVIRONMENT "OMP_WAIT_POLICY=PASSIVE;${leak_options}")
+endfunction()

@@ -1,0 +1,55 @@
+# How Pliant's own tests, examples and benchmarks are compiled; nothing here reaches its users.
+option(PLIANT_NATIVE "Compile tests, examples and benchmarks for this machine's processor"
+       ${PROJECT_IS_TOP_LEVEL})
+set(PLIANT_SANITIZE "" CACHE STRING "Sanitizers for them, for example address,undefined")
+
+find_program(PLIANT_CCACHE ccache)
+if(PLIANT_CCACHE)
+  foreach(language IN ITEMS CXX CUDA)
+    if(NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+      set(CMAKE_${language}_COMPILER_LAUNCHER "${PLIANT_CCACHE}")
+    endif()
+  endforeach()
+endif()
+
+add_library(pliant_program INTERFACE)
+target_compile_options(
+  pliant_program
+  INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion>"
+            "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall>")
+if(PLIANT_NATIVE)
+  # The host side of .cu files too: Eigen aligns its types by the widest vectors, and all files of
+  # a program have to agree on them.
+  target_compile_options(pliant_program
+                         INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-march=native>"
+                                   "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-march=native>")
+endif()
+if(PLIANT_SANITIZE)
+  # Instrumented code makes g++ see uninitialised variables where there are none.
+  target_compile_options(
+    pliant_program
+    INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${PLIANT_SANITIZE};-fno-sanitize-recover=all>"
+              "$<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer;-O1>"
+              "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>")
+  target_link_options(pliant_program INTERFACE "-fsanitize=${PLIANT_SANITIZE}")
+endif()
+
+# Everything that nvcc compiles, to build where there is no GPU to run it on.
+if(pliant_has_cuda)
+  add_custom_target(pliant_gpu)
+endif()
+
+# pliant_add_program(<target> SOURCES <file>... [CUDA] [LINK <library>...])
+# An executable against the library and the backends that this build has; .cu files get
+# pliant::cuda alone, since nvcc compiles no SIMD packs.
+function(pliant_add_program target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "CUDA" "" "SOURCES;LINK")
+  add_executable(${target} ${arg_SOURCES})
+  target_link_libraries(${target} PRIVATE pliant_program pliant::pliant ${arg_LINK})
+  if(arg_CUDA)
+    target_link_libraries(${target} PRIVATE pliant::cuda)
+    add_dependencies(pliant_gpu ${target})
+  elseif(pliant_has_openmp)
+    target_link_libraries(${target} PRIVATE pliant::openmp)
+  endif()
+endfunction()

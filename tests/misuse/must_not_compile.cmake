@@ -1,0 +1,26 @@
+# cmake -DSOURCE=<file> -DCOMPILER=<compiler> -DINCLUDE=<folders> -P must_not_compile.cmake
+file(STRINGS "${SOURCE}" first_line LIMIT_COUNT 1)
+if(NOT first_line MATCHES "^// expect: (.+)$")
+  message(FATAL_ERROR "${SOURCE} has to begin with a line '// expect: <regular expression>'")
+endif()
+set(expected "${CMAKE_MATCH_1}")
+
+list(TRANSFORM INCLUDE PREPEND -I)
+set(command "${COMPILER}" -std=c++20 -fsyntax-only ${INCLUDE} "${SOURCE}")
+
+execute_process(COMMAND ${command} RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(NOT failed)
+  message(FATAL_ERROR "${SOURCE} compiles, but must not")
+endif()
+if(NOT said MATCHES "${expected}")
+  message(FATAL_ERROR "The compiler refuses ${SOURCE}, but does not say\n  ${expected}\nIt says\n${said}")
+endif()
+
+file(STRINGS "${SOURCE}" switch REGEX "PLIANT_MISUSE_OFF")
+if(switch)
+  execute_process(COMMAND ${command} -DPLIANT_MISUSE_OFF RESULT_VARIABLE failed OUTPUT_VARIABLE said
+                  ERROR_VARIABLE said)
+  if(failed)
+    message(FATAL_ERROR "Without its misuse ${SOURCE} has to compile. The compiler says\n${said}")
+  endif()
+endif()
