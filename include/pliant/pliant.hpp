@@ -7,7 +7,7 @@
 #include <pliant/adaptation/criterion/deformation.hpp>
 #include <pliant/adaptation/criterion/force_intensity.hpp>
 #include <pliant/adaptation/criterion/shape.hpp>
-#include <pliant/adaptation/ledger.hpp>
+#include <pliant/body/ledger.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/body.hpp>

@@ -9,6 +9,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/host_recording.hpp>
+#include <pliant/backend/host_stopwatch.hpp>
 #include <pliant/error.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/transpose.hpp>
@@ -33,6 +34,7 @@ class OpenMP {
   template <class U>
   using Array = HostArray<U>;
   using Recording = HostRecording;
+  using Stopwatch = HostStopwatch;
   static constexpr char const* name() { return "OpenMP"; }
 
   OpenMP(OpenMPOptions options = {}) : threads_(options.threads) {
@@ -75,6 +77,7 @@ class OpenMP {
   }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
   void synchronize() const {}
+  Stopwatch stopwatch() const { return {}; }
 
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,

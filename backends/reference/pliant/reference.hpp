@@ -9,6 +9,7 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/host_array.hpp>
 #include <pliant/backend/host_recording.hpp>
+#include <pliant/backend/host_stopwatch.hpp>
 
 namespace pliant {
 
@@ -20,6 +21,7 @@ class Reference {
   template <class U>
   using Array = HostArray<U>;
   using Recording = HostRecording;
+  using Stopwatch = HostStopwatch;
   static constexpr char const* name() { return "Reference"; }
 
   template <int Nodes>
@@ -61,6 +63,7 @@ class Reference {
   }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
   void synchronize() const {}
+  Stopwatch stopwatch() const { return {}; }
 
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,

@@ -1,17 +1,9 @@
 #pragma once
 
-#include <chrono>
-
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/adaptation/switching.hpp>
 
 namespace pliant {
-
-/// Where the time of adaptation goes, s.
-struct AdaptationTimes {
-  double criteria = 0;   // evaluating criteria, deciding, changing tags
-  double migration = 0;  // ordering groups, refining
-};
 
 /// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
 /// for the elements of its formulation, and the elements that it marks act. Where several rules look
@@ -30,10 +22,6 @@ class Adaptation {
     set_interval(calls);
     return *this;
   }
-  /// Measures times(); every check then waits for the backend.
-  void profile() { profile_ = true; }
-  AdaptationTimes const& times() const { return times_; }
-
   /// Call after each step.
   template <class TheBody>
   void operator()(TheBody& body) {
@@ -44,23 +32,27 @@ class Adaptation {
   template <class TheBody>
   void now(TheBody& body) {
     constexpr bool refines = (!detail::Switches<Rules> || ...);
-    auto clock = start(body);
+    auto& watches = body.watches();
+    watches.criteria.start();
     body.for_each_table([&](auto& table) {
       using Table = std::remove_cvref_t<decltype(table)>;
       detail::switch_groups(body, table, switching<Table>());
     });
-    lap(body, clock, times_.criteria);
+    watches.criteria.stop();
+    watches.migration.start();
     body.for_each_table([&](auto& table) { table.elements.regroup(); });
-    lap(body, clock, times_.migration);
+    watches.migration.stop();
     body.forget_forces();
     if constexpr (refines) {
+      watches.criteria.start();
       int max_level = 0;
       std::vector<std::vector<Index>> marked;
       body.for_each_table(
           [&](auto& table) { marked.push_back(marked_in(body, table, max_level)); });
-      lap(body, clock, times_.criteria);
+      watches.criteria.stop();
+      watches.migration.start();
       refine(body, marked, max_level);
-      lap(body, clock, times_.migration);
+      watches.migration.stop();
     }
   }
 
@@ -95,20 +87,6 @@ class Adaptation {
     return marked;
   }
 
-  using Clock = std::chrono::steady_clock;
-  template <class TheBody>
-  Clock::time_point start(TheBody const& body) const {
-    if (profile_) body.backend().synchronize();
-    return Clock::now();
-  }
-  template <class TheBody>
-  void lap(TheBody const& body, Clock::time_point& since, double& sum) const {
-    if (!profile_) return;
-    body.backend().synchronize();
-    auto const now = Clock::now();
-    sum += std::chrono::duration<double>(now - since).count();
-    since = now;
-  }
   void set_interval(int calls) {
     if (calls < 1)
       throw Error("Adaptation.every: " + std::to_string(calls) + " calls; give at least 1");
@@ -117,8 +95,6 @@ class Adaptation {
 
   std::tuple<Rules...> rules_;
   int interval_ = 8, calls_ = 0;
-  bool profile_ = false;
-  AdaptationTimes times_;
 };
 
 }  // namespace pliant

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include <pliant/adaptation/ledger.hpp>
+#include <pliant/body/ledger.hpp>
 #include <pliant/element/simplex.hpp>
 #include <pliant/element/tensor.hpp>
 #include <pliant/mesh/hierarchy.hpp>

@@ -66,9 +66,9 @@ class Body {
   void drive(std::vector<Index> const& nodes, Motion<dim> motion) {
     add_condition({{}, nodes, all_directions<dim>, std::move(motion)});
   }
-  void set_gravity(Point<dim> const& g) { gravity_ = g; }  // m/s²
-  void set_damping(double per_mass);                       // 1/s
-  void set_load(Index node, Point<dim> const& force);      // N, constant in direction
+  void set_gravity(Point<dim> const& g);               // m/s²
+  void set_damping(double per_mass);                   // 1/s
+  void set_load(Index node, Point<dim> const& force);  // N, constant in direction
   Point<dim> const& gravity() const { return gravity_; }
   double damping() const { return damping_; }
   std::vector<Point<dim>> const& loads() const { return loads_; }  // empty, or one per node
@@ -130,9 +130,24 @@ class Body {
     time_ += dt;
     steps_ += steps;
   }
-  void rewind(double time, long steps) {
-    time_ = time;
-    steps_ = steps;
+  /// Where the time of adaptation goes: evaluating criteria and deciding; moving elements. Stopwatches
+  /// stand still unless measure_adaptation() was called.
+  struct Watches {
+    struct Watch {
+      std::optional<typename B::Stopwatch> watch;
+      void start() {
+        if (watch) watch->start();
+      }
+      void stop() {
+        if (watch) watch->stop();
+      }
+      double seconds() { return watch ? watch->seconds() : 0.0; }
+    } criteria, migration;
+  };
+  Watches& watches() { return watches_; }
+  void measure_adaptation() {
+    watches_.criteria.watch.emplace(backend_.stopwatch());
+    watches_.migration.watch.emplace(backend_.stopwatch());
   }
   History<dim> const& history() const { return history_; }
   /// The largest mesh that refinement may make; one that would be larger throws Error.
@@ -146,6 +161,15 @@ class Body {
   void replace(layout_type layout, std::vector<Condition<dim>> conditions,
                std::vector<Point<dim>> loads, std::shared_ptr<Hierarchy const> tree,
                std::vector<typename History<dim>::Totals> totals);
+  /// Changes whenever kernels recorded for this body would no longer be right.
+  long revision() const { return revision_; }
+  /// Takes steps of a constant size, with a half kick owed before and after.
+  void step(double dt, int steps);
+  /// Keeps the present displacements and velocities, for restore().
+  void checkpoint();
+  /// Goes back to the last checkpoint; false where there is none of the present mesh.
+  bool restore();
+  long checkpoint_step() const { return checkpoint_ ? checkpoint_->steps : -1; }
   void add_refinement(LedgerEntry<dim> entry) { history_.refinements.push_back(std::move(entry)); }
 
  private:
@@ -161,6 +185,7 @@ class Body {
   }
   void add_condition(Condition<dim> condition);
   void upload_conditions();
+  void stop_held();
   double energy_at(typename B::template Array<T> const& u) const;
   void accumulate_forces(ConstField u, Field f) const;
   void clear(Field field, Index rows) const { backend_.for_each(rows, Clear<T>{field.data}); }
@@ -168,6 +193,17 @@ class Body {
     typename B::template Array<T> u, du, f;
   };
   Scratch& scratch();
+  struct Checkpoint {
+    typename B::template Array<T> u, v;
+    double time;
+    long steps;
+  };
+  struct RecordedStep {
+    typename B::Recording recording;
+    Body const* body;  // where it was made: a body that moved records anew
+    double dt;
+    long revision;
+  };
 
   B backend_;
   Elastic material_;
@@ -182,10 +218,13 @@ class Body {
   std::vector<Point<dim>> loads_;
   Point<dim> gravity_{};
   double damping_ = 0, time_ = 0, owed_ = 0;
-  long steps_ = 0;
+  long steps_ = 0, revision_ = 0;
   bool forces_current_ = false;
   History<dim> history_;
   std::optional<Scratch> scratch_;
+  std::optional<Checkpoint> checkpoint_;
+  std::optional<RecordedStep> recorded_;
+  Watches watches_;
 };
 
 template <Backend B, class M, class... Gs>

@@ -34,6 +34,7 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
                   std::to_string(table.count() - 1));
     user[static_cast<std::size_t>(e)] = static_cast<Tag>(group);
   }
+  synchronize_velocities();
   std::vector<Tag> internal(user.size());
   for (std::size_t e = 0; e < user.size(); ++e)
     internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
@@ -43,6 +44,20 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
 }
 
 // ---- conditions and loads ----
+
+namespace detail {
+template <int Dim>
+Point<Dim> position_at(Condition<Dim> const& condition, double time) {
+  Point<Dim> const u = condition.motion(time);
+  for (double x : u)
+    if (!std::isfinite(x))
+      throw Error("body.drive: the motion of node " +
+                  (condition.nodes.empty() ? "(none)" : std::to_string(condition.nodes[0])) +
+                  " is " + text<Dim>(u) + " at time " + std::to_string(time) +
+                  " s; it must be finite");
+  return u;
+}
+}  // namespace detail
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
@@ -54,10 +69,20 @@ void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
     throw Error(
         "body: a condition on facets comes after a refinement, and would not be inherited; hold "
         "facets before the first refinement, or nodes");
+  if (condition.motion) (void)detail::position_at(condition, time_);
+  synchronize_velocities();
   conditions_.push_back(std::move(condition));
   upload_conditions();
+  stop_held();
   prescribe(time_, 0);
   forget_forces();
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::stop_held() {
+  Field const v{layout_.v.data()};
+  backend_.for_each(nodes(), StopHeld<T, dim>{v, layout_.held.data()});
+  layout_.slaves.interpolate(backend_, v);
 }
 
 template <Backend B, class M, class... Fs>
@@ -73,6 +98,7 @@ void Body<B, M, Fs...>::upload_conditions() {
     if (conditions_[c].motion) motions_.push_back({upload(backend_, internal), c});
   }
   layout_.held.upload(held);
+  ++revision_;
 }
 
 template <Backend B, class M, class... Fs>
@@ -84,8 +110,8 @@ template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::prescribe(double time, double over) {
   for (auto const& [list, index] : motions_) {
     Condition<dim> const& condition = conditions_[index];
-    Point<dim> const to = condition.motion(time);
-    Point<dim> const from = over > 0 ? condition.motion(time - over) : to;
+    Point<dim> const to = detail::position_at(condition, time);
+    Point<dim> const from = over > 0 ? detail::position_at(condition, time - over) : to;
     Vector<T, dim> displacement, velocity;
     for (int k = 0; k < dim; ++k) {
       auto const i = static_cast<std::size_t>(k);
@@ -103,11 +129,23 @@ void Body<B, M, Fs...>::prescribe(double time, double over) {
 }
 
 template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::set_gravity(Point<dim> const& g) {
+  for (double x : g)
+    if (!std::isfinite(x))
+      throw Error("body.set_gravity: " + detail::text<dim>(g) + " is not finite");
+  synchronize_velocities();
+  gravity_ = g;
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_damping(double per_mass) {
   if (!(per_mass >= 0 && std::isfinite(per_mass)))
     throw Error("body.set_damping: " + std::to_string(per_mass) +
                 " 1/s; give a finite number that is not negative");
+  synchronize_velocities();
   damping_ = per_mass;
+  ++revision_;
 }
 
 template <Backend B, class M, class... Fs>
@@ -118,9 +156,11 @@ void Body<B, M, Fs...>::set_load(Index node, Point<dim> const& force) {
   for (double x : force)
     if (!std::isfinite(x))
       throw Error("body.set_load: the force at node " + std::to_string(node) + " is not finite");
+  synchronize_velocities();
   if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
   loads_[static_cast<std::size_t>(node)] = force;
   layout_.load = upload(backend_, layout_.padded(loads_));
+  ++revision_;
 }
 
 template <Backend B, class M, class... Fs>
@@ -164,7 +204,7 @@ void Body<B, M, Fs...>::set_velocities(std::vector<Point<dim>> const& v) {
   detail::check_field("body.set_velocities", v, nodes());
   owed_ = 0;
   layout_.v.upload(layout_.padded(v));
-  layout_.slaves.interpolate(backend_, Field{layout_.v.data()});
+  stop_held();
 }
 
 template <Backend B, class M, class... Fs>
@@ -265,8 +305,63 @@ void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> 
   if (!loads_.empty()) layout_.load = upload(backend_, layout_.padded(loads_));
   upload_conditions();
   scratch_.reset();
+  checkpoint_.reset();
+  recorded_.reset();
   owed_ = 0;
   forget_forces();
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::step(double dt, int steps) {
+  if (steps > 0 && (owed_ != dt / 2 || has_motions() || forces_current_)) {  // not like the others
+    evaluate_forces();
+    advance(owed_, dt / 2, dt);
+    owed_ = dt / 2;
+    time_ += dt;
+    ++steps_;
+    prescribe(time_, dt);
+    return step(dt, steps - 1);
+  }
+  if (steps == 0) return;
+  if (!recorded_ || recorded_->body != this || recorded_->dt != dt ||
+      recorded_->revision != revision_)
+    recorded_ = RecordedStep{backend_.record([this, dt] {
+                               Field const f{layout_.f.data()};
+                               clear(f, nodes());
+                               accumulate_forces(std::as_const(*this).displacement_field(), f);
+                               advance(dt / 2, dt / 2, dt);
+                             }),
+                             this, dt, revision_};
+  recorded_->recording.replay(steps);
+  time_ += steps * dt;
+  steps_ += steps;
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::checkpoint() {
+  synchronize_velocities();
+  if (!checkpoint_) {
+    using A = typename B::template Array<T>;
+    checkpoint_ = Checkpoint{A(layout_.u.size()), A(layout_.v.size()), 0, 0};
+  }
+  auto const count = static_cast<Index>(layout_.u.size());
+  backend_.for_each(count, Copy<T>{layout_.u.data(), checkpoint_->u.data()});
+  backend_.for_each(count, Copy<T>{layout_.v.data(), checkpoint_->v.data()});
+  checkpoint_->time = time_;
+  checkpoint_->steps = steps_;
+}
+
+template <Backend B, class M, class... Fs>
+bool Body<B, M, Fs...>::restore() {
+  if (!checkpoint_) return false;
+  auto const count = static_cast<Index>(layout_.u.size());
+  backend_.for_each(count, Copy<T>{checkpoint_->u.data(), layout_.u.data()});
+  backend_.for_each(count, Copy<T>{checkpoint_->v.data(), layout_.v.data()});
+  time_ = checkpoint_->time;
+  steps_ = checkpoint_->steps;
+  owed_ = 0;
+  forget_forces();
+  return true;
 }
 
 // ---- for a simulator that owns its state ----

@@ -65,11 +65,23 @@ struct Prescribe {
   }
 };
 
+/// Takes the speed out of the directions that are held.
+template <class T, int Dim>
+struct StopHeld {
+  NodeField<T, Dim> v;
+  DirectionMask const* held;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < Dim; ++k)
+      if (held[i] >> k & 1) v(i, k) = T(0);
+  }
+};
+
 template <class T>
-struct Fill {
-  T* data;
-  T value;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { data[i] = value; }
+struct Copy {
+  T const* from;
+  T* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
 /// Sets the rows [0, nodes) of a field to zero.

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
+#include <pliant/body/ledger.hpp>
 #include <pliant/solver/stable_step.hpp>
 
 namespace pliant {
@@ -19,12 +20,10 @@ struct CentralDifferenceOptions {
 };
 
 /// Explicit time integration by central differences (leapfrog, velocity Verlet), with lumped masses
-/// and centred mass damping. Checks the state at intervals: one that went non-finite or gained energy
-/// is rolled back to the last check and done again with half the step; after three halvings it
-/// throws Error and leaves the body at the last good state.
-template <class TheBody>
-class CentralDifferenceRun;
-
+/// and centred mass damping. At intervals the state is checked: one that went non-finite, or whose
+/// energy grew by more than its loads and its adaptation explain, is rolled back to the last check and
+/// done again with half the step; after three halvings it throws Error, and the body is at the last
+/// good state.
 class CentralDifference {
  public:
   explicit CentralDifference(CentralDifferenceOptions options = {}) : options_(options) {
@@ -35,7 +34,7 @@ class CentralDifference {
           "1");
   }
 
-  /// The step that was taken last, s.
+  /// The size of the last step, s.
   double step() const { return step_; }
   /// How often a stretch was rolled back and done again.
   int retries() const { return retries_; }
@@ -43,31 +42,64 @@ class CentralDifference {
   /// Takes steps.
   template <class TheBody>
   void operator()(TheBody& body, int steps = 1) {
-    for (int k = 0; k < steps; ++k) one(body);
+    long const goal = body.steps() + steps;
+    while (body.steps() < goal) {
+      if (checked_nodes_ != body.nodes()) begin(body);
+      if (body.steps() >= next_check_) check(body);
+      if (body.steps() >= next_refresh_) refresh(body);
+      body.step(step_,
+                static_cast<int>(std::min({goal, next_check_, next_refresh_}) - body.steps()));
+    }
   }
-  /// Asks for a new stable step, after a change that the integrator cannot see.
-  void refresh() { until_refresh_ = 0; }
 
  private:
+  /// A body, or a mesh, that was not seen before.
   template <class TheBody>
-  void one(TheBody& body) {
-    if (until_refresh_ <= 0 || seen_nodes_ != body.nodes()) {
-      step_ = (options_.step > 0 ? options_.step : options_.safety * stable_step(body)) / slower_;
-      until_refresh_ = options_.refresh_interval;
-      seen_nodes_ = body.nodes();
+  void begin(TheBody& body) {
+    checked_nodes_ = body.nodes();
+    next_check_ = next_refresh_ = body.steps();
+    energy_ = std::numeric_limits<double>::infinity();
+  }
+
+  template <class TheBody>
+  void refresh(TheBody& body) {
+    step_ = (options_.step > 0 ? options_.step : options_.safety * stable_step(body)) / slower_;
+    next_refresh_ = body.steps() + options_.refresh_interval;
+  }
+
+  template <class TheBody>
+  void check(TheBody& body) {
+    double const strain = body.strain_energy(), kinetic = body.kinetic_energy();
+    double const energy = strain + kinetic + body.potential_energy() - adaptation_energy(body);
+    bool const grew =
+        !body.has_motions() && energy > energy_ + options_.energy_growth * (strain + kinetic);
+    if (std::isfinite(energy) && !grew) {
+      body.checkpoint();
+      energy_ = energy;
+      next_check_ = body.steps() + options_.check_interval;
+      return;
     }
-    body.evaluate_forces();
-    body.advance(body.owed(), step_ / 2, step_);
-    body.owe(step_ / 2);
-    body.tick(step_, 1);
-    if (body.has_motions()) body.prescribe(body.time(), step_);
-    --until_refresh_;
+    std::string const what = "CentralDifference: the body " +
+                             std::string(grew ? "gained energy" : "went non-finite") +
+                             " between steps " + std::to_string(body.checkpoint_step()) + " and " +
+                             std::to_string(body.steps());
+    if (!body.restore())
+      throw Error(what + ", and there is no earlier state of this mesh; start from a finite state");
+    if (slower_ >= 8)
+      throw Error(what + ", with an eighth of the step too (" + std::to_string(step_) +
+                  " s); it is now at time " + std::to_string(body.time()) +
+                  " s, before that: look at its loads, and at laws that soften or cannot invert");
+    slower_ *= 2;
+    ++retries_;
+    next_check_ = body.steps() + options_.check_interval;
+    next_refresh_ = body.steps();
   }
 
   CentralDifferenceOptions options_;
-  double step_ = 0, slower_ = 1;
-  int until_refresh_ = 0, retries_ = 0;
-  Index seen_nodes_ = -1;
+  double step_ = 0, slower_ = 1, energy_ = 0;
+  long next_check_ = 0, next_refresh_ = 0;
+  int retries_ = 0;
+  Index checked_nodes_ = -1;
 };
 
 }  // namespace pliant

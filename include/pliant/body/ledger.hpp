@@ -7,20 +7,26 @@ namespace pliant {
 
 namespace detail {
 
-/// The counters of one element type: of the layouts that are gone, of the present one, and of the
-/// elements' present stay in their groups.
+/// The counters of one element type: of the layouts that are gone and of the present one.
 template <class TheBody, class Table>
-std::vector<double> all_counters(TheBody const& body, Table const& table, std::size_t which) {
-  using Counters = CounterLayout<Table::groups>;
-  std::vector<double> sums(Counters::count, 0.0);
+std::vector<double> counters(TheBody const& body, Table const& table, std::size_t which) {
+  std::vector<double> sums(CounterLayout<Table::groups>::count, 0.0);
   if (which < body.history().totals.size()) sums = body.history().totals[which].counters;
-  auto const tags = download<Tag>(table.elements.tags());
-  std::vector<Index> since(tags.size(), static_cast<Index>(body.history().born));
   if (table.books.open) {
-    since = download<Index>(table.books.since);
     auto const own = download<double>(table.books.counters);
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += own[k];
   }
+  return sums;
+}
+
+/// The same with the elements' present stay in their groups.
+template <class TheBody, class Table>
+std::vector<double> all_counters(TheBody const& body, Table const& table, std::size_t which) {
+  using Counters = CounterLayout<Table::groups>;
+  std::vector<double> sums = counters(body, table, which);
+  auto const tags = download<Tag>(table.elements.tags());
+  std::vector<Index> since(tags.size(), static_cast<Index>(body.history().born));
+  if (table.books.open) since = download<Index>(table.books.since);
   for (std::size_t e = 0; e < tags.size(); ++e)
     if (tags[e] < Table::groups)
       sums[static_cast<std::size_t>(Counters::steps_of(tags[e]))] +=
@@ -71,6 +77,21 @@ std::vector<int> switch_counts(TheBody const& body) {
   return counts;
 }
 
+/// What switching and refining have added to the strain and kinetic energy so far, J.
+template <class TheBody>
+double adaptation_energy(TheBody const& body) {
+  double sum = 0;
+  for (auto const& entry : body.history().refinements)
+    sum += entry.strain_energy + entry.kinetic_energy;
+  std::size_t which = 0;
+  body.for_each_table([&](auto const& table) {
+    using Counters = CounterLayout<std::remove_cvref_t<decltype(table)>::groups>;
+    auto const sums = detail::counters(body, table, which++);
+    for (std::size_t k = Counters::energy(0, 0); k < sums.size(); ++k) sum += sums[k];
+  });
+  return sum;
+}
+
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved
 /// between, summed over time, and one per refinement.
 template <class TheBody>
@@ -80,7 +101,7 @@ auto ledger(TheBody const& body) {
   body.for_each_table([&](auto const& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
     using Counters = CounterLayout<Table::groups>;
-    auto const sums = detail::all_counters(body, table, which++);
+    auto const sums = detail::counters(body, table, which++);
     for (int from = 0; from < Table::groups; ++from)
       for (int to = 0; to < Table::groups; ++to) {
         double const moved = sums[static_cast<std::size_t>(Counters::moves(from, to))];
