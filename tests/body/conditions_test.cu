@@ -1,0 +1,1 @@
+#include "body/conditions_suite.hpp"

@@ -1,0 +1,1 @@
+#include "body/groups_suite.hpp"

@@ -1,0 +1,1 @@
+#include "body/state_suite.hpp"

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "support/formulations.hpp"
+
+namespace pliant::test {
+
+TEST_CASE("inner forces and their moments add up to zero", "[formulation]") {
+  on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
+    using T = typename B::scalar;
+    int const n = F::dim == 2 ? 8 : 4;
+    auto const mesh = distorted_mesh<typename F::element>(n);
+    auto body = body_of<F>(B{}, mesh);
+    auto const u = Random(1).field<F::dim>(mesh.nodes.size(), 0.1 / n);
+
+    auto const f = forces_at(body, u);
+
+    double const rounding = 4 * double{std::numeric_limits<T>::epsilon()} * largest(f) *
+                            std::sqrt(static_cast<double>(f.size()));
+    for (double x : total(f)) CHECK(std::abs(x) < rounding);
+    // About positions as they are now; Hooke's law keeps no moment but that about those at rest.
+    constexpr bool small_strain = std::same_as<typename F::template law<double>, Hooke<double>>;
+    auto const arms = small_strain ? mesh.nodes : plus(mesh.nodes, 1, rounded<T>(u));
+    for (double x : moment(arms, f)) CHECK(std::abs(x) < rounding * largest(arms));
+    CHECK(largest(f) > 1e-3);
+  });
+}
+
+TEST_CASE("masses add up to density times volume", "[formulation]") {
+  on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
+    auto const mesh = distorted_mesh<typename F::element>(5);
+
+    auto const masses = body_of<F>(B{}, mesh).masses();
+
+    double sum = 0;
+    for (double m : masses) sum += m;
+    CHECK(sum == Approx(soft.density).epsilon(1e-14));
+    CHECK(std::ranges::min(masses) > 0);
+  });
+}
+
+}  // namespace pliant::test

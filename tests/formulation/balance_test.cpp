@@ -1,0 +1,1 @@
+#include "formulation/balance_suite.hpp"

@@ -1,0 +1,1 @@
+#include "formulation/derivatives_suite.hpp"

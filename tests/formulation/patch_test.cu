@@ -1,0 +1,1 @@
+#include "formulation/patch_suite.hpp"

@@ -1,0 +1,1 @@
+#include "formulation/rigid_motion_suite.hpp"

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <string>
+
+#include "support/backends.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+#include "support/meshes.hpp"
+
+// The formulations that a suite runs over: every pair of element and law, of element and quadrature,
+// and of each of them with each backend and precision, but not their full product.
+namespace pliant::test {
+
+template <class... Fs>
+struct List {};
+
+template <class B, class F>
+struct Case {
+  using backend = B;
+  using T = typename B::scalar;
+  using formulation = F;
+  using element = typename F::element;
+};
+
+using AllFormulations =
+    List<Formulation<Tri3, Gauss<1>, Hooke>, Formulation<Tri3, Gauss<2>, SaintVenantKirchhoff>,
+         Formulation<Tri3, Gauss<1>, NeoHookean>, Formulation<Quad4, Gauss<2>, Hooke>,
+         Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>,
+         Formulation<Quad4, Gauss<3>, NeoHookean>, Formulation<Tet4, Gauss<2>, Hooke>,
+         Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>, Formulation<Tet4, Gauss<1>, NeoHookean>,
+         Formulation<Hex8, Gauss<2>, Hooke>, Formulation<Hex8, Gauss<3>, SaintVenantKirchhoff>,
+         Formulation<Hex8, Gauss<2>, NeoHookean>>;
+/// For what has been seen over all formulations on another backend.
+using FewFormulations =
+    List<Formulation<Tri3, Gauss<1>, NeoHookean>,
+         Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>,
+         Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>, Formulation<Hex8, Gauss<2>, NeoHookean>,
+         Formulation<Quad4, Gauss<2>, Hooke>>;
+
+template <class B>
+using formulations_on =
+    std::conditional_t<std::same_as<B, MainBackend>, AllFormulations, FewFormulations>;
+
+template <class F>
+std::string law_name() {
+  if constexpr (std::same_as<typename F::template law<double>, Hooke<double>>) return "Hooke";
+  if constexpr (std::same_as<typename F::template law<double>, SaintVenantKirchhoff<double>>)
+    return "SaintVenantKirchhoff";
+  if constexpr (std::same_as<typename F::template law<double>, NeoHookean<double>>)
+    return "NeoHookean";
+  return "a law";
+}
+template <class B>
+std::string backend_name() {
+  return std::string(B::name()) + (sizeof(typename B::scalar) == 4 ? "<float>" : "<double>");
+}
+template <class F>
+std::string formulation_name() {
+  return std::string(F::element::name()) + ", " + std::to_string(F::points) + " points, " +
+         law_name<F>();
+}
+
+/// Calls visit(B) for each backend of a list, each in a section of its own.
+template <class Bs, class Visit>
+void on_each_backend(Visit const& visit) {
+  auto const one = [&]<class B>(B const* /* type */) {
+    DYNAMIC_SECTION(backend_name<B>()) { visit(B{}); }
+  };
+  [&]<class... B>(std::tuple<B...> const*) {
+    (one(static_cast<B const*>(nullptr)), ...);
+  }(static_cast<Bs const*>(nullptr));
+}
+
+/// Calls visit(Case<B, F>) for each backend of a list and the formulations to run there.
+template <class Bs, class Visit>
+void on_each_formulation(Visit const& visit) {
+  auto const one = [&]<class B, class F>(Case<B, F> c) {
+    DYNAMIC_SECTION(backend_name<B>() << ", " << formulation_name<F>()) { visit(c); }
+  };
+  auto const all = [&]<class B, class... Fs>(B const* /* type */, List<Fs...>) {
+    (one(Case<B, Fs>{}), ...);
+  };
+  [&]<class... B>(std::tuple<B...> const*) {
+    (all(static_cast<B const*>(nullptr), formulations_on<B>{}), ...);
+  }(static_cast<Bs const*>(nullptr));
+}
+
+/// λ = 3 Pa, μ = 2 Pa, ρ = 1.5 kg/m³.
+inline constexpr Elastic soft{5.2, 0.3, 1.5};
+
+/// A body of one formulation.
+template <class F, Backend B, class M>
+auto body_of(B const& backend, M const& mesh, Elastic const& material = soft) {
+  return Body{backend, mesh, material, Group<F>{}};
+}
+
+/// The forces of a body at given displacements.
+template <class TheBody>
+auto forces_at(TheBody& body, std::vector<Point<TheBody::dim>> const& u) {
+  body.set_displacements(u);
+  return body.forces();
+}
+
+}  // namespace pliant::test
