@@ -1,0 +1,1 @@
+#include "solver/damping_suite.hpp"

@@ -1,0 +1,1 @@
+#include "solver/energy_suite.hpp"

@@ -1,0 +1,1 @@
+#include "solver/free_body_suite.hpp"

@@ -1,0 +1,1 @@
+#include "solver/lumped_bar_suite.hpp"

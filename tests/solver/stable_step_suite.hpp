@@ -1,0 +1,87 @@
+#pragma once
+
+#include "support/assembly.hpp"
+#include "support/formulations.hpp"
+
+namespace pliant::test {
+
+/// 2/ω of the highest frequency of the body as it is.
+template <class TheBody>
+double true_limit(TheBody& body) {
+  std::vector<DirectionMask> held(static_cast<std::size_t>(body.nodes()), 0);
+  for (auto const& condition : body.conditions())
+    for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
+  auto const squares =
+      squared_frequencies(body, body.displacements(),
+                          [&](std::size_t node, std::size_t k) { return !(held[node] >> k & 1); });
+  return 2 / std::sqrt(squares.maxCoeff());
+}
+
+TEST_CASE("the stable step is below the true limit and not far", "[solver]") {
+  on_each_formulation<DoubleBackends>([]<class B, class F>(Case<B, F>) {
+    using E = typename F::element;
+    int const n = F::dim == 2 ? 5 : 3;
+    for (unsigned seed = 1; seed <= 2; ++seed) {
+      auto const mesh = distorted_mesh<E>(n, seed);
+      auto body = body_of<F>(B{}, mesh);
+      for (double strain : {0.0, 0.15}) {
+        INFO("seed " << seed << ", strain " << strain);
+        Random random(seed);
+        body.set_displacements(uniform(mesh.nodes, random.tensor<F::dim>(strain)));
+
+        double const bound = stable_step(body), limit = true_limit(body);
+
+        CHECK(bound <= limit);
+        CHECK(bound > 0.4 * limit);
+      }
+    }
+  });
+}
+
+TEST_CASE("the stable step holds for clamped, stretched and mixed meshes", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+    {
+      auto mesh = distorted_mesh<Quad4>(5);
+      for (auto& x : mesh.nodes) x[0] = x[0] * x[0] * 3 + x[0];  // graded
+      auto body = body_of<Rubber>(backend, mesh);
+      body.clamp(mesh.boundary("left"));
+      body.hold(mesh.boundary("top"), 2);
+
+      double const bound = stable_step(body), limit = true_limit(body);
+
+      CHECK(bound <= limit);
+      CHECK(bound > 0.4 * limit);
+    }
+    {
+      auto const mesh = mixed_mesh(5);
+      Body body{backend,
+                mesh,
+                soft,
+                Group<Rubber>{},
+                Group<Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>>{},
+                Group<Formulation<Quad4, Gauss<2>, Hooke>>{Hooke<double>{300, 200}}};
+      double const bound_before = stable_step(body);
+      body.template assign<Formulation<Quad4, Gauss<2>, Hooke>>({0, 3});
+
+      double const bound = stable_step(body), limit = true_limit(body);
+
+      CHECK(bound <= limit);
+      CHECK(bound > 0.4 * limit);
+      CHECK(bound < 0.2 * bound_before);  // a hundred times as stiff
+    }
+  });
+}
+
+TEST_CASE("the stable step is the same in single precision", "[solver]") {
+  on_each_backend<Backends<float>>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Hex8>(3);
+    using F = Formulation<Hex8, Gauss<2>, NeoHookean>;
+    auto body = body_of<F>(backend, mesh);
+    auto exact = body_of<F>(Reference<double>{}, mesh);
+
+    CHECK(stable_step(body) == Approx(stable_step(exact)).epsilon(1e-5));
+  });
+}
+
+}  // namespace pliant::test

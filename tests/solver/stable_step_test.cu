@@ -1,0 +1,1 @@
+#include "solver/stable_step_suite.hpp"

@@ -1,0 +1,1 @@
+#include "solver/trajectory_suite.hpp"
