@@ -11,7 +11,9 @@
 
 namespace pliant {
 
-inline constexpr struct Version { int major = 0, minor = 1, patch = 0; } version{};
+inline constexpr struct Version {
+  int major = 0, minor = 1, patch = 0;
+} version{};
 
 /// Numbers nodes and elements.
 using Index = std::int32_t;

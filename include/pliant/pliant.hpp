@@ -7,10 +7,11 @@
 #include <pliant/adaptation/criterion/deformation.hpp>
 #include <pliant/adaptation/criterion/force_intensity.hpp>
 #include <pliant/adaptation/criterion/shape.hpp>
-#include <pliant/body/ledger.hpp>
+#include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/body.hpp>
+#include <pliant/body/ledger.hpp>
 #include <pliant/config.hpp>
 #include <pliant/element/simplex.hpp>
 #include <pliant/element/tensor.hpp>

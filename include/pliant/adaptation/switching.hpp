@@ -10,9 +10,7 @@
 namespace pliant::detail {
 
 template <class Rule>
-concept Switches = requires {
-  typename Rule::to;
-};
+concept Switches = requires { typename Rule::to; };
 template <class Rule, class Table>
 concept On = std::same_as<typename Rule::from::element, typename Table::element>;
 

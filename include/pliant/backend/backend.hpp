@@ -55,12 +55,12 @@ inline constexpr Tag no_group = 255;
 /// An owning array in a backend's memory.
 template <class A, class U>
 concept BackendArray = std::constructible_from<A, std::size_t> && std::movable<A> &&
-    requires(A a, A const& c, std::span<U const> in, std::span<U> out) {
-  { a.data() } -> std::same_as<U*>;
-  { c.size() } -> std::convertible_to<std::size_t>;
-  a.upload(in);
-  c.download(out);
-};
+                       requires(A a, A const& c, std::span<U const> in, std::span<U> out) {
+                         { a.data() } -> std::same_as<U*>;
+                         { c.size() } -> std::convertible_to<std::size_t>;
+                         a.upload(in);
+                         c.download(out);
+                       };
 
 namespace detail {
 struct NodeProbe {
@@ -71,17 +71,18 @@ struct NodeProbe {
 
 /// Where arrays live and loops run.
 template <class B>
-concept Backend = std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
-                  BackendArray < typename B::template Array<typename B::scalar>,
-typename B::scalar > &&requires(B const& b, Index n, detail::NodeProbe f) {
-  b.for_each(n, f);
-  { b.sum(n, f) } -> std::same_as<double>;
-  { b.maximum(n, f) } -> std::same_as<double>;
-  { b.record(f) } -> std::same_as<typename B::Recording>;
-  b.synchronize();
-  { B::name() } -> std::convertible_to<char const*>;
-  typename B::template Elements<4>;
-};
+concept Backend =
+    std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
+    BackendArray<typename B::template Array<typename B::scalar>, typename B::scalar> &&
+    requires(B const& b, Index n, detail::NodeProbe f) {
+      b.for_each(n, f);
+      { b.sum(n, f) } -> std::same_as<double>;
+      { b.maximum(n, f) } -> std::same_as<double>;
+      { b.record(f) } -> std::same_as<typename B::Recording>;
+      b.synchronize();
+      { B::name() } -> std::convertible_to<char const*>;
+      typename B::template Elements<4>;
+    };
 
 /// The array with the values of a vector.
 template <Backend B, class U>

@@ -232,4 +232,7 @@ Body(B, M, Elastic, Gs...) -> Body<B, M, typename Gs::formulation...>;
 
 }  // namespace pliant
 
-#include <pliant/body/body_members.hpp>
+#include <pliant/body/conditions_of_body.hpp>
+#include <pliant/body/embedding_of_body.hpp>
+#include <pliant/body/motion_of_body.hpp>
+#include <pliant/body/state_of_body.hpp>

@@ -53,8 +53,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     Index scratch = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       (make_table<I>(backend, numbering, material, groups, tags[I], scratch), ...);
-    }
-    (std::index_sequence_for<Es...>());
+    }(std::index_sequence_for<Es...>());
 
     auto const padded = static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes);
     upload_rest();
@@ -128,8 +127,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
             std::get<Group<typename TableType::template formulation<G>>>(groups).law_for(
                 material))),
        ...);
-    }
-    (std::make_integer_sequence<int, TableType::groups>());
+    }(std::make_integer_sequence<int, TableType::groups>());
   }
 
   /// Positions relative to the middle of the body: single precision keeps its digits.

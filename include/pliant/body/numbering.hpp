@@ -18,8 +18,9 @@ struct Numbering {
 
   explicit Numbering(Mesh<Es...> const& mesh) : internal_node(mesh.nodes.size(), -1) {
     user_node.reserve(mesh.nodes.size());
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (number<I, Es>(mesh), ...); }
-    (std::index_sequence_for<Es...>());
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (number<I, Es>(mesh), ...);
+    }(std::index_sequence_for<Es...>());
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)  // nodes of no element come last
       if (internal_node[i] < 0) take(static_cast<Index>(i));
   }

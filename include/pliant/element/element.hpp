@@ -28,7 +28,7 @@ concept Element = requires(Vector<double, E::dim> const& xi) {
   requires E::cell::dim == E::dim;
   { E::shape(xi) } -> std::same_as<Vector<double, E::nodes>>;
   { E::gradient(xi) } -> std::same_as<Matrix<double, E::nodes, E::dim>>;
-  {E::sides()};  // node numbers of each side, outward (counter-clockwise seen from outside)
+  { E::sides() };  // node numbers of each side, outward (counter-clockwise seen from outside)
   { E::name() } -> std::convertible_to<char const*>;
 };
 

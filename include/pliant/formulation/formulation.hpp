@@ -9,7 +9,7 @@ namespace pliant {
 /// Element × quadrature × law: the thing that has forces. A type only; the parameters of the law
 /// live in the group.
 template <Element E, class Q, template <class> class L>
-requires QuadratureOn<Q, typename E::cell> && Law<L<double>>
+  requires QuadratureOn<Q, typename E::cell> && Law<L<double>>
 struct Formulation {
   using element = E;
   using quadrature = Q;

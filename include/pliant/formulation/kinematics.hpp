@@ -56,7 +56,7 @@ struct RestMap {
     Tensor<S, E::dim> const c = cofactor(j);
     S det = j(0, 0) * c(0, 0);
     for (int k = 1; k < E::dim; ++k) det = det + j(0, k) * c(0, k);
-    return {c, det, S(1) / det};
+    return {c, det, reciprocal(det)};
   }
 
   /// ∂v/∂X from ∂v/∂ξ.

@@ -35,7 +35,7 @@ concept EnergyInGradient = requires(L const& law, Tensor<Dual<double, 1>, 3> con
 /// A strain energy density and its parameters.
 template <class L>
 concept Law = EnergyIn<L, StrainInvariants> || EnergyIn<L, CauchyGreenInvariants> ||
-    EnergyIn<L, GreenInvariants> || EnergyInGradient<L>;
+              EnergyIn<L, GreenInvariants> || EnergyInGradient<L>;
 
 /// A law whose parameters follow from an `Elastic`.
 template <class L>

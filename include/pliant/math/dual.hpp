@@ -15,8 +15,8 @@ struct Dual {
 
   /// A constant: its derivatives are zero.
   template <class C>
-  requires std::constructible_from<T, C const&> PLIANT_HOST_DEVICE Dual(C const& constant)
-      : value(static_cast<T>(constant)) {}
+    requires std::constructible_from<T, C const&>
+  PLIANT_HOST_DEVICE Dual(C const& constant) : value(static_cast<T>(constant)) {}
 
   /// The variable number `direction`.
   PLIANT_HOST_DEVICE static Dual variable(T const& value, int direction) {

@@ -48,6 +48,19 @@ template <class T>
 PLIANT_HOST_DEVICE T min(T const& a, T const& b) {
   return select(b < a, b, a);
 }
+/// 1 / x. Single precision on a GPU: to the last bit or its neighbour, without the branch that an
+/// exact division takes for the sake of numbers below 1e-38.
+template <class T>
+PLIANT_HOST_DEVICE T reciprocal(T const& x) {
+#if defined(__CUDA_ARCH__)
+  if constexpr (std::same_as<T, float>) {
+    float y;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+    return y;
+  }
+#endif
+  return T(1) / x;
+}
 template <class T>
 PLIANT_HOST_DEVICE T square(T const& x) {
   return x * x;

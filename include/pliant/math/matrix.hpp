@@ -12,8 +12,14 @@ struct Matrix {
 
   PLIANT_HOST_DEVICE constexpr T& operator()(int i, int j) { return entries[i][j]; }
   PLIANT_HOST_DEVICE constexpr T const& operator()(int i, int j) const { return entries[i][j]; }
-  PLIANT_HOST_DEVICE constexpr T& operator[](int i) requires(Columns == 1) { return entries[i][0]; }
-  PLIANT_HOST_DEVICE constexpr T const& operator[](int i) const requires(Columns == 1) {
+  PLIANT_HOST_DEVICE constexpr T& operator[](int i)
+    requires(Columns == 1)
+  {
+    return entries[i][0];
+  }
+  PLIANT_HOST_DEVICE constexpr T const& operator[](int i) const
+    requires(Columns == 1)
+  {
     return entries[i][0];
   }
 
@@ -52,8 +58,8 @@ PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator-(Matrix<T, R, C> a,
   return a;
 }
 template <class S, class T, int R, int C>
-requires std::constructible_from<T, S const&> PLIANT_HOST_DEVICE constexpr Matrix<T, R, C>
-operator*(S const& s, Matrix<T, R, C> a) {
+  requires std::constructible_from<T, S const&>
+PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator*(S const& s, Matrix<T, R, C> a) {
   for (int i = 0; i < R; ++i)
     for (int j = 0; j < C; ++j) a(i, j) = s * a(i, j);
   return a;

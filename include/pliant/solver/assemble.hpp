@@ -75,8 +75,7 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
           std::tuple{body.template law_of<typename Table::template formulation<G>>()...};
       for (std::size_t e = 0; e < elements.size(); ++e)
         (void)((tags[e] == G ? (add(GroupNumber<G>{}, e, std::get<G>(laws)), true) : false) || ...);
-    }
-    (std::make_integer_sequence<int, Table::groups>());
+    }(std::make_integer_sequence<int, Table::groups>());
   });
   if (what == Assemble::stiffness_too) {
     sum.stiffness.resize(size, size);

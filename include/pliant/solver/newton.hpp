@@ -16,6 +16,7 @@ struct NewtonOptions {
 };
 
 struct NewtonReport {
+  Index unknowns = 0;
   int iterations = 0;   // in all
   double residual = 0;  // N, the last
   double energy = 0;    // strain energy, J
@@ -129,7 +130,7 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
   Problem const problem(body);
   Eigen::VectorXd const from = problem.start();
   Eigen::VectorXd u = from;
-  NewtonReport report;
+  NewtonReport report{.unknowns = problem.unknowns()};
 
   for (int step = 1; step <= options.load_steps; ++step) {
     double const share = static_cast<double>(step) / options.load_steps;

@@ -1,0 +1,9 @@
+#include <pliant/cuda.hpp>
+
+#include "bending_beam/bending_beam.hpp"
+
+int main(int argc, char** argv) {
+  return scene::main(
+      argc, argv, "A beam bends and its elements change law, on a GPU",
+      [](scene::Options const& options) { bending_beam::run(pliant::Cuda<double>{}, options); });
+}

@@ -1,0 +1,172 @@
+#pragma once
+
+#include <pliant/body/body.hpp>
+
+// Members of Body: its groups, and what holds and pulls it.
+namespace pliant {
+
+template <Backend B, class M, class... Fs>
+template <Element E>
+std::vector<Tag> Body<B, M, Fs...>::groups_of() const {
+  auto const& table = layout_.template table<E>();
+  auto const internal = download<Tag>(table.elements.tags());
+  std::vector<Tag> tags(internal.size());
+  for (std::size_t e = 0; e < tags.size(); ++e)
+    tags[static_cast<std::size_t>(table.user_element[e])] = internal[e];
+  return tags;
+}
+
+template <Backend B, class M, class... Fs>
+template <class F>
+void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
+  using E = typename F::element;
+  auto& table = layout_.template table<E>();
+  constexpr int group = std::remove_reference_t<decltype(table)>::template group_of<F>;
+  static_assert(group < std::remove_reference_t<decltype(table)>::groups,
+                "assign<F>: this body has no Group<F>");
+  std::vector<Tag> user = groups_of<E>();
+  for (Index e : elements) {
+    if (e < 0 || e >= table.count())
+      throw Error("body.assign: there is no " + std::string(E::name()) + " element " +
+                  std::to_string(e) + "; they are numbered 0 to " +
+                  std::to_string(table.count() - 1));
+    user[static_cast<std::size_t>(e)] = static_cast<Tag>(group);
+  }
+  synchronize_velocities();
+  std::vector<Tag> internal(user.size());
+  for (std::size_t e = 0; e < user.size(); ++e)
+    internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
+  table.elements.tags().upload(internal);
+  table.elements.regroup();
+  forget_forces();
+}
+
+namespace detail {
+template <int Dim>
+Point<Dim> position_at(Condition<Dim> const& condition, double time) {
+  Point<Dim> const u = condition.motion(time);
+  for (double x : u)
+    if (!std::isfinite(x))
+      throw Error("body.drive: the motion of node " +
+                  (condition.nodes.empty() ? "(none)" : std::to_string(condition.nodes[0])) +
+                  " is " + text<Dim>(u) + " at time " + std::to_string(time) +
+                  " s; it must be finite");
+  return u;
+}
+}  // namespace detail
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
+  for (Index node : condition.nodes)
+    if (node < 0 || node >= nodes())
+      throw Error("body: a condition names node " + std::to_string(node) +
+                  ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
+  if (history_.tree && !condition.facets.empty())
+    throw Error(
+        "body: a condition on facets comes after a refinement, and would not be inherited; hold "
+        "facets before the first refinement, or nodes");
+  if (condition.motion) (void)detail::position_at(condition, time_);
+  synchronize_velocities();
+  conditions_.push_back(std::move(condition));
+  upload_conditions();
+  stop_held();
+  prescribe(time_, 0);
+  forget_forces();
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::stop_held() {
+  Field const v{layout_.v.data()};
+  backend_.for_each(nodes(), StopHeld<T, dim>{v, layout_.held.data()});
+  layout_.slaves.interpolate(backend_, v);
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::upload_conditions() {
+  std::vector<DirectionMask> held(static_cast<std::size_t>(nodes()), 0);
+  motions_.clear();
+  for (std::size_t c = 0; c < conditions_.size(); ++c) {
+    std::vector<Index> internal;
+    for (Index node : conditions_[c].nodes) {
+      internal.push_back(layout_.internal_of(node));
+      held[static_cast<std::size_t>(internal.back())] |= conditions_[c].directions;
+    }
+    if (conditions_[c].motion) motions_.push_back({upload(backend_, internal), c});
+  }
+  layout_.held.upload(held);
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
+bool Body<B, M, Fs...>::has_motions() const {
+  return !motions_.empty();
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::prescribe(double time, double over) {
+  for (auto const& [list, index] : motions_) {
+    Condition<dim> const& condition = conditions_[index];
+    Point<dim> const to = detail::position_at(condition, time);
+    Point<dim> const from = over > 0 ? detail::position_at(condition, time - over) : to;
+    Vector<T, dim> displacement, velocity;
+    for (int k = 0; k < dim; ++k) {
+      auto const i = static_cast<std::size_t>(k);
+      displacement[k] = static_cast<T>(to[i]);
+      velocity[k] = over > 0 ? static_cast<T>((to[i] - from[i]) / over) : T(0);
+    }
+    backend_.for_each(static_cast<Index>(list.size()), Prescribe<T, dim>{displacement_field(),
+                                                                         {layout_.v.data()},
+                                                                         list.data(),
+                                                                         condition.directions,
+                                                                         displacement,
+                                                                         velocity});
+  }
+  if (!motions_.empty()) layout_.slaves.interpolate(backend_, displacement_field());
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::set_gravity(Point<dim> const& g) {
+  for (double x : g)
+    if (!std::isfinite(x))
+      throw Error("body.set_gravity: " + detail::text<dim>(g) + " is not finite");
+  synchronize_velocities();
+  gravity_ = g;
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::set_damping(double per_mass) {
+  if (!(per_mass >= 0 && std::isfinite(per_mass)))
+    throw Error("body.set_damping: " + std::to_string(per_mass) +
+                " 1/s; give a finite number that is not negative");
+  synchronize_velocities();
+  damping_ = per_mass;
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::set_load(Index node, Point<dim> const& force) {
+  if (node < 0 || node >= nodes())
+    throw Error("body.set_load: there is no node " + std::to_string(node) +
+                "; nodes are numbered 0 to " + std::to_string(nodes() - 1));
+  for (double x : force)
+    if (!std::isfinite(x))
+      throw Error("body.set_load: the force at node " + std::to_string(node) + " is not finite");
+  synchronize_velocities();
+  if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
+  loads_[static_cast<std::size_t>(node)] = force;
+  layout_.load = upload(backend_, layout_.padded(loads_));
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
+auto Body<B, M, Fs...>::external_forces() const -> ExternalForces<T, dim> {
+  ExternalForces<T, dim> external;
+  for (int k = 0; k < dim; ++k)
+    external.gravity[k] = static_cast<T>(gravity_[static_cast<std::size_t>(k)]);
+  external.damping = static_cast<T>(damping_);
+  external.load = layout_.load.size() > 0 ? layout_.load.data() : nullptr;
+  return external;
+}
+
+}  // namespace pliant
