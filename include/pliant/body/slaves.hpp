@@ -7,6 +7,22 @@
 
 namespace pliant {
 
+namespace detail {
+/// One row of an interpolation: sets a node to, or adds to it, a weighted sum over others.
+template <class T, int C, bool Add>
+struct WeightedRow {
+  NodeField<T, C> field;
+  Index const *node, *first, *other;
+  T const* weight;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto sum = Vector<T, C>::zero();
+    if constexpr (Add) sum = field.at(node[k]);
+    for (Index j = first[k]; j < first[k + 1]; ++j) sum = sum + weight[j] * field.at(other[j]);
+    field.set(node[k], sum);
+  }
+};
+}  // namespace detail
+
 /// The hanging nodes of a body: compressed rows in both directions, so that values are interpolated
 /// from masters to slaves, and forces handed from slaves to masters, without two writers of a node.
 template <Backend B>
@@ -36,18 +52,6 @@ class Slaves {
     std::vector<Index> node, first{0}, other;
     std::vector<T> weight;
   };
-  template <int C, bool Add>
-  struct Apply {
-    NodeField<T, C> field;
-    Index const *node, *first, *other;
-    T const* weight;
-    PLIANT_HOST_DEVICE void operator()(Index k) const {
-      auto sum = Vector<T, C>::zero();
-      if constexpr (Add) sum = field.at(node[k]);
-      for (Index j = first[k]; j < first[k + 1]; ++j) sum = sum + weight[j] * field.at(other[j]);
-      field.set(node[k], sum);
-    }
-  };
   struct Rows {
     Index count = 0;
     typename B::template Array<Index> node, first, other;
@@ -60,7 +64,7 @@ class Slaves {
           other(upload(backend, rows.other)),
           weight(upload(backend, rows.weight)) {}
     template <int C, bool Add>
-    Apply<C, Add> apply(NodeField<T, C> field) const {
+    detail::WeightedRow<T, C, Add> apply(NodeField<T, C> field) const {
       return {field, node.data(), first.data(), other.data(), weight.data()};
     }
   };
