@@ -169,7 +169,10 @@ class Body {
   void checkpoint();
   /// Goes back to the last checkpoint; false where there is none of the present mesh.
   bool restore();
+  /// Negative where there is none: at first, and after its user changed the body's state.
   long checkpoint_step() const { return checkpoint_ ? checkpoint_->steps : -1; }
+  /// What changes of gravity and loads have added to the potential energy so far, J.
+  double energy_of_new_loads() const { return energy_of_new_loads_; }
   void add_refinement(LedgerEntry<dim> entry) { history_.refinements.push_back(std::move(entry)); }
 
  private:
@@ -186,6 +189,8 @@ class Body {
   void add_condition(Condition<dim> condition);
   void upload_conditions();
   void stop_held();
+  template <class Change>
+  void change_loads(Change const& change);
   double energy_at(typename B::template Array<T> const& u) const;
   void accumulate_forces(ConstField u, Field f) const;
   void clear(Field field, Index rows) const { backend_.for_each(rows, Clear<T>{field.data}); }
@@ -217,7 +222,7 @@ class Body {
   std::vector<ListedCondition> motions_;
   std::vector<Point<dim>> loads_;
   Point<dim> gravity_{};
-  double damping_ = 0, time_ = 0, owed_ = 0;
+  double damping_ = 0, time_ = 0, owed_ = 0, energy_of_new_loads_ = 0;
   long steps_ = 0, revision_ = 0;
   bool forces_current_ = false;
   History<dim> history_;

@@ -38,6 +38,7 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
     internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
   table.elements.tags().upload(internal);
   table.elements.regroup();
+  checkpoint_.reset();
   forget_forces();
 }
 
@@ -71,6 +72,7 @@ void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
   upload_conditions();
   stop_held();
   prescribe(time_, 0);
+  checkpoint_.reset();
   forget_forces();
 }
 
@@ -125,13 +127,22 @@ void Body<B, M, Fs...>::prescribe(double time, double over) {
 }
 
 template <Backend B, class M, class... Fs>
+template <class Change>
+void Body<B, M, Fs...>::change_loads(Change const& change) {
+  synchronize_velocities();
+  double const before = potential_energy();
+  change();
+  double const added = potential_energy() - before;
+  if (std::isfinite(added)) energy_of_new_loads_ += added;
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_gravity(Point<dim> const& g) {
   for (double x : g)
     if (!std::isfinite(x))
       throw Error("body.set_gravity: " + detail::text<dim>(g) + " is not finite");
-  synchronize_velocities();
-  gravity_ = g;
-  ++revision_;
+  change_loads([&] { gravity_ = g; });
 }
 
 template <Backend B, class M, class... Fs>
@@ -152,11 +163,11 @@ void Body<B, M, Fs...>::set_load(Index node, Point<dim> const& force) {
   for (double x : force)
     if (!std::isfinite(x))
       throw Error("body.set_load: the force at node " + std::to_string(node) + " is not finite");
-  synchronize_velocities();
-  if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
-  loads_[static_cast<std::size_t>(node)] = force;
-  layout_.load = upload(backend_, layout_.padded(loads_));
-  ++revision_;
+  change_loads([&] {
+    if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
+    loads_[static_cast<std::size_t>(node)] = force;
+    layout_.load = upload(backend_, layout_.padded(loads_));
+  });
 }
 
 template <Backend B, class M, class... Fs>

@@ -73,14 +73,14 @@ void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> 
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::step(double dt, int steps) {
-  if (steps > 0 && (owed_ != dt / 2 || has_motions() || forces_current_)) {  // not like the others
+  // Steps that are not like the others.
+  for (; steps > 0 && (owed_ != dt / 2 || has_motions() || forces_current_); --steps) {
     evaluate_forces();
     advance(owed_, dt / 2, dt);
     owed_ = dt / 2;
     time_ += dt;
     ++steps_;
     prescribe(time_, dt);
-    return step(dt, steps - 1);
   }
   if (steps == 0) return;
   if (!recorded_ || recorded_->body != this || recorded_->dt != dt ||

@@ -26,6 +26,7 @@ void Body<B, M, Fs...>::set_displacements(std::vector<Point<dim>> const& u) {
   synchronize_velocities();
   layout_.u.upload(layout_.padded(u));
   layout_.slaves.interpolate(backend_, displacement_field());
+  checkpoint_.reset();
   forget_forces();
 }
 
@@ -35,6 +36,7 @@ void Body<B, M, Fs...>::set_velocities(std::vector<Point<dim>> const& v) {
   owed_ = 0;
   layout_.v.upload(layout_.padded(v));
   stop_held();
+  checkpoint_.reset();
 }
 
 template <Backend B, class M, class... Fs>

@@ -27,11 +27,12 @@ struct CentralDifferenceOptions {
 class CentralDifference {
  public:
   explicit CentralDifference(CentralDifferenceOptions options = {}) : options_(options) {
-    if (!(options.safety > 0 && options.safety <= 1) || !(options.step >= 0) ||
-        options.check_interval < 1 || options.refresh_interval < 1)
+    if (!(options.safety > 0 && options.safety <= 1) ||
+        !(options.step >= 0 && std::isfinite(options.step)) || options.check_interval < 1 ||
+        options.refresh_interval < 1 || !(options.energy_growth >= 0))
       throw Error(
-          "CentralDifference: safety must be in (0, 1], step not negative, and intervals at least "
-          "1");
+          "CentralDifference: safety must be in (0, 1], step and energy_growth not negative, and "
+          "intervals at least 1");
   }
 
   /// The size of the last step, s.
@@ -44,7 +45,8 @@ class CentralDifference {
   void operator()(TheBody& body, int steps = 1) {
     long const goal = body.steps() + steps;
     while (body.steps() < goal) {
-      if (checked_nodes_ != body.nodes()) begin(body);
+      if (body_ != &body || checked_nodes_ != body.nodes() || body.checkpoint_step() < 0)
+        begin(body);
       if (body.steps() >= next_check_) check(body);
       if (body.steps() >= next_refresh_) refresh(body);
       body.step(step_,
@@ -53,9 +55,10 @@ class CentralDifference {
   }
 
  private:
-  /// A body, or a mesh, that was not seen before.
+  /// A body, a mesh, or a state that was not seen before.
   template <class TheBody>
   void begin(TheBody& body) {
+    body_ = &body;
     checked_nodes_ = body.nodes();
     next_check_ = next_refresh_ = body.steps();
     energy_ = std::numeric_limits<double>::infinity();
@@ -67,10 +70,16 @@ class CentralDifference {
     next_refresh_ = body.steps() + options_.refresh_interval;
   }
 
+  /// The energy that only time integration changes.
+  template <class TheBody>
+  static double energy_of(TheBody& body) {
+    return body.total_energy() - adaptation_energy(body) - body.energy_of_new_loads();
+  }
+
   template <class TheBody>
   void check(TheBody& body) {
     double const strain = body.strain_energy(), kinetic = body.kinetic_energy();
-    double const energy = strain + kinetic + body.potential_energy() - adaptation_energy(body);
+    double const energy = energy_of(body);
     bool const grew =
         !body.has_motions() && energy > energy_ + options_.energy_growth * (strain + kinetic);
     if (std::isfinite(energy) && !grew) {
@@ -89,6 +98,7 @@ class CentralDifference {
       throw Error(what + ", with an eighth of the step too (" + std::to_string(step_) +
                   " s); it is now at time " + std::to_string(body.time()) +
                   " s, before that: look at its loads, and at laws that soften or cannot invert");
+    energy_ = energy_of(body);  // loads may have changed since the checkpoint
     slower_ *= 2;
     ++retries_;
     next_check_ = body.steps() + options_.check_interval;
@@ -99,6 +109,7 @@ class CentralDifference {
   double step_ = 0, slower_ = 1, energy_ = 0;
   long next_check_ = 0, next_refresh_ = 0;
   int retries_ = 0;
+  void const* body_ = nullptr;
   Index checked_nodes_ = -1;
 };
 

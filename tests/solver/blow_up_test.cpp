@@ -1,0 +1,1 @@
+#include "solver/blow_up_suite.hpp"
