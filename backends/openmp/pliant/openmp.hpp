@@ -148,8 +148,7 @@ class OpenMP {
   static void for_each_pack(Elements<Nodes> const& elements, Index patch, F const& f) {
     [&]<int... G>(std::integer_sequence<int, G...>) {
       (for_each_pack_of<G>(elements, patch, f), ...);
-    }
-    (std::make_integer_sequence<int, Groups>());
+    }(std::make_integer_sequence<int, Groups>());
   }
   template <int Group, int Nodes, class F>
   static void for_each_pack_of(Elements<Nodes> const& elements, Index patch, F const& f) {

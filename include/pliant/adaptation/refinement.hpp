@@ -138,7 +138,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
     ++which;
   });
   auto const& capacity = body.history().capacity;
-  Refinement const done = after->refine(cells, {capacity.nodes, capacity.elements, max_level});
+  RefinementLimits const limits{capacity.nodes, capacity.elements, max_level};
+  Refinement const done = after->refine(cells, limits);
   if (done.parents.empty()) return {};
 
   // State on the new nodes.

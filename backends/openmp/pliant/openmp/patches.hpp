@@ -27,13 +27,15 @@ class Patches {
         connectivity_(connectivity.size() * Nodes),
         target_(connectivity.size() * Nodes),
         tags_(tags.size()),
+        ordered_tags_(tags.size()),
         order_(connectivity.size()) {
     tags_.upload(tags);
     for (std::size_t e = 0; e < connectivity.size(); ++e)
       std::ranges::copy(connectivity[e], connectivity_.data() + e * Nodes);
     assign_targets(nodes);
     bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
-    regroup();
+    std::ranges::copy(tags, ordered_tags_.data());
+    for (Index p = 0; p < patch_count(); ++p) order(p);
   }
 
   Index count() const { return static_cast<Index>(order_.size()); }
@@ -67,11 +69,22 @@ class Patches {
             {fold_rows_.data() + fold_first_[i], fold_rows_.data() + fold_first_[i + 1]}};
   }
 
-  /// Orders the elements of each patch by group, stably.
+  /// Orders the elements of each patch by group, stably; patches whose tags did not change keep their
+  /// order without a look.
   void regroup() {
-    for (Index p = 0; p < patch_count(); ++p) regroup(p);
+    for (Index p = 0; p < patch_count(); ++p) {
+      auto const first = static_cast<std::size_t>(p * patch_size);
+      auto const size = std::min(tags_.size() - first, static_cast<std::size_t>(patch_size));
+      if (std::equal(tags_.data() + first, tags_.data() + first + size,
+                     ordered_tags_.data() + first))
+        continue;
+      std::copy_n(tags_.data() + first, size, ordered_tags_.data() + first);
+      order(p);
+    }
   }
-  void regroup(Index patch) {
+
+ private:
+  void order(Index patch) {
     Index const first = patch * patch_size, last = std::min(count(), first + patch_size);
     Index* next = order_.data() + first;
     auto bound = bounds_.begin() + patch * (groups_ + 1);
@@ -83,7 +96,6 @@ class Patches {
     *bound = static_cast<Index>(next - order_.data());
   }
 
- private:
   void assign_targets(Index nodes) {
     std::vector<Index> owner(static_cast<std::size_t>(nodes), -1);
     std::vector<Index> row(static_cast<std::size_t>(nodes), -1);  // in the current patch
@@ -121,9 +133,9 @@ class Patches {
 
   int groups_ = 1;
   HostArray<Index> connectivity_, target_;  // (elements, Nodes)
-  HostArray<Tag> tags_;
-  HostArray<Index> order_;     // elements, ordered by group inside each patch
-  std::vector<Index> bounds_;  // (patches, groups + 1)
+  HostArray<Tag> tags_, ordered_tags_;      // as they are, and as the order knows them
+  HostArray<Index> order_;                  // elements, ordered by group inside each patch
+  std::vector<Index> bounds_;               // (patches, groups + 1)
   Index scratch_nodes_ = 0;
   std::vector<Index> scratch_first_;                    // (patches + 1)
   std::vector<Index> folded_, fold_first_, fold_rows_;  // compressed rows

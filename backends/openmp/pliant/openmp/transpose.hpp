@@ -101,8 +101,9 @@ PLIANT_HOST_DEVICE void scatter_add_nodes(T* data, Index const (&index)[L], int 
       __builtin_memcpy(address, &node, sizeof(node));
     }
   };
-  [&]<int... B>(std::integer_sequence<int, B...>) { (add(std::integral_constant<int, B>()), ...); }
-  (std::make_integer_sequence<int, L / 4>());
+  [&]<int... B>(std::integer_sequence<int, B...>) {
+    (add(std::integral_constant<int, B>()), ...);
+  }(std::make_integer_sequence<int, L / 4>());
 }
 
 }  // namespace pliant::detail
