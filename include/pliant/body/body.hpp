@@ -117,7 +117,7 @@ class Body {
   /// Brings `layout().f` up to date.
   void evaluate_forces();
   /// Call after a change of displacements or groups.
-  void forget_forces() { forces_current_ = false; }
+  void forget_forces();
   /// Velocities and displacements go forward: see Advance. Leaves a half kick of `open` owed.
   void advance(double lag, double kick, double drift);
   void owe(double half_kick) { owed_ = half_kick; }
@@ -224,7 +224,7 @@ class Body {
   Point<dim> gravity_{};
   double damping_ = 0, time_ = 0, owed_ = 0, energy_of_new_loads_ = 0;
   long steps_ = 0, revision_ = 0;
-  bool forces_current_ = false;
+  bool forces_current_ = false;  // while they are not, the nodes' rows of layout().f are zero
   History<dim> history_;
   std::optional<Scratch> scratch_;
   std::optional<Checkpoint> checkpoint_;

@@ -17,19 +17,20 @@ struct ExternalForces {
 /// Brings velocities and displacements forward:
 ///   v ← (v + lag a)/(1 + damping lag)       the half kick that the last step left open
 ///   v ← v (1 − damping kick) + kick a       the first half kick of this step
-///   u ← u + drift v
+///   u ← u + drift v                         and the forces of the old u are cleared
 /// Both half kicks together are central differences with centred mass damping, whose stable step is
 /// that without damping. Directions that are held keep u and have v = 0.
 template <class T, int Dim>
 struct Advance {
-  NodeField<T, Dim> u, v;
-  NodeField<T const, Dim> f;
+  NodeField<T, Dim> u, v, f;
   T const* mass;
   DirectionMask const* held;
   ExternalForces<T, Dim> external;
   T lag, kick, drift;  // s
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    auto const force = f.at(i);
+    if (drift != T(0)) f.set(i, Vector<T, Dim>::zero());
     T const m = mass[i];
     if (!(m > T(0))) return;  // slaves follow their masters; nodes of no element rest
     DirectionMask const mask = held[i];
@@ -37,7 +38,7 @@ struct Advance {
     T const release = T(1) / (T(1) + external.damping * lag);
     for (int k = 0; k < Dim; ++k) {
       if (mask >> k & 1) continue;
-      T a = f(i, k) * inverse_mass + external.gravity[k];
+      T a = force[k] * inverse_mass + external.gravity[k];
       if (external.load)
         a += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k] * inverse_mass;
       T speed = (v(i, k) + lag * a) * release;

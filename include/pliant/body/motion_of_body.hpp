@@ -16,11 +16,16 @@ void Body<B, M, Fs...>::accumulate_forces(ConstField u, Field f) const {
 }
 
 template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::forget_forces() {
+  if (!forces_current_) return;
+  clear(Field{layout_.f.data()}, nodes());
+  forces_current_ = false;
+}
+
+template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::evaluate_forces() {
   if (forces_current_) return;
-  Field const f{layout_.f.data()};
-  clear(f, nodes());
-  accumulate_forces(std::as_const(*this).displacement_field(), f);
+  accumulate_forces(std::as_const(*this).displacement_field(), Field{layout_.f.data()});
   forces_current_ = true;
 }
 
@@ -39,7 +44,7 @@ void Body<B, M, Fs...>::advance(double lag, double kick, double drift) {
   layout_.slaves.interpolate(backend_, v);
   if (drift != 0) {
     layout_.slaves.interpolate(backend_, u);
-    forget_forces();
+    forces_current_ = false;
   }
 }
 
@@ -68,7 +73,7 @@ void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> 
   checkpoint_.reset();
   recorded_.reset();
   owed_ = 0;
-  forget_forces();
+  forces_current_ = false;  // those of the new layout are zero
 }
 
 template <Backend B, class M, class... Fs>
@@ -86,9 +91,8 @@ void Body<B, M, Fs...>::step(double dt, int steps) {
   if (!recorded_ || recorded_->body != this || recorded_->dt != dt ||
       recorded_->revision != revision_)
     recorded_ = RecordedStep{backend_.record([this, dt] {
-                               Field const f{layout_.f.data()};
-                               clear(f, nodes());
-                               accumulate_forces(std::as_const(*this).displacement_field(), f);
+                               accumulate_forces(std::as_const(*this).displacement_field(),
+                                                 Field{layout_.f.data()});
                                advance(dt / 2, dt / 2, dt);
                              }),
                              this, dt, revision_};
