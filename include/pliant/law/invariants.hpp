@@ -53,9 +53,8 @@ struct CauchyGreenInvariants {
 
   template <int Dim>
   PLIANT_HOST_DEVICE static CauchyGreenInvariants of(Tensor<S, Dim> const& h) {
-    S const j_1 = determinant_less_one(h);
-    S const second = j_1 - pliant::trace(h);  // the nonlinear part of J − 1
-    return {dot(h, h) - (second + second), j_1};
+    S const second = determinant_beyond_trace(h);
+    return {dot(h, h) - (second + second), pliant::trace(h) + second};
   }
   template <int Dim>
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(CauchyGreenInvariants const& w,

@@ -146,15 +146,20 @@ PLIANT_HOST_DEVICE constexpr Tensor<T, 3> cofactor_less_identity(Tensor<T, 3> co
   for (int i = 0; i < 3; ++i) c(i, i) = c(i, i) + trace(h);
   return c;
 }
-/// det(I + h) − 1, without rounding the one away.
+/// det(I + h) − 1 − tr h, the part beyond first order.
 template <class T>
-PLIANT_HOST_DEVICE constexpr T determinant_less_one(Tensor<T, 2> const& h) {
-  return trace(h) + determinant(h);
+PLIANT_HOST_DEVICE constexpr T determinant_beyond_trace(Tensor<T, 2> const& h) {
+  return determinant(h);
 }
 template <class T>
-PLIANT_HOST_DEVICE constexpr T determinant_less_one(Tensor<T, 3> const& h) {
+PLIANT_HOST_DEVICE constexpr T determinant_beyond_trace(Tensor<T, 3> const& h) {
   Tensor<T, 3> const c = cofactor(h);
-  return trace(h) + trace(c) + (h(0, 0) * c(0, 0) + h(0, 1) * c(0, 1) + h(0, 2) * c(0, 2));
+  return trace(c) + (h(0, 0) * c(0, 0) + h(0, 1) * c(0, 1) + h(0, 2) * c(0, 2));
+}
+/// det(I + h) − 1, without rounding the one away.
+template <class T, int N>
+PLIANT_HOST_DEVICE constexpr T determinant_less_one(Tensor<T, N> const& h) {
+  return trace(h) + determinant_beyond_trace(h);
 }
 
 }  // namespace pliant
