@@ -1,21 +1,10 @@
 #pragma once
 
+#include "support/difference_quotient.hpp"
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
 namespace pliant::test {
-
-/// df/dx at 0 by central differences with one step of Richardson extrapolation.
-template <class Function>
-auto derivative(Function const& f, double h) {
-  return (4 * (f(h / 2) - f(-h / 2)) / h - (f(h) - f(-h)) / (2 * h)) / 3;
-}
-template <std::size_t Dim, class Function>
-FieldOf<Dim> field_derivative(Function const& f, double h) {
-  FieldOf<Dim> const fine = plus(f(h / 2), -1, f(-h / 2)), coarse = plus(f(h), -1, f(-h));
-  FieldOf<Dim> d(fine.size());
-  return plus(plus(d, 4 / (3 * h), fine), -1 / (6 * h), coarse);
-}
 
 /// Displacements with a strain of about 0.1 from element to element.
 template <class M>

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "support/flat.hpp"
+#include "support/formulations.hpp"
+
+// The serial backend in double precision is the oracle of the others.
+namespace pliant::test {
+
+/// The largest component of a force that any one element makes.
+template <class F, class TheBody>
+double largest_element_force(TheBody const& body, FieldOf<F::dim> const& u) {
+  using E = typename F::element;
+  double m = 0;
+  for (auto const& nodes : body.mesh().template elements<E>()) {
+    Nodal<E, double> own;
+    for (int a = 0; a < E::nodes; ++a)
+      for (int k = 0; k < E::dim; ++k)
+        own(a, k) = u[static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)])]
+                     [static_cast<std::size_t>(k)];
+    auto const f = force<F>(body.template law_of<F>(), nodal(body.mesh(), nodes), own);
+    for (int a = 0; a < E::nodes; ++a)
+      for (int k = 0; k < E::dim; ++k) m = std::max(m, std::abs(f(a, k)));
+  }
+  return m;
+}
+
+TEST_CASE("forces, tangents and energies are those of the serial backend", "[backend]") {
+  on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
+    using T = typename B::scalar;
+    constexpr bool single = std::same_as<T, float>;
+    // More elements than a patch holds; strains of about 0.01.
+    int const n = F::dim == 2 ? 56 : 15;
+    auto const mesh = distorted_mesh<typename F::element>(n);
+    auto const u = rounded<T>(plus(uniform(mesh.nodes, Random(1).tensor<F::dim>(0.005)), 1,
+                                   Random(2).field<F::dim>(mesh.nodes.size(), 0.005 / n)));
+    auto const du = rounded<T>(Random(3).field<F::dim>(mesh.nodes.size(), 1.0));
+    auto body = body_of<F>(B{}, mesh);
+    auto oracle = body_of<F>(Reference<double>{}, mesh);
+    auto const expected = forces_at(oracle, u);
+
+    auto const f = forces_at(body, u);
+
+    double const scale = largest_element_force<F>(oracle, u);
+    CHECK(largest(expected) > 1e-2 * scale);
+    CHECK(difference(f, expected) < (single ? 1e-5 : 1e-13) * scale);
+    CHECK(body.strain_energy() == Approx(oracle.strain_energy()).epsilon(single ? 1e-5 : 1e-13));
+    // The tangent is of order one however small the strain: rounding alone.
+    auto const df = tangent_product(oracle, u, du);
+    CHECK(difference(tangent_product(body, u, du), df) < (single ? 1e-5 : 1e-13) * largest(df));
+    for (std::size_t i = 0; i < body.masses().size(); ++i)
+      REQUIRE(body.masses()[i] == oracle.masses()[i]);
+  });
+}
+
+TEST_CASE("single precision of each backend is that of the serial one", "[backend]") {
+  on_each_formulation<Backends<float>>([]<class B, class F>(Case<B, F>) {
+    int const n = F::dim == 2 ? 20 : 8;
+    auto const mesh = distorted_mesh<typename F::element>(n);
+    auto const u = Random(2).field<F::dim>(mesh.nodes.size(), 0.05 / n);
+    auto body = body_of<F>(B{}, mesh);
+    auto serial = body_of<F>(Reference<float>{}, mesh);
+
+    auto const f = forces_at(body, u), expected = forces_at(serial, u);
+
+    // Sums in another order, products contracted or not: some units in the last place.
+    CHECK(difference(f, expected) <
+          16 * double{std::numeric_limits<float>::epsilon()} * largest(expected));
+  });
+}
+
+TEST_CASE("steps are those of the serial backend", "[backend]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    auto const run = [](auto const& on) {
+      auto const mesh = distorted_mesh<Tri3>(40);
+      auto body = body_of<F>(on, mesh);
+      body.clamp(mesh.boundary("left"));
+      body.drive(mesh.boundary("right"), [](double t) { return Point<2>{t / 4, 0}; });
+      body.set_gravity({0, -1});
+      body.set_load(17, {0.001, 0});
+      body.set_damping(0.5);
+      CentralDifference step{{.step = 4e-3}};
+      step(body, 100);
+      return body.displacements();
+    };
+
+    auto const u = run(backend), expected = run(Reference<double>{});
+
+    CHECK(largest(expected) > 0.05);
+    CHECK(difference(u, expected) < 1e-12 * largest(expected));
+  });
+}
+
+}  // namespace pliant::test

@@ -1,0 +1,1 @@
+#include "backend/agreement_suite.hpp"

@@ -1,0 +1,235 @@
+#pragma once
+
+#include <numeric>
+
+#include "support/formulations.hpp"
+
+// The contract of backend/backend.hpp, verb by verb.
+namespace pliant::test {
+
+template <class T>
+struct AddOne {
+  T* data;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { data[i] += T(i + 1); }
+};
+struct Triangular {
+  PLIANT_HOST_DEVICE double operator()(Index i) const { return i; }
+};
+/// Its largest value, −1, is at 777.
+struct Peak {
+  PLIANT_HOST_DEVICE double operator()(Index i) const { return i < 777 ? i - 778 : 776 - i; }
+};
+
+/// Σ_a (a + 1) x_a, 10 times for group 1, at every node.
+struct WeightedSum {
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& x, V const&) const {
+    return (*this)(GroupNumber<G>{}, x);
+  }
+  template <int G, class V>
+  PLIANT_HOST_DEVICE V operator()(GroupNumber<G>, V const& x) const {
+    using S = std::remove_cvref_t<decltype(x(0, 0))>;
+    V out = x;
+    for (int k = 0; k < 2; ++k) {
+      auto sum = x(0, k);
+      for (int a = 1; a < 3; ++a) sum = sum + S(a + 1) * x(a, k);
+      for (int a = 0; a < 3; ++a) out(a, k) = S(G == 1 ? 10 : 1) * sum;
+    }
+    return out;
+  }
+};
+struct SumOfNodes {
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& x) const {
+    using S = std::remove_cvref_t<decltype(x(0, 0))>;
+    return S(G == 1 ? 10 : 1) * (x(0, 0) + x(1, 0) + x(2, 0));
+  }
+};
+template <class T>
+struct Record {
+  static constexpr int counters = 2;
+  T* values;  // (elements, 2)
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& x) const {
+    using S = std::remove_cvref_t<decltype(x(0, 0))>;
+    Vector<S, 1> v;
+    v[0] = S(G == 1 ? 10 : 1) * (x(0, 0) + x(1, 0) + x(2, 0));
+    return v;
+  }
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& value,
+                                 Again const& again, Tally const& tally) const {
+    auto const [x] = again();
+    values[2 * e] += value[0];
+    values[2 * e + 1] += x(2, 1);
+    tally(G, 1.0);
+  }
+};
+
+/// A fan of triangles over a line of nodes with whole numbers at them: sums are exact.
+template <class B>
+struct Fan {
+  using T = typename B::scalar;
+  static constexpr Index elements_count = 5000, nodes = elements_count + 2;
+  std::vector<std::array<Index, 3>> connectivity;
+  std::vector<Tag> tags;
+  std::vector<T> x;
+
+  Fan() : x(static_cast<std::size_t>(node_stride * nodes)) {
+    for (Index e = 0; e < elements_count; ++e) {
+      connectivity.push_back({e, e + 1, e + 2});
+      tags.push_back(e % 7 == 0 ? no_group : static_cast<Tag>(e % 3 == 0));
+    }
+    for (Index i = 0; i < nodes; ++i) {
+      x[static_cast<std::size_t>(4 * i)] = static_cast<T>(i % 11);
+      x[static_cast<std::size_t>(4 * i + 1)] = static_cast<T>(i % 5);
+    }
+  }
+  T value(Index node, int k) const { return x[static_cast<std::size_t>(4 * node + k)]; }
+  T factor(Index e) const {
+    Tag const tag = tags[static_cast<std::size_t>(e)];
+    return tag == no_group ? T(0) : tag == 1 ? T(10) : T(1);
+  }
+};
+
+TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    typename B::template Array<float> array(1000);
+    CHECK(download<float>(array) == std::vector<float>(1000, 0.0f));
+    std::vector<float> numbers(1000);
+    std::iota(numbers.begin(), numbers.end(), 1.0f);
+
+    array.upload(numbers);
+    auto const copy = upload(backend, numbers);
+    auto const moved = std::move(array);
+
+    CHECK(download<float>(moved) == numbers);
+    CHECK(download<float>(copy) == numbers);
+    CHECK(moved.size() == 1000);
+    CHECK(typename B::template Array<double>(0).size() == 0);
+  });
+}
+
+TEST_CASE("node loops see every node once", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    for (Index n : {0, 1, 31, 4096, 4097, 100000}) {
+      INFO(n << " nodes");
+      typename B::template Array<double> seen(static_cast<std::size_t>(n));
+
+      backend.for_each(n, AddOne<double>{seen.data()});
+
+      auto const values = download<double>(seen);
+      for (Index i = 0; i < n; ++i) REQUIRE(values[static_cast<std::size_t>(i)] == i + 1);
+      CHECK(backend.sum(n, Triangular{}) == 0.5 * n * (n - 1.0));
+      if (n > 777) CHECK(backend.maximum(n, Peak{}) == -1);
+    }
+    CHECK(backend.maximum(0, Peak{}) == -std::numeric_limits<double>::infinity());
+    CHECK(backend.maximum(5, Peak{}) == -774);
+  });
+}
+
+TEST_CASE("a recording does again what was recorded", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    typename B::template Array<double> seen(3);
+
+    auto const recording =
+        backend.record([&] { backend.for_each(3, AddOne<double>{seen.data()}); });
+    recording.replay(0);
+    recording.replay(2);
+    recording.replay(3);
+    backend.synchronize();
+
+    CHECK(download<double>(seen) == std::vector<double>{5, 10, 15});
+  });
+}
+
+TEST_CASE("accumulate adds each element's values to its nodes, by group", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    Fan<B> fan;
+    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
+    auto const x = upload(backend, fan.x);
+    std::size_t const rows = static_cast<std::size_t>(fan.nodes + elements.scratch_nodes());
+    auto out = upload(backend, std::vector<T>(node_stride * rows, T(3)));
+    NodeField<T const, 2> const field{x.data()};
+
+    backend.template accumulate<2>(elements, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
+    backend.template accumulate<2>(elements, WeightedSum{}, NodeField<T, 2>{out.data()}, field,
+                                   field);
+
+    auto const sums = download<T>(out);
+    std::vector<T> expected(sums.size(), T(3));
+    for (Index e = 0; e < fan.elements_count; ++e)
+      for (Index a = 0; a < 3; ++a)
+        for (int k = 0; k < 2; ++k)
+          expected[static_cast<std::size_t>(4 * (e + a) + k)] +=
+              2 * fan.factor(e) *
+              (fan.value(e, k) + 2 * fan.value(e + 1, k) + 3 * fan.value(e + 2, k));
+    for (Index i = 0; i < fan.nodes; ++i)
+      for (int k = 0; k < 2; ++k) {
+        INFO("node " << i << ", component " << k);
+        REQUIRE(sums[static_cast<std::size_t>(4 * i + k)] ==
+                expected[static_cast<std::size_t>(4 * i + k)]);
+      }
+  });
+}
+
+TEST_CASE("loops over elements see each element of a group once", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    Fan<B> fan;
+    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
+    auto const x = upload(backend, fan.x);
+    NodeField<T const, 2> const field{x.data()};
+    auto const check = [&] {
+      auto values = upload(backend, std::vector<T>(2 * fan.connectivity.size(), T(1)));
+      auto counters = upload(backend, std::vector<double>{100, 1000});
+
+      double const sum = backend.template sum_elements<2>(elements, SumOfNodes{}, field);
+      backend.template visit<2>(elements, Record<T>{values.data()}, counters, field);
+
+      auto const recorded = download<T>(values);
+      double expected = 0;
+      std::vector<double> counts{100, 1000};
+      for (Index e = 0; e < fan.elements_count; ++e) {
+        T const own = fan.factor(e) * (fan.value(e, 0) + fan.value(e + 1, 0) + fan.value(e + 2, 0));
+        expected += static_cast<double>(own);
+        bool const acts = fan.factor(e) != T(0);
+        if (acts) ++counts[fan.factor(e) == T(10)];
+        REQUIRE(recorded[static_cast<std::size_t>(2 * e)] == T(1) + own);
+        REQUIRE(recorded[static_cast<std::size_t>(2 * e + 1)] ==
+                T(1) + (acts ? fan.value(e + 2, 1) : T(0)));
+      }
+      CHECK(sum == expected);
+      CHECK(download<double>(counters) == counts);
+    };
+    CHECK(elements.count() == fan.elements_count);
+    check();
+
+    for (std::size_t e = 0; e < fan.tags.size(); ++e)
+      fan.tags[e] = e % 5 == 0 ? no_group : static_cast<Tag>(e % 2);
+    elements.tags().upload(fan.tags);
+    elements.regroup();
+    check();
+  });
+}
+
+TEST_CASE("a table without elements does nothing", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    typename B::template Elements<3> elements{backend, {}, 2, {}, 4};
+    auto const x = upload(backend, std::vector<T>(16, T(1)));
+    auto out = upload(
+        backend, std::vector<T>(static_cast<std::size_t>(16 + 4 * elements.scratch_nodes()), T(3)));
+    typename B::template Array<double> counters(2);
+    NodeField<T const, 2> const field{x.data()};
+
+    backend.template accumulate<2>(elements, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
+    backend.template visit<2>(elements, Record<T>{out.data()}, counters, field);
+
+    for (T value : download<T>(out)) CHECK(value == T(3));
+    CHECK(backend.template sum_elements<2>(elements, SumOfNodes{}, field) == 0);
+  });
+}
+
+}  // namespace pliant::test

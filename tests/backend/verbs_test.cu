@@ -1,0 +1,1 @@
+#include "backend/verbs_suite.hpp"

@@ -1,0 +1,74 @@
+#include "support/difference_quotient.hpp"
+#include "support/laws.hpp"
+
+namespace pliant::test {
+
+TEST_CASE("stress is the derivative of the energy", "[law]") {
+  on_each_law([](auto law, auto dim) {
+    constexpr int n = dim();
+    Random random(7);
+    for (int state = 0; state < 20; ++state) {
+      auto const h = random_state<n>(random);
+      auto const p = stress(law, h);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          auto const slope = derivative(
+              [&](double t) {
+                auto moved = h;
+                moved(i, j) += t;
+                return energy_density(law, moved);
+              },
+              2e-3);
+          CHECK(p(i, j) == Approx(slope).epsilon(0).margin(1e-8 * (largest<n>(p) + 1)));
+        }
+    }
+  });
+}
+
+TEST_CASE("the tangent is the derivative of the stress", "[law]") {
+  on_each_law([](auto law, auto dim) {
+    constexpr int n = dim();
+    Random random(8);
+    for (int state = 0; state < 20; ++state) {
+      auto const h = random_state<n>(random), along = random.tensor<n>(1);
+      auto const dp = stress_change(law, h, along);
+      auto const slope =
+          tensor_derivative<n>([&](double t) { return stress(law, h + t * along); }, 2e-3);
+      CHECK(largest<n>(dp) > 0.1);
+      CHECK(largest<n>(dp - slope) < 1e-8 * largest<n>(dp));
+    }
+  });
+}
+
+TEST_CASE("the tangent is symmetric at every point", "[law]") {
+  on_each_law([](auto law, auto dim) {
+    constexpr int n = dim();
+    Random random(9);
+    for (int state = 0; state < 20; ++state) {
+      auto const h = random_state<n>(random), a = random.tensor<n>(1), b = random.tensor<n>(1);
+      CHECK(dot(a, stress_change(law, h, b)) ==
+            Approx(dot(b, stress_change(law, h, a))).epsilon(0).margin(1e-13));
+    }
+  });
+}
+
+TEST_CASE("all laws are Hooke's at small strain", "[law]") {
+  on_each_law([](auto law, auto dim) {
+    constexpr int n = dim();
+    Random random(10);
+    auto const hooke = law_of_section_6<Hooke>;
+    for (int state = 0; state < 20; ++state) {
+      auto const direction = random.tensor<n>(1);
+      for (double strain : {1e-3, 1e-5, 1e-7}) {
+        auto const h = strain * direction;
+        // They part at second order, with moduli of second order below 10 times the first.
+        CHECK(largest<n>(stress(law, h) - stress(hooke, h)) < 100 * strain * strain);
+        CHECK(largest<n>(stress(hooke, h)) > 0.1 * strain);
+        CHECK(std::abs(energy_density(law, h) - energy_density(hooke, h)) <
+              100 * strain * strain * strain);
+      }
+    }
+  });
+}
+
+}  // namespace pliant::test

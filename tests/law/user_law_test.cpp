@@ -1,0 +1,1 @@
+#include "law/user_law_suite.hpp"
