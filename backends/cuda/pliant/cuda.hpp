@@ -12,6 +12,8 @@
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
+#include <pliant/cuda/scatter.cuh>
+#include <pliant/cuda/stopwatch.hpp>
 #include <pliant/cuda/visit.cuh>
 
 namespace pliant {
@@ -20,6 +22,7 @@ namespace detail {
 template <class F>
 __global__ void __launch_bounds__(node_threads)
     call_for_each(Index n, __grid_constant__ F const f) {
+  begin_after_previous_kernel();
   Index const i = static_cast<Index>(blockIdx.x * node_threads + threadIdx.x);
   if (i < n) f(i);
 }
@@ -37,6 +40,7 @@ class Cuda {
   template <int Nodes>
   using Elements = CudaElements<T, Nodes>;
   using Recording = CudaRecording;
+  using Stopwatch = CudaStopwatch;
   static constexpr char const* name() { return "Cuda"; }
 
   Cuda(CudaOptions const& options = {})
@@ -46,6 +50,7 @@ class Cuda {
   /// Makes the backend's device the one of the calling thread; arrays are made there.
   void make_current() const { context_->make_current(); }
   void synchronize() const { context_->synchronize(); }
+  Stopwatch stopwatch() const { return Stopwatch(context_); }
   Recording record(std::function<void()> const& f) const { return {context_, f}; }
 
   template <class F>
@@ -70,12 +75,20 @@ class Cuda {
     static_assert((std::same_as<std::remove_const_t<decltype(*fields.data + 0)>, T> && ...),
                   "the fields of accumulate have the backend's scalar");
     if (elements.count() == 0) return;
-    using Memory = detail::PatchMemory<T, Nodes, C, (Fields::components + ... + 0)>;
-    auto const patches = elements.patch_view();
-    void (*const patch_kernel)(detail::PatchView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
-        detail::accumulate_patches<Groups, Nodes, T, C, Kernel, Fields...>;
-    launch("accumulate", {elements.patches(), elements.threads(), Memory::bytes(patches)},
-           patch_kernel, patches, kernel, out, fields...);
+    if constexpr (detail::scatters<T, Nodes>) {
+      void (*const scatter)(detail::ElementView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
+          detail::scatter_elements<Groups, Nodes, T, C, Kernel, Fields...>;
+      launch("accumulate",
+             {blocks(elements.count(), detail::scatter_threads), detail::scatter_threads}, scatter,
+             elements.view(), kernel, out, fields...);
+    } else {
+      using Memory = detail::PatchMemory<T, Nodes, C, (Fields::components + ... + 0)>;
+      void (*const by_patch)(detail::PatchView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
+          detail::accumulate_patches<Groups, Nodes, T, C, Kernel, Fields...>;
+      auto const patches = elements.patch_view();
+      launch("accumulate", {elements.patches(), elements.threads(), Memory::bytes(patches)},
+             by_patch, patches, kernel, out, fields...);
+    }
   }
   template <int Groups, int Nodes, class Kernel, class... Fields>
   double sum_elements(CudaElements<T, Nodes> const& elements, Kernel const& kernel,
@@ -102,7 +115,7 @@ class Cuda {
   void launch(char const* verb, detail::LaunchShape const& shape, void (*kernel)(Parameters...),
               Arguments const&... arguments) const {
     context_->make_current();
-    detail::launch(verb, shape, stream(), kernel, arguments...);
+    detail::launch(detail::Start::early, verb, shape, stream(), kernel, arguments...);
   }
   template <class Reduction, class F>
   double reduce(char const* verb, Index n, F const& f) const {

@@ -2,6 +2,7 @@
 
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
+#include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/node_rows.cuh>
 
 namespace pliant::detail {
@@ -19,13 +20,11 @@ struct PatchMemory {
       : diagonals(reinterpret_cast<std::uint16_t*>(memory)),
         rows{reinterpret_cast<T*>(memory + diagonal_bytes(patches.diagonal_capacity)),
              patches.node_capacity},
-        staging(rows.data + NodeRows<T, M>::width * patches.node_capacity),
-        slots(patches.patch_size * Nodes) {}
+        staging(rows.data + NodeRows<T, M>::width * patches.node_capacity) {}
 
   std::uint16_t* diagonals;
   NodeRows<T, M> rows;
-  T* staging;  // (C, slots): a component's slots side by side
-  int slots;
+  T* staging;  // (slots, C)
 };
 
 /// Some columns of the node rows of an element.
@@ -62,58 +61,77 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
                                   patch_tuning<T, Nodes>().min_blocks)
     accumulate_patches(PatchView<Nodes> const patches, __grid_constant__ Kernel const kernel,
                        NodeField<T, C> const out, Fields... fields) {
+  constexpr auto tuning = patch_tuning<T, Nodes>();
   constexpr int M = (Fields::components + ... + 0);
   extern __shared__ __align__(16) char shared_memory[];
   PatchMemory<T, Nodes, C, M> const memory(patches, shared_memory);
-  Index const* const nodes =
-      patches.nodes + static_cast<std::ptrdiff_t>(blockIdx.x) * patches.node_capacity;
+  Index const patch = static_cast<Index>(blockIdx.x), thread = static_cast<Index>(threadIdx.x);
+  Index const threads = static_cast<Index>(blockDim.x);
+  PatchNode const* const nodes =
+      patches.nodes + static_cast<std::ptrdiff_t>(patch) * patches.node_capacity;
+  Index const last = ::min(patches.count, (patch + 1) * patches.patch_size);
+  Index e = patch * patches.patch_size + thread;
 
-  for (int r = static_cast<int>(threadIdx.x); r < patches.node_capacity; r += blockDim.x) {
-    Index const node = nodes[r];
+  // What does not depend on each other is loaded early: memory is far.
+  using Places = Packed<PatchRow<Nodes>>;
+  Places places;
+  if (e < last) places = Places::load(patches.rows + e);
+#pragma unroll 1
+  for (Index d = thread; d < patches.diagonal_capacity; d += threads)
+    memory.diagonals[d] =
+        patches.diagonals[static_cast<std::ptrdiff_t>(patch) * patches.diagonal_capacity + d];
+  begin_after_previous_kernel();
+#pragma unroll 1
+  for (Index r = thread; r < patches.node_capacity; r += threads) {
+    Index const node = nodes[r].node;
     if (node < 0) continue;
     T row[M];
     int offset = 0;
     ((load_node(fields, node, row + offset), offset += Fields::components), ...);
     memory.rows.store(r, row);
   }
-  for (int d = static_cast<int>(threadIdx.x); d < patches.diagonal_capacity; d += blockDim.x)
-    memory.diagonals[d] =
-        patches.diagonals[static_cast<std::ptrdiff_t>(blockIdx.x) * patches.diagonal_capacity + d];
+  Tag tag = e < last ? patches.tags[e] : no_group;
   __syncthreads();
 
   bool any = false;
-  Index const first = static_cast<Index>(blockIdx.x) * patches.patch_size;
-  Index const last = ::min(patches.count, first + patches.patch_size);
-  for (Index e = first + static_cast<Index>(threadIdx.x); e < last; e += blockDim.x) {
-    PatchRow<Nodes> const places = load_whole(patches.rows + e);
+#pragma unroll 1
+  while (e < last) {
+    Places const own = places;
+    Tag const own_tag = tag;
     T values[Nodes][M];
 #pragma unroll
-    for (int a = 0; a < Nodes; ++a) memory.rows.load(places.local[a], values[a]);
+    for (int a = 0; a < Nodes; ++a) memory.rows.load(own.unpacked().local[a], values[a]);
+    e += threads;
+    auto const load_next = [&] {
+      if (e >= last) return;
+      places = Places::load(patches.rows + e);
+      tag = patches.tags[e];
+    };
+    if constexpr (tuning.prefetch) load_next();
     auto shares = Matrix<T, Nodes, C>::zero();
-    dispatch<Groups>(patches.tags[e], [&](auto group) {
+    dispatch<Groups>(own_tag, [&](auto group) {
       shares = call_on_rows<Fields::components...>(kernel, group, values);
       any = true;
     });
 #pragma unroll
     for (int a = 0; a < Nodes; ++a)
-#pragma unroll
-      for (int k = 0; k < C; ++k) memory.staging[k * memory.slots + places.slot[a]] = shares(a, k);
+      store_values<C>(memory.staging + C * own.unpacked().slot[a], shares.entries[a]);
+    if constexpr (!tuning.prefetch) load_next();
   }
   if (!__syncthreads_or(any)) return;  // no element of the patch acts
 
-  std::uint16_t const* const valences =
-      patches.valences + static_cast<std::ptrdiff_t>(blockIdx.x) * patches.node_capacity;
-  for (int r = static_cast<int>(threadIdx.x); r < patches.node_capacity; r += blockDim.x) {
-    Index const node = nodes[r];
-    if (node < 0) continue;
-    int const valence = valences[r];
+#pragma unroll 1
+  for (Index r = thread; r < patches.node_capacity; r += threads) {
+    PatchNode const n = nodes[r];
     T sum[C] = {};
 #pragma unroll 4
-    for (int d = 0; d < valence; ++d)
+    for (int d = 0; d < n.valence; ++d) {
+      T share[C];
+      load_values<C>(memory.staging + C * (memory.diagonals[d] + r), share);
 #pragma unroll
-      for (int k = 0; k < C; ++k)
-        sum[k] += memory.staging[k * memory.slots + memory.diagonals[d] + r];
-    add_to_node(out, node, sum);
+      for (int k = 0; k < C; ++k) sum[k] += share[k];
+    }
+    if (n.valence > 0) add_to_node(out, n.node, sum);
   }
 }
 

@@ -30,8 +30,7 @@ struct PatchView {
   int patch_size, node_capacity, diagonal_capacity;
   Tag const* tags;
   PatchRow<Nodes> const* rows;     // (elements)
-  Index const* nodes;              // (patches, node_capacity)
-  std::uint16_t const* valences;   // (patches, node_capacity)
+  PatchNode const* nodes;          // (patches, node_capacity)
   std::uint16_t const* diagonals;  // (patches, diagonal_capacity)
 };
 
@@ -52,17 +51,10 @@ class CudaElements {
                std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads)
       : count_(static_cast<Index>(connectivity.size())), threads_(size_and_threads[1]) {
     backend.make_current();
+    detail::check_nodes<Nodes>(connectivity, nodes);
     tags_ = uploaded(tags);
     connectivity_ = padded(connectivity);
-    auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, size_and_threads[0]).plan();
-    patch_size_ = plan.patch_size;
-    patches_ = plan.patches;
-    node_capacity_ = plan.node_capacity;
-    diagonal_capacity_ = plan.diagonal_capacity;
-    rows_ = uploaded(plan.rows);
-    nodes_ = uploaded(plan.nodes);
-    valences_ = uploaded(plan.valences);
-    diagonals_ = uploaded(plan.diagonals);
+    if constexpr (!detail::scatters<T, Nodes>) plan(connectivity, nodes, size_and_threads[0]);
   }
 
   Index count() const { return count_; }
@@ -76,11 +68,22 @@ class CudaElements {
   int threads() const { return threads_; }
   View view() const { return {count_, connectivity_.data(), tags_.data()}; }
   detail::PatchView<Nodes> patch_view() const {
-    return {count_,       patch_size_,   node_capacity_,   diagonal_capacity_, tags_.data(),
-            rows_.data(), nodes_.data(), valences_.data(), diagonals_.data()};
+    return {count_,       patch_size_,  node_capacity_, diagonal_capacity_,
+            tags_.data(), rows_.data(), nodes_.data(),  diagonals_.data()};
   }
 
  private:
+  void plan(std::vector<std::array<Index, Nodes>> const& connectivity, Index nodes,
+            int patch_size) {
+    auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size).plan();
+    patch_size_ = plan.patch_size;
+    patches_ = plan.patches;
+    node_capacity_ = plan.node_capacity;
+    diagonal_capacity_ = plan.diagonal_capacity;
+    rows_ = uploaded(plan.rows);
+    nodes_ = uploaded(plan.nodes);
+    diagonals_ = uploaded(plan.diagonals);
+  }
   static std::array<int, 2> tuned(std::size_t count) {
     constexpr auto t = detail::patch_tuning<T, Nodes>();
     if (static_cast<Index>(count) < t.large_from) return {t.small_size, t.small_size};
@@ -102,9 +105,10 @@ class CudaElements {
   Index count_ = 0, patches_ = 0;
   int threads_ = 1, patch_size_ = 0, node_capacity_ = 0, diagonal_capacity_ = 0;
   DeviceArray<Tag> tags_;
-  DeviceArray<Index> connectivity_, nodes_;
+  DeviceArray<Index> connectivity_;
+  DeviceArray<detail::PatchNode> nodes_;
   DeviceArray<detail::PatchRow<Nodes>> rows_;
-  DeviceArray<std::uint16_t> valences_, diagonals_;
+  DeviceArray<std::uint16_t> diagonals_;
 };
 
 }  // namespace pliant

@@ -20,6 +20,12 @@ struct alignas(16) PatchRow {
   std::uint16_t slot[width];   // which place in the patch's staging memory
 };
 
+/// A node of a patch, and how many slots it has there.
+struct PatchNode {
+  Index node = -1;  // -1: none
+  Index valence = 0;
+};
+
 /// A patch is a run of consecutive elements that one thread block works on. Every share that an
 /// element has in a node gets a slot of its own. A patch's nodes are sorted by valence (the
 /// number of their slots), largest first, so that the k-th slots of all nodes that have one lie
@@ -32,10 +38,20 @@ struct PatchPlan {
   int node_capacity = 0;                 // of a patch; multiple of 4
   int diagonal_capacity = 0;             // of a patch; multiple of 4
   std::vector<PatchRow<Nodes>> rows;     // (elements)
-  std::vector<Index> nodes;              // (patches, node_capacity); -1 behind the last
-  std::vector<std::uint16_t> valences;   // (patches, node_capacity)
+  std::vector<PatchNode> nodes;          // (patches, node_capacity)
   std::vector<std::uint16_t> diagonals;  // (patches, diagonal_capacity)
 };
+
+/// Throws Error when an element has a node that does not exist.
+template <int Nodes>
+void check_nodes(std::vector<std::array<Index, Nodes>> const& connectivity, Index nodes) {
+  for (std::size_t e = 0; e < connectivity.size(); ++e)
+    for (Index node : connectivity[e])
+      if (node < 0 || node >= nodes)
+        throw Error("element " + std::to_string(e) + " has node " + std::to_string(node) +
+                    ", but nodes are numbered from 0 to " + std::to_string(nodes - 1) +
+                    "; mend the mesh");
+}
 
 /// Plans patches, one after the other.
 template <int Nodes>
@@ -45,11 +61,12 @@ class PatchPlanner {
 
   PatchPlanner(std::vector<std::array<Index, Nodes>> const& connectivity, Index nodes,
                int patch_size)
-      : connectivity_(connectivity), owner_(static_cast<std::size_t>(nodes)) {
+      : connectivity_(connectivity), owner_(static_cast<std::size_t>(std::max(nodes, Index{0}))) {
     if (patch_size * Nodes >= 1 << 16)
       throw Error("patches of " + std::to_string(patch_size) +
                   " elements have more slots than 16 "
                   "bits can number; make them smaller");
+    check_nodes<Nodes>(connectivity, nodes);
     plan_.patch_size = patch_size;
     plan_.rows.resize(connectivity.size());
   }
@@ -60,7 +77,7 @@ class PatchPlanner {
       std::size_t const size = static_cast<std::size_t>(std::min(plan_.patch_size, count - first));
       elements_ = std::span(connectivity_).subspan(static_cast<std::size_t>(first), size);
       rows_ = std::span(plan_.rows).subspan(static_cast<std::size_t>(first), size);
-      number_nodes(first);
+      number_nodes();
       sort_by_valence();
       assign_slots();
       ++plan_.patches;
@@ -73,22 +90,18 @@ class PatchPlanner {
   struct Owner {
     Index patch = -1, local = 0;
   };
-  struct PatchNode {
+  struct Found {
     Index node;
-    int valence = 0;
+    int valence = 0;     // then: how many slots are free
     int rank = 0;        // by valence
     int first_free = 0;  // in free_
   };
 
-  void number_nodes(Index first) {
+  void number_nodes() {
     found_.clear();
     for (std::size_t e = 0; e < elements_.size(); ++e)
       for (std::size_t a = 0; a < Nodes; ++a) {
         Index const node = elements_[e][a];
-        if (node < 0 || static_cast<std::size_t>(node) >= owner_.size())
-          throw Error("element " + std::to_string(first + static_cast<Index>(e)) + " has node " +
-                      std::to_string(node) + ", but nodes are numbered from 0 to " +
-                      std::to_string(static_cast<Index>(owner_.size()) - 1) + "; mend the mesh");
         Owner& owner = owner_[static_cast<std::size_t>(node)];
         if (owner.patch != plan_.patches) {
           owner = {plan_.patches, static_cast<Index>(found_.size())};
@@ -101,21 +114,19 @@ class PatchPlanner {
 
   void sort_by_valence() {
     int largest = 0;
-    for (PatchNode const& n : found_) largest = std::max(largest, n.valence);
+    for (Found const& n : found_) largest = std::max(largest, n.valence);
     starts_.assign(static_cast<std::size_t>(largest) + 1, 0);  // by largest − valence
-    for (PatchNode const& n : found_) ++starts_[static_cast<std::size_t>(largest - n.valence)];
+    for (Found const& n : found_) ++starts_[static_cast<std::size_t>(largest - n.valence)];
     for (int rank = 0; int& start : starts_) rank += std::exchange(start, rank);
 
     std::size_t const seen = nodes_.size();
     first_node_.push_back(seen);
     first_diagonal_.push_back(diagonals_.size());
     nodes_.resize(seen + found_.size());
-    valences_.resize(nodes_.size());
     free_.clear();
-    for (PatchNode& n : found_) {
+    for (Found& n : found_) {
       n.rank = starts_[static_cast<std::size_t>(largest - n.valence)]++;
-      nodes_[seen + static_cast<std::size_t>(n.rank)] = n.node;
-      valences_[seen + static_cast<std::size_t>(n.rank)] = static_cast<std::uint16_t>(n.valence);
+      nodes_[seen + static_cast<std::size_t>(n.rank)] = {n.node, n.valence};
     }
     // After the loop above starts_[largest − v] counts the nodes whose valence is v or more.
     lengths_.assign(starts_.rbegin() + 1, starts_.rend());
@@ -123,7 +134,7 @@ class PatchPlanner {
       diagonals_.push_back(static_cast<std::uint16_t>(slot));
       slot += length;
     }
-    for (PatchNode& n : found_) {
+    for (Found& n : found_) {
       n.first_free = static_cast<int>(free_.size());
       for (int d = 0; d < n.valence; ++d)
         free_.push_back(static_cast<std::uint16_t>(
@@ -139,7 +150,7 @@ class PatchPlanner {
       for (std::size_t a = 0; a < Nodes; ++a) {
         std::array<int, lanes> writers{};
         for (std::size_t e = first; e < last; ++e) {
-          PatchNode& n = found_[rows_[e].local[a]];
+          Found& n = found_[rows_[e].local[a]];
           std::uint16_t* const free = free_.data() + n.first_free;
           int best = 0;
           for (int k = 1; k < n.valence && writers[free[best] % lanes] > 0; ++k)
@@ -158,10 +169,8 @@ class PatchPlanner {
     first_diagonal_.push_back(diagonals_.size());
     plan_.node_capacity = capacity(first_node_);
     plan_.diagonal_capacity = capacity(first_diagonal_);
-    plan_.nodes = padded(nodes_, first_node_, plan_.node_capacity, Index{-1});
-    plan_.valences = padded(valences_, first_node_, plan_.node_capacity, std::uint16_t{0});
-    plan_.diagonals =
-        padded(diagonals_, first_diagonal_, plan_.diagonal_capacity, std::uint16_t{0});
+    plan_.nodes = padded(nodes_, first_node_, plan_.node_capacity);
+    plan_.diagonals = padded(diagonals_, first_diagonal_, plan_.diagonal_capacity);
   }
   static int capacity(std::vector<std::size_t> const& first) {
     std::size_t largest = 0;
@@ -171,8 +180,8 @@ class PatchPlanner {
   }
   template <class U>
   static std::vector<U> padded(std::vector<U> const& rows, std::vector<std::size_t> const& first,
-                               int capacity, U filler) {
-    std::vector<U> out((first.size() - 1) * static_cast<std::size_t>(capacity), filler);
+                               int capacity) {
+    std::vector<U> out((first.size() - 1) * static_cast<std::size_t>(capacity));
     for (std::size_t p = 1; p < first.size(); ++p)
       std::copy(rows.begin() + static_cast<std::ptrdiff_t>(first[p - 1]),
                 rows.begin() + static_cast<std::ptrdiff_t>(first[p]),
@@ -186,13 +195,13 @@ class PatchPlanner {
   // Of the current patch:
   std::span<std::array<Index, Nodes> const> elements_;
   std::span<PatchRow<Nodes>> rows_;
-  std::vector<PatchNode> found_;
+  std::vector<Found> found_;
   std::vector<int> starts_, lengths_;
   std::vector<std::uint16_t> free_;  // slots that no element has, by node
   // Compressed rows of all patches:
   std::vector<std::size_t> first_node_, first_diagonal_;
-  std::vector<Index> nodes_;
-  std::vector<std::uint16_t> valences_, diagonals_;
+  std::vector<PatchNode> nodes_;
+  std::vector<std::uint16_t> diagonals_;
 };
 
 }  // namespace pliant::detail

@@ -3,6 +3,7 @@
 #include <cuda/std/limits>
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
+#include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/vector_memory.cuh>
 #include <tuple>
 
@@ -39,6 +40,7 @@ __device__ double reduce_block(double value) {
 template <class Reduction, class F>
 __global__ void __launch_bounds__(reduce_threads)
     reduce_to_partials(Index n, __grid_constant__ F const f, double* partials) {
+  begin_after_previous_kernel();
   double value = Reduction::identity();
   // 64 bits: the last step may pass the largest Index.
   for (std::int64_t i = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x; i < n;
@@ -51,6 +53,7 @@ __global__ void __launch_bounds__(reduce_threads)
 /// One block.
 template <class Reduction>
 __global__ void reduce_partials(int count, double const* partials, double* result) {
+  begin_after_previous_kernel();
   int const i = static_cast<int>(threadIdx.x);
   double const value = reduce_block<Reduction>(i < count ? partials[i] : Reduction::identity());
   if (i == 0) *result = value;

@@ -20,18 +20,27 @@ constexpr int piece_size(int remaining) {
   return size;
 }
 
-/// An object whose address and size are multiples of 16 bytes.
+/// An object in registers as it came from memory, for objects whose address and size are multiples
+/// of 16 bytes. Small members take a register each once they are unpacked, so that is left for
+/// late.
 template <class U>
-__device__ __forceinline__ U load_whole(U const* address) {
+struct Packed {
   static_assert(sizeof(U) % 16 == 0 && alignof(U) % 16 == 0);
   Piece<std::uint32_t, 4> pieces[sizeof(U) / 16];
+
+  __device__ __forceinline__ static Packed load(U const* address) {
+    Packed packed;
 #pragma unroll
-  for (std::size_t k = 0; k < sizeof(U) / 16; ++k)
-    pieces[k] = reinterpret_cast<Piece<std::uint32_t, 4> const*>(address)[k];
-  U value;
-  __builtin_memcpy(&value, pieces, sizeof(U));
-  return value;
-}
+    for (std::size_t k = 0; k < sizeof(U) / 16; ++k)
+      packed.pieces[k] = reinterpret_cast<Piece<std::uint32_t, 4> const*>(address)[k];
+    return packed;
+  }
+  __device__ __forceinline__ U unpacked() const {
+    U value;
+    __builtin_memcpy(&value, pieces, sizeof(U));
+    return value;
+  }
+};
 
 /// The N values at an address that is aligned for a padded node.
 template <int N, int From = 0, class T>
@@ -43,6 +52,34 @@ __device__ __forceinline__ void load_padded(T const* address, T* values) {
 #pragma unroll
     for (int k = 0; k < size && From + k < N; ++k) values[From + k] = piece.values[k];
     load_padded<N, From + size>(address, values);
+  }
+}
+
+/// Values per instruction in rows of C values without padding.
+template <class T, int C>
+inline constexpr int row_piece = C % 4 == 0 && sizeof(T) == 4 ? 4
+                                 : C % 2 == 0                 ? 2
+                                                              : 1;
+
+template <int C, class T>
+__device__ __forceinline__ void load_values(T const* address, T* values) {
+  constexpr int size = row_piece<T, C>;
+#pragma unroll
+  for (int k = 0; k < C; k += size) {
+    auto const piece = *reinterpret_cast<Piece<T, size> const*>(address + k);
+#pragma unroll
+    for (int i = 0; i < size; ++i) values[k + i] = piece.values[i];
+  }
+}
+template <int C, class T>
+__device__ __forceinline__ void store_values(T* address, T const* values) {
+  constexpr int size = row_piece<T, C>;
+#pragma unroll
+  for (int k = 0; k < C; k += size) {
+    Piece<T, size> piece;
+#pragma unroll
+    for (int i = 0; i < size; ++i) piece.values[i] = values[k + i];
+    *reinterpret_cast<Piece<T, size>*>(address + k) = piece;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
+#include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/vector_memory.cuh>
 #include <tuple>
 
@@ -17,6 +18,7 @@ __global__ void __launch_bounds__(visit_threads)
   int const thread = static_cast<int>(threadIdx.x);
   for (int k = thread; k < count; k += visit_threads) tallies[k] = 0;
   __syncthreads();
+  begin_after_previous_kernel();
 
   Index const e = static_cast<Index>(blockIdx.x) * visit_threads + thread;
   if (e < elements.count) {
