@@ -2,13 +2,13 @@
 
 #if defined(WANT_OPENMP)
 #include <pliant/openmp.hpp>
-using Backend = pliant::OpenMP<double>;
+using Machine = pliant::OpenMP<double>;
 #else
 #if defined(_OPENMP)
 #error "pliant::pliant alone must not bring OpenMP along"
 #endif
 #include <pliant/reference.hpp>
-using Backend = pliant::Reference<double>;
+using Machine = pliant::Reference<double>;
 #endif
 
 #include <cstdio>
@@ -23,7 +23,7 @@ int main() {
   mesh.nodes = {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}};
   mesh.elements<Quad4>() = {{0, 1, 4, 3}};
   mesh.elements<Tri3>() = {{1, 2, 5}, {1, 5, 4}};
-  Body body{Backend{}, mesh, Elastic{.young = 1e6, .poisson = 0.3, .density = 1e3}, Group<Square>{},
+  Body body{Machine{}, mesh, Elastic{.young = 1e6, .poisson = 0.3, .density = 1e3}, Group<Square>{},
             Group<Half>{}};
 
   double u[12], f[12] = {}, mass[6] = {};
