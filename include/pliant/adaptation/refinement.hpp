@@ -69,14 +69,15 @@ inline std::array<double, 4> nodal_areas(Hierarchy const& tree, HierarchyCell co
   return areas;
 }
 
-/// The momentum that a cell carries, kg m/s, from velocities at nodes.
+/// The momentum that a cell carries, kg m/s, from velocities at nodes, less that of its mass moving
+/// as one at the velocity `base`: where all do, what rounding left is no momentum.
 inline Point<2> momentum(Hierarchy const& tree, HierarchyCell const& cell, double density,
-                         std::vector<Point<2>> const& v) {
+                         std::vector<Point<2>> const& v, Point<2> const& base) {
   auto const areas = nodal_areas(tree, cell);
   Point<2> p{};
   for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
     for (std::size_t k = 0; k < 2; ++k)
-      p[k] += density * areas[a] * v[static_cast<std::size_t>(cell.nodes[a])][k];
+      p[k] += density * areas[a] * (v[static_cast<std::size_t>(cell.nodes[a])][k] - base[k]);
   return p;
 }
 
@@ -85,10 +86,11 @@ inline Point<2> momentum(Hierarchy const& tree, HierarchyCell const& cell, doubl
 inline void add_family_impulse(Hierarchy const& tree, Index parent, double density,
                                std::vector<Point<2>> const& v, std::vector<Point<2>>& impulse) {
   HierarchyCell const& cell = tree.cell(parent);
-  Point<2> lost = momentum(tree, cell, density, v);
+  Point<2> const base = v[static_cast<std::size_t>(cell.nodes[0])];
+  Point<2> lost = momentum(tree, cell, density, v, base);
   double area = 0;
   for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
-    Point<2> const p = momentum(tree, tree.cell(c), density, v);
+    Point<2> const p = momentum(tree, tree.cell(c), density, v, base);
     for (std::size_t k = 0; k < 2; ++k) lost[k] -= p[k];
     for (double a : nodal_areas(tree, tree.cell(c))) area += a;
   }
@@ -144,6 +146,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
 
   // State on the new nodes.
   auto u = body.displacements(), v = body.velocities();
+  detail::check_field("refine (displacements)", u, body.nodes());
+  detail::check_field("refine (velocities)", v, body.nodes());
   double const strain_before = body.strain_energy(), kinetic_before = body.kinetic_energy();
   for (NewNode const& n : done.new_nodes) {
     Point<2> at{}, speed{};
@@ -184,7 +188,9 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   for (auto& [name, facets] : mesh.boundaries) facets = detail::facets_of(*after, mark++);
   auto conditions = body.conditions();
   for (auto& condition : conditions) {
-    condition.facets = detail::facets_of(*after, mark++);
+    int const own = mark++;
+    if (condition.facets.empty()) continue;  // of nodes, perhaps younger than the tree
+    condition.facets = detail::facets_of(*after, own);
     auto nodes = nodes_of(condition.facets);
     nodes.insert(nodes.end(), condition.nodes.begin(), condition.nodes.end());
     std::ranges::sort(nodes);
@@ -216,10 +222,14 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
       else if (layout.mass_list[i] > 0)
         v[i][k] += impulse[i][k] / layout.mass_list[i];
 
+  // As they are, and not by the body's setters, which stop driven nodes.
+  using T = typename TheBody::scalar;
+  layout.u.upload(layout.padded(u));
+  layout.v.upload(layout.padded(v));
+  layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.u.data()});
+  layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.v.data()});
   body.replace(std::move(layout), std::move(conditions), std::move(loads), after,
                detail::closed_totals(body));
-  body.set_displacements(u);
-  body.set_velocities(v);
   body.add_refinement({body.time(), "refine", static_cast<double>(done.parents.size()),
                        body.strain_energy() - strain_before, body.kinetic_energy() - kinetic_before,
                        taken});

@@ -15,9 +15,11 @@ struct WeightedRow {
   Index const *node, *first, *other;
   T const* weight;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto sum = Vector<T, C>::zero();
-    if constexpr (Add) sum = field.at(node[k]);
-    for (Index j = first[k]; j < first[k + 1]; ++j) sum = sum + weight[j] * field.at(other[j]);
+    auto base = Vector<T, C>::zero();
+    if constexpr (!Add) base = field.at(other[first[k]]);
+    auto sum = Add ? field.at(node[k]) : base;
+    for (Index j = first[k]; j < first[k + 1]; ++j)
+      sum = sum + weight[j] * (field.at(other[j]) - base);
     field.set(node[k], sum);
   }
 };
@@ -36,7 +38,8 @@ class Slaves {
 
   bool empty() const { return to_slaves_.count == 0; }
 
-  /// Sets a field at the slaves from their masters: v_s = Σ_i T_si v_i.
+  /// Sets a field at the slaves from their masters: v_s = Σ_i T_si v_i, as v_1 + Σ_i T_si (v_i − v_1)
+  /// since weights add up to one: what masters share is not rounded.
   template <int C>
   void interpolate(B const& backend, NodeField<T, C> field) const {
     if (!empty()) backend.for_each(to_slaves_.count, to_slaves_.template apply<C, false>(field));
