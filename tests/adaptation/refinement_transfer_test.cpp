@@ -1,0 +1,1 @@
+#include "adaptation/refinement_transfer_suite.hpp"
