@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include <pliant/formulation/formulation.hpp>
@@ -16,7 +17,12 @@ struct Group {
 
   typename F::template law<double> law_for(Elastic const& material) const {
     using L = typename F::template law<double>;
-    if (law) return *law;
+    if (law) {
+      for (double parameter : parameters(*law))
+        if (!std::isfinite(parameter))
+          throw Error("body: a law was given to a group with a parameter that is not finite");
+      return *law;
+    }
     if constexpr (LawFromElastic<L>)
       return L::from(material);
     else

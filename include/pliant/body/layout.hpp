@@ -26,6 +26,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       ElementTable<B, E, typename detail::FormulationsOf<E, detail::TypeList<>, Fs...>::type>;
   static_assert(((Table<Es>::groups > 0) && ...),
                 "every element type of the mesh needs a Group of a formulation on that element");
+  template <class F>
+  static constexpr bool acts = (std::same_as<typename F::element, Es> || ...);
+  static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   Mesh<Es...> mesh;                             // in the user's order, of the elements that act now
   std::vector<Slave> slave_list;                // in the user's order

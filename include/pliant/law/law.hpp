@@ -2,6 +2,8 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <utility>
 
 #include <pliant/law/elastic.hpp>
 #include <pliant/law/invariants.hpp>
@@ -127,16 +129,33 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> stress_change(L const& law, Tensor<S, Dim> con
   return dp;
 }
 
+namespace detail {
+/// One T, the `I`th of a list.
+template <class T, std::size_t I>
+T const& one_of_many();
+template <class L, class T, std::size_t... I>
+constexpr bool made_of(std::index_sequence<I...>) {
+  return requires { L{one_of_many<T, I>()...}; };  // braces refuse a T for a member that is no T
+}
+}  // namespace detail
+
+/// The parameters of a law as a list of numbers.
+template <template <class> class L, class T>
+auto parameters(L<T> const& law) {
+  constexpr std::size_t count = sizeof(L<T>) / sizeof(T);
+  static_assert(sizeof(L<T>) == count * sizeof(T) &&
+                    detail::made_of<L<T>, T>(std::make_index_sequence<count>()),
+                "every member of a law L<T> must be of type T, or an array of T");
+  return std::bit_cast<std::array<T, count>>(law);
+}
+
 /// The same law with its parameters in another precision.
 template <class To, template <class> class L, class From>
 L<To> law_cast(L<From> const& law) {
-  static_assert(sizeof(L<From>) % sizeof(From) == 0 &&
-                    sizeof(L<To>) == sizeof(L<From>) / sizeof(From) * sizeof(To),
-                "every member of a law L<T> must be of type T (or an array of T)");
-  constexpr std::size_t count = sizeof(L<From>) / sizeof(From);
-  auto const from = std::bit_cast<std::array<From, count>>(law);
-  std::array<To, count> to;
-  for (std::size_t k = 0; k < count; ++k) to[k] = static_cast<To>(from[k]);
+  auto const from = parameters(law);
+  std::array<To, from.size()> to;
+  for (std::size_t k = 0; k < from.size(); ++k) to[k] = static_cast<To>(from[k]);
+  static_assert(sizeof(L<To>) == sizeof(to), "a law L<T> has the same members for each T");
   return std::bit_cast<L<To>>(to);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include <pliant/body/body.hpp>
 
@@ -81,10 +82,17 @@ struct ElementSpectra {
   }
 };
 
+/// A number that is not one must not get lost in a maximum.
+PLIANT_HOST_DEVICE double infinite_if_not_finite(double x) {
+  return x <= std::numeric_limits<double>::max() ? x : std::numeric_limits<double>::infinity();
+}
+
 template <class T>
 struct ValueAt {
   T const* data;
-  PLIANT_HOST_DEVICE double operator()(Index i) const { return static_cast<double>(data[i]); }
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    return infinite_if_not_finite(static_cast<double>(data[i]));
+  }
 };
 
 /// The largest row sum over mass of a free direction.
@@ -98,7 +106,8 @@ struct RowOverMass {
     if (mass[i] > T(0))
       for (int k = 0; k < Dim; ++k)
         if (!(held[i] >> k & 1))
-          largest = max(largest, static_cast<double>(rows(i, k)) / static_cast<double>(mass[i]));
+          largest = max(largest, infinite_if_not_finite(static_cast<double>(rows(i, k)) /
+                                                        static_cast<double>(mass[i])));
     return largest;
   }
 };

@@ -1,0 +1,181 @@
+#pragma once
+
+#include "support/formulations.hpp"
+
+// What the compiler cannot see is one exception, whose message says what was wrong, where, and what to
+// do; the body stays as it was.
+namespace pliant::test {
+
+using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+using Solid = Formulation<Tet4, Gauss<1>, NeoHookean>;
+
+inline Mesh<Quad4> sheet() { return mesh::rectangle({.size = {1, 1}, .cells = {2, 2}}); }
+
+TEST_CASE("an unsound mesh is refused", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto mesh = sheet();
+    auto const make = [&] { (void)body_of<Rubber>(backend, mesh); };
+    SECTION("no elements") {
+      mesh.elements<Quad4>().clear();
+      CHECK_THROWS_WITH(make(), says("no elements"));
+      mesh.nodes.clear();
+      CHECK_THROWS_AS(make(), Error);
+    }
+    SECTION("an inverted element") {
+      auto& e = mesh.elements<Quad4>()[2];
+      std::swap(e[1], e[3]);
+      CHECK_THROWS_WITH(make(),
+                        says("Quad4 element 2") && says("inverted") && says("counter-clockwise"));
+    }
+    SECTION("an element that is folded at one corner") {
+      mesh.nodes[4] = {0.2, 0.2};  // element 3 keeps its shape, 0 is an arrowhead: 4 is past 1-3
+      mesh.nodes[0] = {0.4, 0.4};
+      CHECK_THROWS_WITH(make(), says("Quad4 element 0") && says("inverted"));
+    }
+    SECTION("a degenerate element") {
+      mesh.nodes[3] = mesh.nodes[0];
+      mesh.nodes[4] = mesh.nodes[1];
+      CHECK_THROWS_WITH(make(), says("Quad4 element 0") && says("degenerate"));
+    }
+    SECTION("an element of one point") {
+      mesh.elements<Quad4>()[1] = {1, 1, 1, 1};
+      CHECK_THROWS_WITH(make(), says("Quad4 element 1") && says("degenerate"));
+    }
+    SECTION("a node number out of range") {
+      mesh.elements<Quad4>()[3][2] = 9;
+      CHECK_THROWS_WITH(make(), says("Quad4 element 3") && says("node 9") && says("0 to 8"));
+      mesh.elements<Quad4>()[3][2] = -1;
+      CHECK_THROWS_WITH(make(), says("Quad4 element 3") && says("node -1"));
+    }
+    SECTION("a node that is nowhere") {
+      mesh.nodes[7][1] = NAN;
+      CHECK_THROWS_WITH(make(), says("node 7") && says("not finite"));
+      mesh.nodes[7][1] = INFINITY;
+      CHECK_THROWS_WITH(make(), says("node 7") && says("not finite"));
+    }
+  });
+}
+
+TEST_CASE("an unsound tetrahedron is refused", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto mesh = regular_mesh<Tet4>(2);
+    std::swap(mesh.elements<Tet4>()[5][0], mesh.elements<Tet4>()[5][1]);
+    CHECK_THROWS_WITH(body_of<Solid>(backend, mesh), says("Tet4 element 5") && says("inverted"));
+    Mesh<Tet4> flat;
+    flat.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    flat.elements<Tet4>() = {{0, 1, 2, 3}};
+    CHECK_THROWS_WITH(body_of<Solid>(backend, flat), says("Tet4 element 0") && says("degenerate"));
+  });
+}
+
+TEST_CASE("a tiny mesh and a mesh far away are sound", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto mesh = sheet();
+    for (auto& x : mesh.nodes) x = {1e-7 * x[0] + 1, 1e-7 * x[1] + 1};
+    CHECK_NOTHROW(body_of<Rubber>(backend, mesh));
+    mesh = sheet();
+    for (auto& x : mesh.nodes) x = {x[0] + 1e5, x[1] - 1e5};
+    CHECK_NOTHROW(body_of<Rubber>(backend, mesh));
+  });
+}
+
+TEST_CASE("an impossible material is refused", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const make = [&](Elastic const& m) { (void)body_of<Rubber>(backend, sheet(), m); };
+    for (double young : {0.0, -1.0, double{NAN}, double{INFINITY}})
+      CHECK_THROWS_WITH(make({young, 0.3, 1}), says("Young's modulus") && says("positive"));
+    for (double poisson : {-1.0, 0.5, 0.7, double{NAN}})
+      CHECK_THROWS_WITH(make({1, poisson, 1}), says("Poisson's ratio") && says("(-1, 0.5)"));
+    for (double density : {0.0, -1.0, double{NAN}, double{INFINITY}})
+      CHECK_THROWS_WITH(make({1, 0.3, density}), says("density") && says("positive"));
+    CHECK_NOTHROW(make({1, -0.5, 1}));
+    CHECK_NOTHROW(make({1, 0, 1}));
+  });
+}
+
+TEST_CASE("a law's own parameters must be finite", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    CHECK_THROWS_WITH((Body{backend, sheet(), soft, Group<Rubber>{NeoHookean<double>{NAN, 1}}}),
+                      says("not finite"));
+  });
+}
+
+/// Everything of a body that a refused call must leave alone.
+template <class TheBody>
+auto all_of(TheBody& body) {
+  return std::tuple{
+      body.displacements(), body.velocities(), body.forces(), body.template groups_of<Quad4>(),
+      body.gravity(),       body.damping(),    body.loads(),  body.conditions().size(),
+      body.time(),          body.steps(),      body.masses()};
+}
+
+TEST_CASE("a call that is refused leaves the body as it was", "[body]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const mesh = sheet();
+    Body body{backend, mesh, soft, Group<Rubber>{}, Group<Formulation<Quad4, Gauss<2>, Hooke>>{}};
+    body.set_gravity({0, -1});
+    body.set_load(2, {0.1, 0});
+    body.clamp(mesh.boundary("left"));
+    body.set_velocities(Random(1).field<2>(9, 0.1));
+    CentralDifference step{{.step = 1e-3}};
+    step(body, 3);
+    auto const before = all_of(body);
+
+    CHECK_THROWS_WITH(body.set_displacements(FieldOf<2>(8)), says("8 nodes") && says("has 9"));
+    CHECK_THROWS_WITH(body.set_velocities(FieldOf<2>(10)), says("10 nodes") && says("has 9"));
+    FieldOf<2> broken(9);
+    broken[4][1] = NAN;
+    CHECK_THROWS_WITH(body.set_displacements(broken), says("node 4") && says("not finite"));
+    broken[4][1] = -INFINITY;
+    CHECK_THROWS_WITH(body.set_velocities(broken), says("node 4") && says("not finite"));
+    CHECK_THROWS_WITH(body.set_load(9, {1, 1}), says("node 9") && says("0 to 8"));
+    CHECK_THROWS_WITH(body.set_load(-1, {1, 1}), says("node -1"));
+    CHECK_THROWS_WITH(body.set_load(3, {NAN, 1}), says("node 3") && says("not finite"));
+    CHECK_THROWS_WITH(body.set_damping(-1), says("-1") && says("not negative"));
+    CHECK_THROWS_AS(body.set_damping(NAN), Error);
+    CHECK_THROWS_AS(body.set_damping(INFINITY), Error);
+    CHECK_THROWS_WITH(body.set_gravity({0, NAN}), says("gravity"));
+    CHECK_THROWS_WITH(body.clamp(std::vector<Index>{1, 9}), says("node 9") && says("0 to 8"));
+    CHECK_THROWS_WITH(body.hold(std::vector<Index>{-2}, 1), says("node -2"));
+    CHECK_THROWS_AS(body.clamp(std::vector<Facet<2>>{{3, 12}}), Error);
+    CHECK_THROWS_AS(body.drive(std::vector<Index>{99}, [](double) { return Point<2>{}; }), Error);
+    CHECK_THROWS_WITH(body.drive(std::vector<Index>{5},
+                                 [](double) {
+                                   return Point<2>{NAN, 0};
+                                 }),
+                      says("node 5") && says("finite"));
+    CHECK_THROWS_WITH((body.template assign<Formulation<Quad4, Gauss<2>, Hooke>>({0, 4})),
+                      says("Quad4 element 4") && says("0 to 3"));
+    CHECK_THROWS_AS(body.template assign<Rubber>({-1}), Error);
+    CHECK_THROWS_WITH(body.mesh().boundary("lid"), says("lid"));
+
+    CHECK((all_of(body) == before));
+  });
+}
+
+TEST_CASE("a motion that ends in nowhere stops the body with a message", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = body_of<Rubber>(backend, sheet());
+    body.drive(std::vector<Index>{0}, [](double t) { return Point<2>{std::sqrt(0.01 - t), 0}; });
+    CentralDifference step{{.step = 1e-3}};
+    CHECK_THROWS_WITH(step(body, 100), says("node 0") && says("finite"));
+    CHECK(std::isfinite(largest(body.displacements())));
+  });
+}
+
+TEST_CASE("a body that has no stable step says so", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = sheet();
+    auto body = body_of<Rubber>(backend, mesh);
+    std::vector<Index> all{0, 1, 2, 3, 4, 5, 6, 7, 8};
+    body.clamp(all);
+    CHECK_THROWS_WITH(stable_step(body), says("every node is held"));
+    auto inverted = body_of<Rubber>(backend, mesh);
+    FieldOf<2> u(9);
+    u[4] = {0.9, 0.9};
+    inverted.set_displacements(u);
+    CHECK_THROWS_WITH(stable_step(inverted), says("not finite"));
+  });
+}
+
+}  // namespace pliant::test

@@ -1,0 +1,1 @@
+#include "body/bad_input_suite.hpp"

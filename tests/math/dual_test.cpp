@@ -1,0 +1,58 @@
+#include <pliant/math/dual.hpp>
+
+#include "support/catch.hpp"
+#include "support/difference_quotient.hpp"
+
+namespace pliant::test {
+
+/// A function of two numbers, for any scalar, that uses all operators and elementary functions.
+struct Everything {
+  template <class S>
+  S operator()(S const& x, S const& y) const {
+    S z = 2 * x - y / 3 + x * y / (1 + y * y) - 0.5;
+    z += sqrt(2 + x * x) * exp(-y) + 1 / (3 - x);
+    z -= log(2 + square(x)) * log1p(y * y);
+    z *= abs(x - 2) + max(x, y) + min(x * x, 3 - y) + select(x < y, x, x * y);
+    return -z + excess_of_log1p(x * y / 4) + excess_of_log1p(x / 100) + (x < 100 ? 1 - x : x);
+  }
+};
+
+TEST_CASE("duals carry the values and the derivatives along", "[math]") {
+  using D = Dual<double, 2>;
+  for (auto const& [x, y] : {std::pair{0.3, 0.8}, {0.9, 0.2}, {-0.6, 0.7}, {1.7, 1.1}}) {
+    D const z = Everything{}(D::variable(x, 0), D::variable(y, 1));
+
+    CHECK(z.value == Approx(Everything{}(x, y)).epsilon(1e-14));
+    CHECK(z.derivative[0] ==
+          Approx(derivative([&](double h) { return Everything{}(x + h, y); }, 1e-3)).epsilon(1e-9));
+    CHECK(z.derivative[1] ==
+          Approx(derivative([&](double h) { return Everything{}(x, y + h); }, 1e-3)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("duals of duals carry second derivatives", "[math]") {
+  using D = Dual<double, 1>;
+  using DD = Dual<D, 1>;
+  double const x = 0.4, y = 0.7;
+  DD along_x(D::variable(x, 0)), constant(D{y});
+  along_x.derivative[0] = D(1.0);
+
+  DD const z = Everything{}(along_x, constant);
+
+  auto const slope = [&](double h) {
+    return Everything{}(D::variable(x + h, 0), D(y)).derivative[0];
+  };
+  CHECK(z.value.value == Approx(Everything{}(x, y)).epsilon(1e-14));
+  CHECK(z.value.derivative[0] == Approx(slope(0)).epsilon(1e-13));
+  CHECK(z.derivative[0].value == Approx(slope(0)).epsilon(1e-13));
+  CHECK(z.derivative[0].derivative[0] == Approx(derivative(slope, 1e-3)).epsilon(1e-9));
+}
+
+TEST_CASE("a constant has no derivative", "[math]") {
+  Dual<float, 3> const c(2);
+  CHECK(c.value == 2.0f);
+  for (float d : c.derivative) CHECK(d == 0.0f);
+  static_assert(std::same_as<builtin_scalar<Dual<Dual<float, 2>, 3>>, float>);
+}
+
+}  // namespace pliant::test

@@ -1,0 +1,40 @@
+#include <pliant/math/functions.hpp>
+
+#include "support/catch.hpp"
+
+namespace pliant::test {
+
+/// x − ln(1 + x) in extended precision, by its series where the difference would cancel.
+long double exact_excess(long double x) {
+  if (std::fabs(x) > 0.1L) return x - std::log1p(x);
+  long double sum = 0, power = x * x;
+  for (int k = 2; k < 60; ++k, power *= -x) sum += power / k;
+  return sum;
+}
+
+TEMPLATE_TEST_CASE("x - ln(1 + x) keeps its digits near zero", "[math]", float, double) {
+  double const epsilon = double{std::numeric_limits<TestType>::epsilon()};
+  for (double size : {1e-12, 1e-8, 1e-4, 0.01, 0.0624, 0.0626, 0.3, 0.9, 3.0, 50.0})
+    for (double sign : {1.0, -1.0}) {
+      if (sign * size <= -1) continue;
+      auto const x = static_cast<TestType>(sign * size);
+      auto const exact = static_cast<double>(exact_excess(static_cast<long double>(x)));
+      INFO("x = " << x);
+      // The difference x − log1p(x) may lose the 6 bits by which it is smaller than x.
+      double const units = size < 0.0625 ? 8 : 64;
+      CHECK(static_cast<double>(excess_of_log1p(x)) == Approx(exact).epsilon(units * epsilon));
+    }
+  CHECK(excess_of_log1p(TestType(0)) == 0);
+}
+
+TEST_CASE("select, min and max choose", "[math]") {
+  CHECK(select(true, 1.0, 2.0) == 1);
+  CHECK(select(false, 1.0, 2.0) == 2);
+  CHECK(pliant::max(1.0, 2.0) == 2);
+  CHECK(pliant::max(2.0, 1.0) == 2);
+  CHECK(pliant::min(1.0, 2.0) == 1);
+  CHECK(pliant::min(2.0, 1.0) == 1);
+  CHECK(square(-3.0) == 9);
+}
+
+}  // namespace pliant::test

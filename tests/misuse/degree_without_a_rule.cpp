@@ -1,0 +1,12 @@
+// expect: Gauss<n> on triangles is exact for degree n = 1 to 4
+#include <pliant/pliant.hpp>
+
+using namespace pliant;
+
+#ifndef PLIANT_MISUSE_OFF
+using Exact = Formulation<Tri3, Gauss<5>, Hooke>;
+#else
+using Exact = Formulation<Tri3, Gauss<4>, Hooke>;
+#endif
+
+static_assert(Exact::nodes == 3);

@@ -1,0 +1,10 @@
+// expect: mesh::rectangle makes Quad4 or Tri3 elements
+#include <pliant/pliant.hpp>
+
+using namespace pliant;
+
+#ifndef PLIANT_MISUSE_OFF
+auto const sheet = mesh::rectangle<Hex8>({.size = {1, 1}, .cells = {2, 2}});
+#else
+auto const sheet = mesh::rectangle<Tri3>({.size = {1, 1}, .cells = {2, 2}});
+#endif
