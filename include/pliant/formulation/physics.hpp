@@ -16,10 +16,11 @@ PLIANT_HOST_DEVICE S energy(L const& law, Nodal<typename F::element, S> const& r
   using E = typename F::element;
   using T = builtin_scalar<S>;
   static constexpr auto table = tabulate<E, typename F::quadrature, T>();
+  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
   S sum = S(0);
   for (int q = 0; q < F::points; ++q) {
-    auto const map = RestMap<E, S>::at(rest, table, q);
-    auto const h = map.in_rest_space(parametric_gradient<E>(u, table, q));
+    auto const map = RestMap<E, S>::at(x, table, q);
+    auto const h = map.gradient(v, table, q);
     sum = sum + map.volume * T(table.weight[q]) * energy_density(law, h);
   }
   return sum;
@@ -33,14 +34,15 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force(L const& law,
   using E = typename F::element;
   using T = builtin_scalar<S>;
   static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-  auto f = Nodal<E, S>::zero();
+  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
+  auto f = Coefficients<E, S>::zero();
   for (int q = 0; q < F::points; ++q) {
-    auto const map = RestMap<E, S>::at(rest, table, q);
-    auto const h = map.in_rest_space(parametric_gradient<E>(u, table, q));
+    auto const map = RestMap<E, S>::at(x, table, q);
+    auto const h = map.gradient(v, table, q);
     auto const p = stress(law, h);
-    add_parametric_divergence<E>(T(-table.weight[q]) * (p * map.cofactors), table, q, f);
+    f.add_divergence(T(-table.weight[q]) * (p * map.cofactors), table, q);
   }
-  return f;
+  return f.per_node();
 }
 
 /// The change of the nodal forces under displacements du: −∂²W_E/∂u² du, N.
@@ -51,15 +53,16 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force_change(
   using E = typename F::element;
   using T = builtin_scalar<S>;
   static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-  auto df = Nodal<E, S>::zero();
+  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u),
+             dv = Coefficients<E, S>::of(du);
+  auto df = Coefficients<E, S>::zero();
   for (int q = 0; q < F::points; ++q) {
-    auto const map = RestMap<E, S>::at(rest, table, q);
-    auto const h = map.in_rest_space(parametric_gradient<E>(u, table, q));
-    auto const dh = map.in_rest_space(parametric_gradient<E>(du, table, q));
+    auto const map = RestMap<E, S>::at(x, table, q);
+    auto const h = map.gradient(v, table, q), dh = map.gradient(dv, table, q);
     auto const dp = stress_change(law, h, dh);
-    add_parametric_divergence<E>(T(-table.weight[q]) * (dp * map.cofactors), table, q, df);
+    df.add_divergence(T(-table.weight[q]) * (dp * map.cofactors), table, q);
   }
-  return df;
+  return df.per_node();
 }
 
 /// The stiffness matrix K = ∂²W_E/∂u², N/m; rows and columns run over (node, direction). Large and
@@ -84,9 +87,10 @@ template <Element E, class Q, class S>
 PLIANT_HOST_DEVICE S volume(Nodal<E, S> const& rest) {
   using T = builtin_scalar<S>;
   static constexpr auto table = tabulate<E, Q, T>();
+  auto const x = Coefficients<E, S>::of(rest);
   S sum = S(0);
   for (int q = 0; q < table.count; ++q)
-    sum = sum + RestMap<E, S>::at(rest, table, q).volume * T(table.weight[q]);
+    sum = sum + RestMap<E, S>::at(x, table, q).volume * T(table.weight[q]);
   return sum;
 }
 
@@ -96,9 +100,10 @@ template <Element E, class S>
 PLIANT_HOST_DEVICE Vector<S, E::nodes> nodal_volumes(Nodal<E, S> const& rest) {
   using T = builtin_scalar<S>;
   static constexpr auto table = tabulate<E, Gauss<2>, T>();
+  auto const x = Coefficients<E, S>::of(rest);
   auto m = Vector<S, E::nodes>::zero();
   for (int q = 0; q < table.count; ++q) {
-    S const v = RestMap<E, S>::at(rest, table, q).volume * T(table.weight[q]);
+    S const v = RestMap<E, S>::at(x, table, q).volume * T(table.weight[q]);
     for (int a = 0; a < E::nodes; ++a) m[a] = m[a] + v * T(table.shape[q][a]);
   }
   return m;

@@ -50,7 +50,8 @@ void check_elements(M const& mesh) {
     auto const check = [&]<class Q>(Q) {
       constexpr auto table = tabulate<E, Q, double>();
       for (int q = 0; q < table.count; ++q) {
-        double const det = RestMap<E, double>::at(rest, table, q).volume;
+        double const det =
+            RestMap<E, double>::at(Coefficients<E, double>::of(rest), table, q).volume;
         if (!(det > smallest))
           throw Error("mesh: " + describe<E>(mesh, e) + " is " +
                       (det < -smallest ? "inverted" : "degenerate") + " (Jacobian determinant " +

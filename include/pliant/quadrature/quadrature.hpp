@@ -24,6 +24,7 @@ concept QuadratureOn = requires {
 template <Element E, class Q, class T>
 struct Tabulation {
   static constexpr int count = decltype(Q::template rule<typename E::cell>())::count;
+  T monomial[count][1 << E::dim];  // Π_{k∈b} ξ_k, b a set of directions as bits
   T shape[count][E::nodes];
   T gradient[count][E::nodes][E::dim];
   T weight[count];
@@ -36,6 +37,11 @@ PLIANT_HOST_DEVICE constexpr Tabulation<E, Q, T> tabulate() {
   for (int q = 0; q < rule.count; ++q) {
     Vector<double, E::dim> xi{};
     for (int k = 0; k < E::dim; ++k) xi[k] = rule.points[q][k];
+    for (int b = 0; b < 1 << E::dim; ++b) {
+      double product = 1;
+      for (int k = 0; k < E::dim; ++k) product *= b >> k & 1 ? xi[k] : 1;
+      table.monomial[q][b] = static_cast<T>(product);
+    }
     auto const shape = E::shape(xi);
     auto const gradient = E::gradient(xi);
     for (int a = 0; a < E::nodes; ++a) {

@@ -32,13 +32,14 @@ struct AreaRatio {
     // trilinear hexahedron.
     using Q = std::conditional_t<State::dim == 2 || LinearSimplex<E>, Gauss<1>, Gauss<2>>;
     constexpr auto table = tabulate<E, Q, T>();
+    auto const x = Coefficients<E, S>::of(e.rest), v = Coefficients<E, S>::of(e.u);
     S change(0), volume(0);
     for (int q = 0; q < table.count; ++q) {
-      auto const map = RestMap<E, S>::at(e.rest, table, q);
-      S const v = map.volume * T(table.weight[q]);
-      auto const h = map.in_rest_space(parametric_gradient<E>(e.u, table, q));
-      change = change + v * determinant_less_one(h);
-      volume = volume + v;
+      auto const map = RestMap<E, S>::at(x, table, q);
+      S const share = map.volume * T(table.weight[q]);
+      auto const h = map.gradient(v, table, q);
+      change = change + share * determinant_less_one(h);
+      volume = volume + share;
     }
     return abs(change / volume);
   }

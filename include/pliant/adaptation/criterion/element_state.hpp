@@ -28,8 +28,8 @@ struct ElementState {
   /// The displacement gradient H = F − I in the middle of the cell.
   PLIANT_HOST_DEVICE Tensor<S, dim> gradient() const {
     constexpr auto table = tabulate<element, Gauss<1>, builtin_scalar<S>>();
-    return RestMap<element, S>::at(rest, table, 0)
-        .in_rest_space(parametric_gradient<element>(u, table, 0));
+    return RestMap<element, S>::at(Coefficients<element, S>::of(rest), table, 0)
+        .gradient(Coefficients<element, S>::of(u), table, 0);
   }
   /// Where the nodes are now.
   PLIANT_HOST_DEVICE Nodal<element, S> current() const { return rest + u; }

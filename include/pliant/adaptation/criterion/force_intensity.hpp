@@ -27,7 +27,7 @@ struct ForceIntensity {
       for (int i = 1; i < F::dim; ++i) squared = squared + f(a, i) * f(a, i);
       pull[a] = sqrt(squared);
     }
-    auto const x = e.current();
+    auto const x = Coefficients<E, S>::of(e.current());
     constexpr auto table = tabulate<E, typename F::quadrature, T>();
     S sum(0), size(0);
     for (int q = 0; q < F::points; ++q) {

@@ -27,7 +27,8 @@ struct AspectRatio {
     } else {
       auto const x = e.current();
       constexpr auto table = tabulate<E, Gauss<1>, T>();
-      S const size = abs(RestMap<E, S>::at(x, table, 0).volume) * T(table.weight[0]);
+      S const size =
+          abs(RestMap<E, S>::at(Coefficients<E, S>::of(x), table, 0).volume) * T(table.weight[0]);
       if constexpr (std::same_as<typename E::cell, Triangle>) {
         return longest * sum / (T(6.92820323027550917411) * size);  // 4√3
       } else if constexpr (std::same_as<typename E::cell, Quadrilateral>) {
