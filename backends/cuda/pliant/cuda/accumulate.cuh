@@ -50,15 +50,15 @@ __device__ __forceinline__ auto call_on_rows(Kernel const& kernel, Group group,
       return sum;
     };
     return kernel(group, columns<offset(I), C>(rows)...);
-  }
-  (std::make_index_sequence<sizeof...(C)>());
+  }(std::make_index_sequence<sizeof...(C)>());
 }
 
 /// One block per patch: nodes to shared memory, elements' shares to their slots, slots summed by
 /// node, sums added to global memory.
 template <int Groups, int Nodes, class T, int C, class Kernel, class... Fields>
-__global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
-                                  patch_tuning<T, Nodes>().min_blocks)
+__global__ void __launch_bounds__(
+    patch_tuning<T, Nodes>().max_threads,
+    (resident_blocks<T, Nodes, Groups, (Fields::components + ... + 0), C>))
     accumulate_patches(PatchView<Nodes> const patches, __grid_constant__ Kernel const kernel,
                        NodeField<T, C> const out, Fields... fields) {
   constexpr auto tuning = patch_tuning<T, Nodes>();

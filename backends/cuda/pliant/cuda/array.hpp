@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <pliant/cuda/check.hpp>
 #include <span>
 #include <utility>
+
+#include <pliant/cuda/check.hpp>
 
 namespace pliant {
 

@@ -2,8 +2,9 @@
 
 #include <cuda_runtime.h>
 
-#include <pliant/error.hpp>
 #include <string>
+
+#include <pliant/error.hpp>
 
 namespace pliant::detail {
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <limits>
-#include <pliant/cuda/array.hpp>
 #include <utility>
+
+#include <pliant/cuda/array.hpp>
 
 namespace pliant {
 

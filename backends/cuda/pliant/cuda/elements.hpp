@@ -2,10 +2,11 @@
 
 #include <array>
 #include <concepts>
+#include <vector>
+
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/patch_plan.hpp>
 #include <pliant/cuda/tuning.hpp>
-#include <vector>
 
 namespace pliant {
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <pliant/config.hpp>
-#include <pliant/error.hpp>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/error.hpp>
 
 namespace pliant::detail {
 

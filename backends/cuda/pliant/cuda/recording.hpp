@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+
 #include <pliant/cuda/context.hpp>
 
 namespace pliant {

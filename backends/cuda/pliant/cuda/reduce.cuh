@@ -1,11 +1,13 @@
 #pragma once
 
+#include <tuple>
+
 #include <cuda/std/limits>
+
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/vector_memory.cuh>
-#include <tuple>
 
 namespace pliant::detail {
 

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <pliant/cuda/context.hpp>
 #include <utility>
 #include <vector>
+
+#include <pliant/cuda/context.hpp>
 
 namespace pliant {
 

@@ -38,4 +38,12 @@ constexpr PatchTuning patch_tuning() {
   return {64, 4, false, 64, 64, 64, 0};
 }
 
+/// Blocks that fit a multiprocessor, for kernels of so many groups that read so many components of
+/// fields per node: tangents, and laws told apart by tag, spill registers under the bound that suits
+/// a force of one law.
+template <class T, int Nodes, int Groups, int Components, int Dim>
+inline constexpr int resident_blocks = Groups > 1 || Components > 2 * Dim
+                                           ? patch_tuning<T, Nodes>().min_blocks * 4 / 5
+                                           : patch_tuning<T, Nodes>().min_blocks;
+
 }  // namespace pliant::detail

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <tuple>
+
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/vector_memory.cuh>
-#include <tuple>
 
 namespace pliant::detail {
 
