@@ -23,6 +23,7 @@ void Body<B, M, Fs...>::add_force(T const* u, T* f, int stride) {
   layout_.slaves.interpolate(backend_, own_u);
   clear(own_f, nodes());
   accumulate_forces({own_u.data}, own_f);
+  layout_.slaves.clear(backend_, own_f);
   backend_.for_each(nodes(), AddToUser<T, dim>{{own_f.data}, f, stride, order});
 }
 
@@ -44,6 +45,7 @@ void Body<B, M, Fs...>::add_tangent_product(T const* u, T const* du, T* f, doubl
         own_f, rest_field(), ConstField{own_u.data}, ConstField{own_du.data});
   });
   layout_.slaves.hand_to_masters(backend_, own_f);
+  layout_.slaves.clear(backend_, own_f);
   backend_.for_each(nodes(), AddToUser<T, dim>{{own_f.data}, f, stride, order});
 }
 

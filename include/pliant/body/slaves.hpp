@@ -23,6 +23,12 @@ struct WeightedRow {
     field.set(node[k], sum);
   }
 };
+template <class T, int C>
+struct ClearRow {
+  NodeField<T, C> field;
+  Index const* node;
+  PLIANT_HOST_DEVICE void operator()(Index k) const { field.set(node[k], Vector<T, C>::zero()); }
+};
 }  // namespace detail
 
 /// The hanging nodes of a body: compressed rows in both directions, so that values are interpolated
@@ -48,6 +54,12 @@ class Slaves {
   template <int C>
   void hand_to_masters(B const& backend, NodeField<T, C> field) const {
     if (!empty()) backend.for_each(to_masters_.count, to_masters_.template apply<C, true>(field));
+  }
+  /// Takes away what slaves hold, once it is with their masters.
+  template <int C>
+  void clear(B const& backend, NodeField<T, C> field) const {
+    if (!empty())
+      backend.for_each(to_slaves_.count, detail::ClearRow<T, C>{field, to_slaves_.node.data()});
   }
 
  private:

@@ -48,6 +48,7 @@ auto Body<B, M, Fs...>::velocities() -> std::vector<Point<dim>> {
 template <Backend B, class M, class... Fs>
 auto Body<B, M, Fs...>::forces() -> std::vector<Point<dim>> {
   evaluate_forces();
+  layout_.slaves.clear(backend_, Field{layout_.f.data()});
   return layout_.in_user_order(layout_.f);
 }
 
