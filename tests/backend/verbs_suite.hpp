@@ -7,6 +7,8 @@
 // The contract of backend/backend.hpp, verb by verb.
 namespace pliant::test {
 
+static_assert(!Backend<int>);
+
 template <class T>
 struct AddOne {
   T* data;
@@ -94,6 +96,8 @@ struct Fan {
 
 TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    static_assert(Backend<B>);
+    static_assert(BackendArray<typename B::template Array<Index>, Index>);
     typename B::template Array<float> array(1000);
     CHECK(download<float>(array) == std::vector<float>(1000, 0.0f));
     std::vector<float> numbers(1000);
