@@ -67,6 +67,27 @@ Marks random_marks(TheBody const& body, Random& random, std::size_t one_in) {
   return marks;
 }
 
+template <Element E, class M>
+inline constexpr bool has_elements = false;
+template <Element E, Element... Es>
+inline constexpr bool has_elements<E, Mesh<Es...>> = (std::same_as<E, Es> || ...);
+
+/// Puts the marked elements into the linear groups, or into the others.
+enum class Put { linear, rubber };
+template <class TheBody>
+void put(TheBody& body, Marks const& marks, Put where) {
+  auto const into = [&]<class F>(List<F>, std::vector<Index> const& elements) {
+    body.template assign<F>(elements);
+  };
+  using M = typename TheBody::mesh_type;
+  if constexpr (has_elements<Tri3, M>)
+    where == Put::linear ? into(List<TriLinear>{}, marks.front())
+                         : into(List<TriRubber>{}, marks.front());
+  if constexpr (has_elements<Quad4, M>)
+    where == Put::linear ? into(List<QuadLinear>{}, marks.back())
+                         : into(List<QuadRubber>{}, marks.back());
+}
+
 template <class TheBody>
 std::size_t element_count(TheBody const& body) {
   std::size_t count = 0;

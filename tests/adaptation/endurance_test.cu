@@ -1,0 +1,1 @@
+#include "adaptation/endurance_suite.hpp"

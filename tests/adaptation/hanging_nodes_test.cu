@@ -1,0 +1,1 @@
+#include "adaptation/hanging_nodes_suite.hpp"

@@ -1,0 +1,1 @@
+#include "adaptation/refinement_errors_suite.hpp"

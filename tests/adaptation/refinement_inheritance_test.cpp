@@ -1,0 +1,1 @@
+#include "adaptation/refinement_inheritance_suite.hpp"
