@@ -32,6 +32,8 @@ class Adaptation {
   template <class TheBody>
   void now(TheBody& body) {
     constexpr bool refines = (!detail::Switches<Rules> || ...);
+    // The last step ends under the laws that it began with.
+    if constexpr ((detail::Switches<Rules> || ...)) body.synchronize_velocities();
     auto& watches = body.watches();
     watches.criteria.start();
     body.for_each_table([&](auto& table) {

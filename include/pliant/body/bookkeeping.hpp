@@ -38,6 +38,22 @@ struct Bookkeeping {
     counters = typename B::template Array<double>(Counters::count);
     open = true;
   }
+  /// Enters that elements went from the groups `before` to `after` at a step, by hand.
+  void enter(std::vector<Tag> const& before, std::vector<Tag> const& after, long step) {
+    auto from = download<Index>(since);
+    auto times = download<std::uint16_t>(switches);
+    auto sums = download<double>(counters);
+    for (std::size_t e = 0; e < before.size(); ++e) {
+      if (before[e] == after[e] || before[e] >= Groups) continue;
+      sums[static_cast<std::size_t>(Counters::steps_of(before[e]))] +=
+          static_cast<double>(step - from[e]);
+      from[e] = static_cast<Index>(step);
+      ++times[e];
+    }
+    since.upload(from);
+    switches.upload(times);
+    counters.upload(sums);
+  }
 };
 
 }  // namespace pliant

@@ -36,6 +36,10 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
   std::vector<Tag> internal(user.size());
   for (std::size_t e = 0; e < user.size(); ++e)
     internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
+  if (auto& books = table.books; books.open || steps_ > history_.born) {
+    if (!books.open) books.start(backend_, table.count(), history_.born);
+    books.enter(download<Tag>(table.elements.tags()), internal, steps_);
+  }
   table.elements.tags().upload(internal);
   table.elements.regroup();
   checkpoint_.reset();
