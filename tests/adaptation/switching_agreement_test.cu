@@ -1,0 +1,1 @@
+#include "adaptation/switching_agreement_suite.hpp"

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <numeric>
+
+#include "support/seed_scene.hpp"
+
+namespace pliant::test {
+
+using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
+using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+
+template <class B>
+auto bending_body(B const& backend) {
+  auto const mesh = seed_mesh<Quad4>();
+  Body body{backend, mesh, seed_material, Group<Linear>{}, Group<Turning>{}};
+  body.clamp(mesh.boundary("left"));
+  body.set_gravity({0, -10});
+  return body;
+}
+inline auto bending_rules() {
+  auto const criterion = largest(EdgeLengthRatio{}, AreaRatio{}, Rotation{});
+  return Adaptation{when<Linear>(criterion).above(0.05).become<Turning>(),
+                    when<Turning>(criterion).below(0.04).become<Linear>()};
+}
+
+TEST_CASE("the books follow every switch of a bending beam", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto body = bending_body(backend);
+    auto const elements = body.mesh().template elements<Quad4>().size();
+    auto adapt = bending_rules();
+    CentralDifference step{{.step = 2e-4}};
+    std::vector<Tag> groups(elements, 0);
+    std::vector<int> switches(elements, 0);
+    double steps[2]{}, moves[2]{}, energy = 0;
+    double largest_energy = 0;
+    // Down, and some way up again.
+    for (int k = 0; k < 900; ++k) {
+      step(body, 8);
+      for (Tag g : groups) steps[g] += 8;
+      double const before = body.strain_energy();
+
+      adapt.now(body);
+
+      energy += body.strain_energy() - before;
+      largest_energy = std::max(largest_energy, before);
+      auto const now = body.template groups_of<Quad4>();
+      for (std::size_t e = 0; e < elements; ++e)
+        if (now[e] != groups[e]) ++switches[e], ++moves[groups[e]];
+      groups = now;
+    }
+    REQUIRE(moves[0] > 30);
+    REQUIRE(moves[1] > 10);
+
+    CHECK(element_steps<Quad4>(body) == std::vector<double>{steps[0], steps[1]});
+    CHECK(steps[0] + steps[1] == static_cast<double>(elements) * 7200);
+    CHECK(switch_counts<Quad4>(body) == switches);
+    auto const entries = ledger(body);
+    REQUIRE(entries.size() == 2);
+    CHECK(entries[0].elements == moves[0]);
+    CHECK(entries[1].elements == moves[1]);
+    // Each difference of two energies rounds to ε of these.
+    double const rounding =
+        500 * double{std::numeric_limits<typename B::scalar>::epsilon()} * largest_energy;
+    CHECK(std::abs(entries[0].strain_energy + entries[1].strain_energy - energy) < rounding);
+    CHECK(adaptation_energy(body) ==
+          Approx(entries[0].strain_energy + entries[1].strain_energy).epsilon(1e-12));
+    CHECK(std::abs(entries[0].strain_energy) > 20 * rounding);
+  });
+}
+
+TEST_CASE("the books stay right when a user moves elements too", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bending_body(backend);
+    auto adapt = bending_rules();
+    adapt.now(body);
+    CentralDifference step{{.step = 2e-4}};
+    step(body, 10);
+    body.template assign<Turning>({0, 1, 2});
+
+    step(body, 5);
+
+    CHECK(element_steps<Quad4>(body) == std::vector<double>{40 * 10 + 37 * 5, 3 * 5});
+  });
+}
+
+TEST_CASE("the energy of a body that switches is what its ledger says", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    // Central differences keep energy up to Δt²; what is lost at the switches would be of order Δt.
+    auto const drift = [&](double dt) {
+      auto body = bending_body(backend);
+      auto adapt = bending_rules();
+      CentralDifference step{{.step = dt}};
+      double largest_error = 0;
+      while (body.time() < 0.5) {
+        step(body, static_cast<int>(std::lround(1.6e-3 / dt)));
+        adapt.now(body);
+        largest_error =
+            std::max(largest_error, std::abs(body.total_energy() - adaptation_energy(body)));
+      }
+      CHECK(std::abs(adaptation_energy(body)) > 0.1);
+      return largest_error;
+    };
+
+    double const coarse = drift(2e-4), fine = drift(1e-4);
+
+    CHECK(coarse < 0.02);  // J, of a kinetic energy up to 100
+    CHECK(fine < 0.4 * coarse);
+  });
+}
+
+}  // namespace pliant::test

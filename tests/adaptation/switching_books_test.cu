@@ -1,0 +1,1 @@
+#include "adaptation/switching_books_suite.hpp"
