@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""Writes what bench/run measured as Markdown, and prints how it stands to the bars.
+
+    bench/table.py RESULT.json [TABLE.md]
+
+All ratios are of rates measured in the same run, unless a row says that it quotes a peer.
+"""
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from bars import BARS  # noqa: E402
+
+
+class Results:
+    """What was measured, by name: what/element/law/precision/backend/elements, or ceiling/..."""
+
+    def __init__(self, data):
+        self.context = data["context"]
+        self.runs = {run["name"]: run for run in data["benchmarks"]}
+
+    def seconds(self, *path):
+        run = self.runs[self._name(path)]
+        return run["real_time"] * {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1}[run["time_unit"]]
+
+    def rate(self, counter, *path):
+        return self.runs[self._name(path)][counter]
+
+    def items(self, *path):
+        return self.rate("items_per_second", *path)
+
+    def _name(self, path):
+        """The one run of this path; a last number stands for the mesh of about as many elements."""
+        *names, last = path
+        if not isinstance(last, (int, float)):
+            return "/".join(path)
+        prefix = "/".join(names) + "/"
+        sizes = [n for n in self.runs if n.startswith(prefix) and n.count("/") == prefix.count("/")]
+        near = [n for n in sizes if 0.8 < float(n.rsplit("/", 1)[1]) / last < 1.25]
+        if len(near) != 1:
+            raise KeyError("/".join(map(str, path)))
+        return near[0]
+
+    def ceilings(self):
+        """The copy rate (bytes/s) and the multiply-add rate (flop/s) that belong to a run."""
+
+        def of(backend, precision):
+            return (
+                self.runs.get(f"copy/{backend}", {}).get("bytes_per_second"),
+                self.runs.get(f"multiply-add/{precision}/{backend}", {}).get("flops"),
+            )
+
+        return of
+
+
+def si(value, unit=""):
+    for size, prefix in ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if value >= size:
+            return f"{value / size:.3g} {prefix}{unit}"
+    return f"{value:.3g} {unit}".rstrip()
+
+
+def time(seconds):
+    for size, unit in ((1, "s"), (1e-3, "ms"), (1e-6, "µs")):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"
+
+
+def markdown(header, rows):
+    """A table whose columns also line up as text."""
+    rows = [[str(cell) for cell in row] for row in [header, *rows]]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(header))]
+    rows.insert(1, ["-" * w for w in widths])
+    return "\n".join(
+        "| " + " | ".join(cell.ljust(w) for cell, w in zip(row, widths)) + " |" for row in rows
+    )
+
+
+def bar_rows(results):
+    for bar in BARS[results.context["backend"]]:
+        try:
+            value = bar.measure(results)
+        except KeyError as missing:
+            yield [bar.name, f"not measured ({missing.args[0]})", bar.wanted(), ""]
+            continue
+        yield [bar.name, bar.show(value), bar.wanted(), "yes" if bar.reached(value) else "no"]
+
+
+def ceiling_rows(results):
+    for name, run in results.runs.items():
+        if name.count("/") < 5:
+            for counter, unit in (
+                ("bytes_per_second", "B/s"),
+                ("flops", "flop/s"),
+                ("items_per_second", "nodes/s"),
+            ):
+                if counter in run:
+                    yield [name, si(run[counter], unit), f"{100 * run['cv']:.1f}%"]
+                    break
+            else:
+                yield [name, time(results.seconds(name)), f"{100 * run['cv']:.1f}%"]
+
+
+def run_rows(results):
+    ceilings = results.ceilings()
+    for name, run in results.runs.items():
+        if name.count("/") != 5:
+            continue
+        what, element, law, precision, backend, elements = name.split("/")
+        copy, flops = ceilings(backend, precision)
+
+        def share(counter, ceiling):
+            return f"{100 * run[counter] / ceiling:.1f}%" if counter in run and ceiling else ""
+
+        yield [
+            what, element, law, precision, backend, elements, time(results.seconds(name)),
+            si(run["items_per_second"]), share("bytes_per_second", copy), share("flops", flops),
+            f"{100 * run['cv']:.1f}%",
+        ]  # fmt: skip
+
+
+def main():
+    data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
+    results = Results(data)
+    context = results.context
+    bars = markdown(["bar", "measured", "wanted", "reached"], bar_rows(results))
+    summary = f"{context['machine']}, {context['compiler']}, {context['date']}: `{context['command']}`"
+    print(f"\n{summary}\n\n{bars}")
+    if len(sys.argv) < 3:
+        return
+    ceilings = markdown(["ceiling", "measured", "variation"], ceiling_rows(results))
+    runs = markdown(
+        ["what", "element", "law", "precision", "backend", "elements", "time", "elements/s",
+         "of copy", "of FMA", "variation"],
+        run_rows(results),
+    )  # fmt: skip
+    Path(sys.argv[2]).write_text(
+        f"""# {context["backend"]} on {context["machine"]}
+
+{context["compiler"]}, {context["date"]}, commit {context["commit"]}: `{context["command"]}`.
+Medians of the repetitions; variation is their standard deviation over their mean.
+
+## Bars
+
+Ratios of rates measured in this run, unless a row quotes a peer.
+
+{bars}
+
+## Ceilings
+
+A node add adds three values to a node at random. Copies count bytes read and bytes written.
+
+{ceilings}
+
+## Everything
+
+`of copy` is the mandatory traffic (connectivity, and each value of a node read or written, once)
+over the copy ceiling; `of FMA` counts 265 operations for a Tet4 force and 2734 for a Hex8 one.
+
+{runs}
+""",
+        encoding="utf-8",
+    )
+
+
+if __name__ == "__main__":
+    main()
