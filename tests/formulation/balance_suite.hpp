@@ -25,16 +25,24 @@ TEST_CASE("inner forces and their moments add up to zero", "[formulation]") {
   });
 }
 
-TEST_CASE("masses add up to density times volume", "[formulation]") {
+TEST_CASE("masses add up to density times volume, about the right centre", "[formulation]") {
   on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
     auto const mesh = distorted_mesh<typename F::element>(5);
 
     auto const masses = body_of<F>(B{}, mesh).masses();
 
     double sum = 0;
-    for (double m : masses) sum += m;
+    Point<F::dim> centre{};
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      sum += masses[i];
+      for (std::size_t k = 0; k < F::dim; ++k) centre[k] += masses[i] * mesh.nodes[i][k];
+    }
     CHECK(sum == Approx(soft.density).epsilon(1e-14));
     CHECK(std::ranges::min(masses) > 0);
+    // Row sums keep the first moment: Σ m_a X_a = ρ ∫ Σ N_a X_a dV = ρ ∫ X dV.
+    Point<3> const middle{0.25, 1, 0.625};
+    for (std::size_t k = 0; k < F::dim; ++k)
+      CHECK(centre[k] / sum == Approx(middle[k]).epsilon(1e-14));
   });
 }
 

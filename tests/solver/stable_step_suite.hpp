@@ -54,6 +54,18 @@ TEST_CASE("the stable step holds for clamped, stretched and mixed meshes", "[sol
       CHECK(bound > 0.4 * limit);
     }
     {
+      auto const mesh = distorted_mesh<Quad4>(5);
+      auto body = body_of<Rubber>(backend, mesh);
+      std::vector<Index> all(mesh.nodes.size());
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
+      body.hold(all, 2);  // moves along x alone
+
+      double const bound = stable_step(body), limit = true_limit(body);
+
+      CHECK(bound <= limit);
+      CHECK(bound > 0.4 * limit);
+    }
+    {
       auto const mesh = mixed_mesh(5);
       Body body{backend,
                 mesh,

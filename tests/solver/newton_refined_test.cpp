@@ -1,0 +1,1 @@
+#include "solver/newton_refined_suite.hpp"

@@ -1,0 +1,1 @@
+#include "solver/newton_suite.hpp"
