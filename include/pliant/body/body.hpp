@@ -188,6 +188,7 @@ class Body {
   }
   void add_condition(Condition<dim> condition);
   void upload_conditions();
+  void upload_loads();
   void stop_held();
   template <class Change>
   void change_loads(Change const& change);

@@ -66,6 +66,10 @@ void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
     if (node < 0 || node >= nodes())
       throw Error("body: a condition names node " + std::to_string(node) +
                   ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
+  for (auto const& slave : layout_.slave_list)
+    if (std::ranges::find(condition.nodes, slave.node) != condition.nodes.end())
+      throw Error("body: node " + std::to_string(slave.node) +
+                  " hangs between others, whom it follows; hold or drive these instead");
   if (history_.tree && !condition.facets.empty())
     throw Error(
         "body: a condition on facets comes after a refinement, and would not be inherited; hold "
@@ -142,6 +146,14 @@ void Body<B, M, Fs...>::change_loads(Change const& change) {
 }
 
 template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::upload_loads() {
+  layout_.load = upload(backend_, layout_.padded(loads_));
+  Field const load{layout_.load.data()};
+  layout_.slaves.hand_to_masters(backend_, load);
+  layout_.slaves.clear(backend_, load);
+}
+
+template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_gravity(Point<dim> const& g) {
   for (double x : g)
     if (!std::isfinite(x))
@@ -170,7 +182,7 @@ void Body<B, M, Fs...>::set_load(Index node, Point<dim> const& force) {
   change_loads([&] {
     if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
     loads_[static_cast<std::size_t>(node)] = force;
-    layout_.load = upload(backend_, layout_.padded(loads_));
+    upload_loads();
   });
 }
 

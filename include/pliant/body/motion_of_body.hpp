@@ -67,7 +67,7 @@ void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> 
   history_.born = steps_;
   conditions_ = std::move(conditions);
   loads_ = std::move(loads);
-  if (!loads_.empty()) layout_.load = upload(backend_, layout_.padded(loads_));
+  if (!loads_.empty()) upload_loads();
   upload_conditions();
   scratch_.reset();
   checkpoint_.reset();

@@ -48,13 +48,19 @@ class StaticProblem {
         external[dim * i + k] = body.masses()[at(i)] * body.gravity()[at(k)];
         if (!body.loads().empty()) external[dim * i + k] += body.loads()[at(i)][at(k)];
       }
+    for (auto const& slave : body.layout().slave_list)
+      for (int k = 0; k < dim; ++k) {
+        double const own = std::exchange(external[dim * slave.node + k], 0.0);
+        for (auto const& [master, weight] : slave.masters)
+          external[dim * master + k] += weight * own;
+      }
   }
 
   Eigen::VectorXd external;  // N
 
   Index unknowns() const { return unknowns_; }
 
-  /// The present displacement, with driven nodes at a share of their motion at the body's time.
+  /// The present displacement.
   Eigen::VectorXd start() const {
     auto const points = body_.displacements();
     Eigen::VectorXd u(static_cast<Eigen::Index>(unknown_.size()));
@@ -62,14 +68,14 @@ class StaticProblem {
       for (int k = 0; k < dim; ++k) u[dim * i + k] = points[at(i)][at(k)];
     return u;
   }
-  void prescribe(Eigen::VectorXd& u, Eigen::VectorXd const& from, double share) const {
+  /// Puts driven nodes at a share of their motion at the body's time.
+  void prescribe(Eigen::VectorXd& u, double share) const {
     for (auto const& condition : body_.conditions()) {
       if (!condition.motion) continue;
       auto const to = condition.motion(body_.time());
       for (Index node : condition.nodes)
         for (int k = 0; k < dim; ++k)
-          if (condition.directions >> k & 1)
-            u[dim * node + k] = (1 - share) * from[dim * node + k] + share * to[at(k)];
+          if (condition.directions >> k & 1) u[dim * node + k] = share * to[at(k)];
     }
   }
   Eigen::VectorXd restrict(Eigen::VectorXd const& full) const {
@@ -105,16 +111,19 @@ class StaticProblem {
 };
 
 inline Eigen::VectorXd solve(Eigen::SparseMatrix<double> const& k, Eigen::VectorXd const& r) {
+  Error const singular(
+      "solve_static: the stiffness matrix is singular; hold the body against rigid motion, or look "
+      "for a collapsed element");
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric(k);
   if (symmetric.info() == Eigen::Success) {
+    Eigen::VectorXd const pivots = symmetric.vectorD().cwiseAbs();
+    // Rounding makes a pivot that should be zero some 1e-16 of the others.
+    if (pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) throw singular;
     Eigen::VectorXd x = symmetric.solve(r);
     if (x.allFinite()) return x;
   }
   Eigen::SparseLU<Eigen::SparseMatrix<double>> general(k);
-  if (general.info() != Eigen::Success)
-    throw Error(
-        "solve_static: the stiffness matrix is singular; hold the body against rigid motion, or "
-        "look for a collapsed element");
+  if (general.info() != Eigen::Success) throw singular;
   return general.solve(r);
 }
 
@@ -126,15 +135,16 @@ inline Eigen::VectorXd solve(Eigen::SparseMatrix<double> const& k, Eigen::Vector
 /// the matrix is singular or the iteration does not converge.
 template <class TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
-  using Problem = detail::StaticProblem<TheBody>;
-  Problem const problem(body);
-  Eigen::VectorXd const from = problem.start();
-  Eigen::VectorXd u = from;
+  if (options.load_steps < 1 || options.max_iterations < 1 || !(options.tolerance > 0))
+    throw Error(
+        "solve_static: load_steps and max_iterations must be at least 1, and tolerance positive");
+  detail::StaticProblem<TheBody> const problem(body);
+  Eigen::VectorXd u = problem.start();
   NewtonReport report{.unknowns = problem.unknowns()};
 
   for (int step = 1; step <= options.load_steps; ++step) {
     double const share = static_cast<double>(step) / options.load_steps;
-    problem.prescribe(u, from, share);
+    problem.prescribe(u, share);
     problem.add(u, Eigen::VectorXd::Zero(problem.unknowns()), 0);
     Eigen::VectorXd const load = share * problem.external;
     auto state = assemble(body, u);
@@ -143,8 +153,9 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
       double const scale = std::max(load.norm(), state.force.norm());
       report.residual = residual.norm();
       report.energy = state.energy;
-      if (report.residual <= options.tolerance * scale || scale == 0) break;
-      if (iteration == options.max_iterations || !std::isfinite(report.residual))
+      bool const finite = std::isfinite(report.residual) && std::isfinite(state.energy);
+      if (finite && report.residual <= options.tolerance * scale) break;
+      if (iteration == options.max_iterations || !finite)
         throw Error("solve_static: no convergence in load step " + std::to_string(step) + " of " +
                     std::to_string(options.load_steps) + " after " + std::to_string(iteration) +
                     " iterations, residual " + std::to_string(report.residual) +
