@@ -1,9 +1,3 @@
-#if __has_include(<catch2/catch_all.hpp>)
-#include <catch2/catch_all.hpp>
-#else
-#include <catch2/catch.hpp>
-#endif
-
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -14,6 +8,8 @@
 #include <string>
 #include <system_error>
 #include <vector>
+
+#include <catch2/catch.hpp>
 
 #include "strip.hpp"
 

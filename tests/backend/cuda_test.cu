@@ -1,3 +1,5 @@
+#include <random>
+
 #include <pliant/cuda.hpp>
 #include <pliant/element/simplex.hpp>
 #include <pliant/element/tensor.hpp>
@@ -6,7 +8,6 @@
 #include <pliant/law/neo_hookean.hpp>
 #include <pliant/law/saint_venant_kirchhoff.hpp>
 #include <pliant/reference.hpp>
-#include <random>
 
 #include "support/catch.hpp"
 
@@ -253,7 +254,7 @@ TEST_CASE("node loops reach every node once", "[cuda]") {
     }
     auto array = upload(backend, values);
     backend.for_each(n, AddOne{array.data()});
-    CHECK(backend.sum(n, Square{array.data()}) == Approx(sum).epsilon(1e-13));
+    CHECK(backend.sum(n, Square{array.data()}) == test::Approx(sum).epsilon(1e-13));
     CHECK(backend.sum(n, Square{array.data()}) == backend.sum(n, Square{array.data()}));
     CHECK(backend.maximum(n, Square{array.data()}) == maximum);
   }

@@ -17,7 +17,7 @@ TEST_CASE("add_force, add_tangent_product and add_lumped_mass add and never over
     auto const du = Random(2).field<2>(mesh.nodes.size(), 1.0);
     auto const before = Random(3).field<2>(mesh.nodes.size(), 1.0);
     auto const at = upload(backend, flat<T>(u)), along = upload(backend, flat<T>(du));
-    auto forces = upload(backend, flat<T>(before)), changes = forces;
+    auto forces = upload(backend, flat<T>(before)), changes = upload(backend, flat<T>(before));
     auto masses = upload(backend, std::vector<T>(mesh.nodes.size(), T(7)));
 
     body.add_force(at.data(), forces.data());
@@ -47,7 +47,7 @@ TEST_CASE("a stride leaves what lies between the nodes alone", "[body]") {
     auto const at = upload(backend, flat<T>(u, stride, NAN));
     auto const along = upload(backend, flat<T>(du, stride, NAN));
     auto forces = upload(backend, flat<T>(FieldOf<2>(u.size()), stride, 3));
-    auto changes = forces;
+    auto changes = upload(backend, flat<T>(FieldOf<2>(u.size()), stride, 3));
 
     body.add_force(at.data(), forces.data(), stride);
     body.add_tangent_product(at.data(), along.data(), changes.data(), 1, stride);

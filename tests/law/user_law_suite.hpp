@@ -51,7 +51,8 @@ template <class Own, class BuiltIn, class B>
 void check_same(B const& backend, Group<Own> own, Group<BuiltIn> built_in) {
   using T = typename B::scalar;
   auto const mesh = distorted_mesh<typename Own::element>(4);
-  Body body{backend, mesh, soft, own}, other{backend, mesh, soft, built_in};
+  Body body{backend, mesh, soft, own};
+  Body other{backend, mesh, soft, built_in};
   Random random(1);
   auto const u = random.field<Own::dim>(mesh.nodes.size(), 0.03);
   auto const du = random.field<Own::dim>(mesh.nodes.size(), 1);
