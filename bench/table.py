@@ -126,8 +126,12 @@ def main():
     results = Results(data)
     context = results.context
     bars = markdown(["bar", "measured", "wanted", "reached"], bar_rows(results))
-    summary = f"{context['machine']}, {context['compiler']}, {context['date']}: `{context['command']}`"
-    print(f"\n{summary}\n\n{bars}")
+    how = (
+        f"{context['compiler']}, {context['date']}, commit {context['commit']}: "
+        f"`{context['command']}`.\nLoad of the machine before: {context['load_avg'][0]:.1f} on "
+        f"{context['num_cpus']} cores"
+    )
+    print(f"\n{context['machine']}, {how}\n\n{bars}")
     if len(sys.argv) < 3:
         return
     ceilings = markdown(["ceiling", "measured", "variation"], ceiling_rows(results))
@@ -139,8 +143,8 @@ def main():
     Path(sys.argv[2]).write_text(
         f"""# {context["backend"]} on {context["machine"]}
 
-{context["compiler"]}, {context["date"]}, commit {context["commit"]}: `{context["command"]}`.
-Medians of the repetitions; variation is their standard deviation over their mean.
+{how}. Medians of the repetitions; variation is their
+standard deviation over their mean.
 
 ## Bars
 
