@@ -1,10 +1,11 @@
 #pragma once
 
 #include "adaptation/plane_bodies.hpp"
+#include "support/repeatable.hpp"
 
 namespace pliant::test {
 
-/// All that a user can see of a body.
+/// All that a user can see of a body; alike to the bit, but for what is added in no fixed order.
 template <class TheBody>
 struct Portrait {
   typename TheBody::mesh_type mesh;

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <memory>
+
+#include "support/formulations.hpp"
+#include "support/repeatable.hpp"
+
+// Many steps at once are recorded and replayed; they are the same steps.
+namespace pliant::test {
+
+template <class F, class B>
+auto swinging_body(B const& backend, Mesh<Quad4> const& mesh) {
+  auto body = body_of<F>(backend, mesh);
+  body.clamp(mesh.boundary("left"));
+  body.set_gravity({0.1, -0.3});
+  body.set_damping(0.5);
+  body.set_load(7, {0.01, 0.02});
+  body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 0.1));
+  return body;
+}
+
+template <class TheBody>
+void check_same(TheBody& a, TheBody& b) {
+  double const rounding =
+      between_runs(256 * double{std::numeric_limits<typename TheBody::scalar>::epsilon()});
+  CHECK(difference(a.displacements(), b.displacements()) <= rounding);
+  CHECK(difference(a.velocities(), b.velocities()) <= 16 * rounding);
+  CHECK(a.steps() == b.steps());
+  CHECK(a.time() == Approx(b.time()).epsilon(1e-13));
+}
+
+TEST_CASE("a hundred steps are a hundred times one step, to the bit", "[solver]") {
+  using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(6);
+    auto at_once = swinging_body<Rubber>(backend, mesh), one_by_one = at_once, looked_at = at_once;
+    CentralDifferenceOptions const options{.check_interval = 40, .refresh_interval = 64};
+    CentralDifference step{options}, other_step{options}, third_step{options};
+
+    step(at_once, 100);
+    for (int k = 0; k < 100; ++k) other_step(one_by_one);
+    for (int k = 0; k < 100; ++k) {
+      third_step(looked_at);
+      if (k % 7 == 0) (void)looked_at.velocities();
+    }
+
+    check_same(at_once, one_by_one);
+    check_same(at_once, looked_at);
+    CHECK(largest(at_once.displacements()) > 0.01);
+    CHECK(at_once.steps() == 100);
+  });
+}
+
+TEST_CASE("a body with driven nodes takes the same steps at once", "[solver]") {
+  using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(6);
+    auto at_once = swinging_body<Rubber>(backend, mesh);
+    at_once.drive(mesh.boundary("right"), [](double t) -> Point<2> {
+      return {0.1 * t, -0.2 * t * t};
+    });
+    auto one_by_one = at_once;
+    CentralDifference step{{.step = 1e-3}}, other_step{{.step = 1e-3}};
+
+    step(at_once, 50);
+    for (int k = 0; k < 50; ++k) other_step(one_by_one);
+
+    check_same(at_once, one_by_one);
+    Index const right = mesh.boundary("right")[0][0];
+    CHECK(at_once.displacements()[static_cast<std::size_t>(right)][0] == Approx(0.005));
+  });
+}
+
+TEST_CASE("a body that moved to another place steps on", "[solver]") {
+  using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(6);
+    auto stays = swinging_body<Rubber>(backend, mesh);
+    auto first = std::make_unique<decltype(stays)>(swinging_body<Rubber>(backend, mesh));
+    CentralDifference step{{.step = 1e-3}}, other_step{{.step = 1e-3}};
+    step(stays, 90);
+
+    other_step(*first, 30);
+    auto second = std::make_unique<decltype(stays)>(std::move(*first));
+    first.reset();
+    other_step(*second, 30);
+    *second = decltype(stays)(std::move(*second));
+    other_step(*second, 30);
+
+    check_same(stays, *second);
+  });
+}
+
+TEST_CASE("copies of a body go their own ways", "[solver]") {
+  using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(6);
+    auto body = swinging_body<Rubber>(backend, mesh), twin = swinging_body<Rubber>(backend, mesh);
+    if constexpr (!std::copy_constructible<decltype(body)>)
+      return;  // arrays of a GPU
+    else {
+      CentralDifference step{{.step = 1e-3}}, other_step{{.step = 1e-3}};
+      step(body, 20);
+      other_step(twin, 20);
+      auto copy = body;
+      auto const u = body.displacements();
+
+      step(copy, 20);
+      CHECK(body.displacements() == u);
+      CHECK(body.steps() == 20);
+      other_step(twin, 20);
+
+      check_same(copy, twin);
+    }
+  });
+}
+
+}  // namespace pliant::test

@@ -1,0 +1,1 @@
+#include "solver/recorded_steps_suite.hpp"
