@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+
 #include <pliant/backend/backend.hpp>
 #include <pliant/cuda/accumulate.cuh>
 #include <pliant/cuda/launch.hpp>
@@ -41,6 +42,7 @@ class Cuda {
   using Elements = CudaElements<T, Nodes>;
   using Recording = CudaRecording;
   using Stopwatch = CudaStopwatch;
+  static constexpr bool orders_by_group = false;
   static constexpr char const* name() { return "Cuda"; }
 
   Cuda(CudaOptions const& options = {})

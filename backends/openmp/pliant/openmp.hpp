@@ -35,6 +35,7 @@ class OpenMP {
   using Array = HostArray<U>;
   using Recording = HostRecording;
   using Stopwatch = HostStopwatch;
+  static constexpr bool orders_by_group = true;
   static constexpr char const* name() { return "OpenMP"; }
 
   OpenMP(OpenMPOptions options = {}) : threads_(options.threads) {

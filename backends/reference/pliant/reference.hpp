@@ -22,6 +22,7 @@ class Reference {
   using Array = HostArray<U>;
   using Recording = HostRecording;
   using Stopwatch = HostStopwatch;
+  static constexpr bool orders_by_group = false;
   static constexpr char const* name() { return "Reference"; }
 
   template <int Nodes>

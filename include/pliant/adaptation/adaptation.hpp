@@ -32,8 +32,6 @@ class Adaptation {
   template <class TheBody>
   void now(TheBody& body) {
     constexpr bool refines = (!detail::Switches<Rules> || ...);
-    // The last step ends under the laws that it began with.
-    if constexpr ((detail::Switches<Rules> || ...)) body.synchronize_velocities();
     auto& watches = body.watches();
     watches.criteria.start();
     body.for_each_table([&](auto& table) {
@@ -41,9 +39,11 @@ class Adaptation {
       detail::switch_groups(body, table, switching<Table>());
     });
     watches.criteria.stop();
-    watches.migration.start();
-    body.for_each_table([&](auto& table) { table.elements.regroup(); });
-    watches.migration.stop();
+    if constexpr (TheBody::backend_type::orders_by_group) {
+      watches.migration.start();
+      body.for_each_table([&](auto& table) { table.elements.regroup(); });
+      watches.migration.stop();
+    }
     body.forget_forces();
     if constexpr (refines) {
       watches.criteria.start();

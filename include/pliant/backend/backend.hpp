@@ -30,7 +30,8 @@
 // nodes, Matrix<S, Nodes, Components>, and S is a scalar of the backend's choice (a pack of elements
 // in SIMD lanes, or a plain number). Elements whose tag is `no_group` are passed over.
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
-//   .count() .tags() .regroup()   regroup: call after tags changed
+//   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
+//                              group (orders_by_group); the others look at each tag as they go
 //   .scratch_nodes()           rows that a field to accumulate into needs behind its nodes
 //   accumulate<Groups>(elements, kernel, out, fields...)
 //                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`
@@ -80,6 +81,7 @@ concept Backend =
       { b.maximum(n, f) } -> std::same_as<double>;
       { b.record(f) } -> std::same_as<typename B::Recording>;
       b.synchronize();
+      { B::orders_by_group } -> std::convertible_to<bool>;
       { B::name() } -> std::convertible_to<char const*>;
       typename B::template Elements<4>;
     };

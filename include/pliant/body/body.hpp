@@ -113,6 +113,8 @@ class Body {
   Field displacement_field() { return {layout_.u.data()}; }
   ConstField rest_field() const { return {layout_.rest.data()}; }
   ConstField displacement_field() const { return {layout_.u.data()}; }
+  /// A half kick behind time() while one is owed().
+  ConstField velocity_field() const { return {layout_.v.data()}; }
   ExternalForces<T, dim> external_forces() const;
   /// Brings `layout().f` up to date.
   void evaluate_forces();

@@ -14,7 +14,10 @@ struct CounterLayout {
   static constexpr int energy(int from, int to) {
     return Groups + Groups * Groups + from * Groups + to;
   }
-  static constexpr int count = Groups + 2 * Groups * Groups;
+  static constexpr int kinetic(int from, int to) {
+    return Groups + 2 * Groups * Groups + from * Groups + to;
+  }
+  static constexpr int count = Groups + 3 * Groups * Groups;
 };
 
 /// What is remembered of the elements of one type while they change groups; made when adaptation

@@ -111,7 +111,7 @@ auto ledger(TheBody const& body) {
                                  std::to_string(from) + " to group " + std::to_string(to),
                              moved,
                              sums[static_cast<std::size_t>(Counters::energy(from, to))],
-                             0,
+                             sums[static_cast<std::size_t>(Counters::kinetic(from, to))],
                              {}});
       }
   });

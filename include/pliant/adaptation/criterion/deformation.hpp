@@ -9,14 +9,17 @@ namespace pliant {
 struct EdgeLengthRatio {
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
-    typename State::scalar largest(0);
+    using S = typename State::scalar;
+    // l/L − 1 grows with s = l²/L² − 1, so the roots are taken of the extremes alone.
+    S longest(0), shortest(0);
     for (int k = 0; k < State::edge_count; ++k) {
       auto const edge = e.edge(k);
-      // l/L − 1 = (l² − L²)/(L (l + L))
-      largest = max(largest, abs(edge.squared_change /
-                                 (edge.rest_length * (edge.length + edge.rest_length))));
+      S const s = edge.squared_change / edge.squared_rest;
+      longest = max(longest, s);
+      shortest = min(shortest, s);
     }
-    return largest;
+    auto const ratio = [](S const& s) { return s / (S(1) + sqrt(max(S(0), S(1) + s))); };
+    return max(ratio(longest), -ratio(shortest));
   }
 };
 

@@ -34,11 +34,11 @@ struct ElementState {
   /// Where the nodes are now.
   PLIANT_HOST_DEVICE Nodal<element, S> current() const { return rest + u; }
 
-  /// Rest and current vectors along edge k, and their lengths.
+  /// The vector along edge k at rest, its change, and its length now.
   struct Edge {
     Vector<S, dim> at_rest, change;
     S squared_rest, squared_change;  // L² and l² − L², without cancellation
-    S rest_length, length;
+    PLIANT_HOST_DEVICE S length() const { return sqrt(squared_rest + squared_change); }
   };
   PLIANT_HOST_DEVICE Edge edge(int k) const {
     constexpr auto edges = element::edges();
@@ -51,8 +51,6 @@ struct ElementState {
     e.squared_rest = dot(e.at_rest, e.at_rest);
     S const cross = dot(e.at_rest, e.change);
     e.squared_change = cross + cross + dot(e.change, e.change);
-    e.rest_length = sqrt(e.squared_rest);
-    e.length = sqrt(e.squared_rest + e.squared_change);
     return e;
   }
   static constexpr int edge_count = static_cast<int>(element::edges().size());

@@ -15,9 +15,9 @@ struct AspectRatio {
     using S = typename State::scalar;
     using E = typename State::element;
     using T = builtin_scalar<S>;
-    S sum(0), longest(0), shortest = e.edge(0).length;
+    S sum(0), longest(0), shortest = e.edge(0).length();
     for (int k = 0; k < State::edge_count; ++k) {
-      S const length = e.edge(k).length;
+      S const length = e.edge(k).length();
       sum = sum + length;
       longest = max(longest, length);
       shortest = min(shortest, length);
@@ -59,7 +59,7 @@ struct HarmonicMeanEdge {
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
     S inverses(0);
-    for (int k = 0; k < State::edge_count; ++k) inverses = inverses + S(1) / e.edge(k).length;
+    for (int k = 0; k < State::edge_count; ++k) inverses = inverses + S(1) / e.edge(k).length();
     return S(State::edge_count) / inverses;
   }
 };
@@ -70,7 +70,7 @@ struct HarmonicMeanShape {
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
     S sum(0);
-    for (int k = 0; k < State::edge_count; ++k) sum = sum + e.edge(k).length;
+    for (int k = 0; k < State::edge_count; ++k) sum = sum + e.edge(k).length();
     return HarmonicMeanEdge{}(e)*S(State::edge_count) / sum;
   }
 };
