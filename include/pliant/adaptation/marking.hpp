@@ -1,9 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <type_traits>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/error.hpp>
@@ -56,14 +60,22 @@ struct SignedValue {
 };
 
 /// The threshold nearest to `loose` for which fits(threshold) holds, knowing that it holds at
-/// `strict` and that it is monotonous; to the last bit of T.
+/// `strict` and that it is monotonous; to the last bit of T, in at most as many halvings as T has bits:
+/// of the interval of the numbers' bit patterns, which has no more of them near zero.
 template <class T, class Fits>
 T bisect(T loose, T strict, Fits const& fits) {
+  using Pattern = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+  // In the order of the numbers; its own inverse.
+  auto const ordered = [](Pattern p) {
+    return p < 0 ? p ^ std::numeric_limits<Pattern>::max() : p;
+  };
   if (fits(loose)) return loose;
+  Pattern not_yet = ordered(std::bit_cast<Pattern>(loose));
+  Pattern fitting = ordered(std::bit_cast<Pattern>(strict));
   for (;;) {
-    T const middle = loose / 2 + strict / 2;
-    if (middle == loose || middle == strict) return strict;
-    (fits(middle) ? strict : loose) = middle;
+    Pattern const middle = std::midpoint(not_yet, fitting);
+    if (middle == not_yet || middle == fitting) return std::bit_cast<T>(ordered(fitting));
+    (fits(std::bit_cast<T>(ordered(middle))) ? fitting : not_yet) = middle;
   }
 }
 
