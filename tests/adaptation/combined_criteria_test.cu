@@ -1,0 +1,1 @@
+#include "adaptation/combined_criteria_suite.hpp"

@@ -1,0 +1,1 @@
+#include "adaptation/deformation_criteria_suite.hpp"

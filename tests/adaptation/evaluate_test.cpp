@@ -1,0 +1,1 @@
+#include "adaptation/evaluate_suite.hpp"

@@ -1,0 +1,1 @@
+#include "adaptation/force_intensity_suite.hpp"

@@ -1,0 +1,180 @@
+#pragma once
+
+#include "support/formulations.hpp"
+
+namespace pliant::test {
+
+/// Which values act, by sorting them.
+template <class T>
+std::vector<bool> sorted_marks(Marking const& m, std::vector<T> const& values) {
+  std::vector<double> ranked;  // the most extreme first
+  double const sign = m.below() ? -1 : 1;
+  for (T v : values)
+    if (v == v) ranked.push_back(sign * static_cast<double>(v));
+  std::ranges::sort(ranked, std::greater{});
+  std::size_t acting = ranked.size();
+  auto const only = [&](auto const& holds) {
+    std::size_t k = 0;
+    while (k < acting && holds(ranked[k])) ++k;
+    acting = k;
+  };
+  /// At most so many, and equal values at the limit together or not at all.
+  auto const at_most = [&](double most) {
+    if (static_cast<double>(acting) <= most) return;
+    std::size_t k = static_cast<std::size_t>(most);
+    while (k > 0 && ranked[k - 1] == ranked[k]) --k;
+    acting = k;
+  };
+  switch (m.kind) {
+    case MarkingKind::above:
+      only([&](double v) { return v > m.amount; });
+      break;
+    case MarkingKind::below:
+      only([&](double v) { return v > -m.amount; });
+      break;
+    case MarkingKind::fraction_of_largest:
+      if (acting > 0) only([&, most = ranked[0]](double v) { return v > m.amount * most; });
+      break;
+    case MarkingKind::top_share:
+      at_most(m.amount * static_cast<double>(acting));
+      break;
+    case MarkingKind::bulk: {
+      double total = 0, sum = 0;
+      for (double v : ranked) total += v;
+      std::size_t k = 0;
+      while (k < acting && (sum < m.amount * total || (k > 0 && ranked[k] == ranked[k - 1])))
+        sum += ranked[k++];
+      if (m.amount == 0) k = 0;
+      acting = k;
+      break;
+    }
+  }
+  if (!m.below()) only([&](double v) { return v > m.floor; });
+  if (m.budget < static_cast<long>(acting)) at_most(static_cast<double>(m.budget));
+  std::vector<bool> marks;
+  for (T v : values)
+    marks.push_back(acting > 0 && v == v && sign * static_cast<double>(v) >= ranked[acting - 1]);
+  return marks;
+}
+
+template <class B>
+std::vector<bool> marks_of(Marking const& m, B const& backend,
+                           std::vector<typename B::scalar> const& values) {
+  auto const array = upload(backend, values);
+  auto const threshold = threshold_of(m, backend, array.data(), static_cast<Index>(values.size()));
+  std::vector<bool> marks;
+  for (auto v : values) marks.push_back(m.below() ? v < threshold : v > threshold);
+  return marks;
+}
+
+/// Values from which some are missing (NaN): spread, with many alike, mostly zero, all alike.
+template <class T>
+std::vector<std::vector<T>> samples() {
+  Random random(7);
+  std::vector<std::vector<T>> all;
+  for (std::size_t size : {1u, 2u, 7u, 100u, 5000u}) {
+    for (int kind = 0; kind < 4; ++kind) {
+      std::vector<T> values;
+      for (std::size_t i = 0; i < size; ++i) {
+        double const x = (random() + 1) / 2;
+        double const v = kind == 0   ? x
+                         : kind == 1 ? std::floor(8 * x) / 8
+                         : kind == 2 ? (x > 0.9 ? x : 0)
+                                     : 0.375;
+        bool const missing = random.below(5) == 0;
+        values.push_back(missing ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(v));
+      }
+      all.push_back(values);
+    }
+  }
+  all.push_back({});
+  all.push_back(std::vector<T>(5, std::numeric_limits<T>::quiet_NaN()));
+  return all;
+}
+
+TEST_CASE("the elements that a marking marks are those of a sorted list", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    std::size_t marked = 0, cases = 0;
+    for (auto const& values : samples<T>())
+      for (auto kind : {MarkingKind::above, MarkingKind::below, MarkingKind::fraction_of_largest,
+                        MarkingKind::top_share, MarkingKind::bulk})
+        for (double amount : {0.0, 0.125, 0.5, 0.96875, 1.0})
+          for (double floor : {-std::numeric_limits<double>::infinity(), 0.25, 2.0})
+            for (long budget : {std::numeric_limits<long>::max(), 1L, 3L, 60L}) {
+              Marking const m{kind, amount, floor, budget};
+              if (m.below() && std::isfinite(floor)) continue;
+
+              auto const marks = marks_of(m, backend, values);
+
+              auto const expected = sorted_marks(m, values);
+              ++cases;
+              for (bool mark : marks) marked += mark;
+              if (marks != expected) {
+                CAPTURE(static_cast<int>(kind), amount, floor, budget, values.size());
+                CHECK(std::ranges::count(marks, true) == std::ranges::count(expected, true));
+                REQUIRE(marks == expected);
+              }
+            }
+    CHECK(cases == 22 * 5 * (4 * 3 + 1) * 4);
+    CHECK(marked > 100000);
+  });
+}
+
+TEST_CASE("negative values are ranked too", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    Random random(8);
+    std::vector<T> values;
+    for (int i = 0; i < 300; ++i) values.push_back(static_cast<T>(random() - 0.5));
+    for (auto kind : {MarkingKind::above, MarkingKind::below, MarkingKind::top_share})
+      for (double amount : {-1.0, -0.25, 0.0, 0.25})
+        for (long budget : {std::numeric_limits<long>::max(), 10L}) {
+          Marking const m{kind,
+                          std::abs(kind == MarkingKind::top_share ? amount : 0) +
+                              (kind == MarkingKind::top_share ? 0 : amount),
+                          -std::numeric_limits<double>::infinity(), budget};
+          CAPTURE(static_cast<int>(kind), amount, budget);
+          CHECK(marks_of(m, backend, values) == sorted_marks(m, values));
+        }
+  });
+}
+
+#if !defined(__CUDACC__)
+/// Reference, counting how often it adds up.
+struct Counting : Reference<double> {
+  int* sums;
+  template <class F>
+  double sum(Index n, F const& f) const {
+    ++*sums;
+    return Reference<double>::sum(n, f);
+  }
+};
+
+TEST_CASE("a threshold is found in a few passes, whatever the values", "[adaptation]") {
+  for (auto const& values : samples<double>())
+    for (auto kind : {MarkingKind::top_share, MarkingKind::bulk, MarkingKind::above}) {
+      int sums = 0;
+      Counting backend;
+      backend.sums = &sums;
+
+      (void)marks_of(Marking{kind, 0.0625, 0, kind == MarkingKind::above ? 2 : 1000}, backend,
+                     values);
+
+      CHECK(sums <= 2 * 64 + 4);
+    }
+}
+#endif
+
+TEST_CASE("shares beyond all and budgets of nobody are refused", "[adaptation]") {
+  using F = Formulation<Quad4, Gauss<2>, Hooke>;
+  auto const rule = when<F>(EdgeLengthRatio{});
+  CHECK_THROWS_AS(rule.top_share(1.01), Error);
+  CHECK_THROWS_AS(rule.top_share(-0.01), Error);
+  CHECK_THROWS_AS(rule.bulk(NAN), Error);
+  CHECK_THROWS_AS(rule.above_fraction_of_largest(2), Error);
+  CHECK_THROWS_AS(rule.above(1).budget(0), Error);
+  CHECK_NOTHROW(rule.bulk(1).budget(1));
+}
+
+}  // namespace pliant::test

@@ -1,0 +1,1 @@
+#include "adaptation/marking_suite.hpp"

@@ -1,0 +1,1 @@
+#include "adaptation/rotation_criterion_suite.hpp"

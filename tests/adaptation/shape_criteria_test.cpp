@@ -1,0 +1,1 @@
+#include "adaptation/shape_criteria_suite.hpp"
