@@ -79,9 +79,13 @@ class Adaptation {
         auto const threshold =
             threshold_of(rule.marking, body.backend(), values.data(), table.count());
         auto const on_host = download<typename TheBody::scalar>(values);
-        for (std::size_t e = 0; e < on_host.size(); ++e)
-          if (rule.marking.below() ? on_host[e] < threshold : on_host[e] > threshold)
-            marked.push_back(table.user_element[e]);
+        auto const levels = detail::levels_of<typename Table::element>(body);
+        for (std::size_t e = 0; e < on_host.size(); ++e) {
+          Index const element = table.user_element[e];
+          bool const holds = rule.marking.below() ? on_host[e] < threshold : on_host[e] > threshold;
+          if (holds && levels[static_cast<std::size_t>(element)] < rule.options.max_level)
+            marked.push_back(element);
+        }
         max_level = std::max(max_level, rule.options.max_level);
       }
     };

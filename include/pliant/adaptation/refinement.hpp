@@ -44,6 +44,16 @@ std::vector<Index> leaves_of(Hierarchy const& tree) {
   return cells;
 }
 
+/// How often each element of a type was refined, by the user's number.
+template <Element E, class TheBody>
+std::vector<int> levels_of(TheBody const& body) {
+  if (!body.history().tree) return std::vector<int>(body.mesh().template elements<E>().size(), 0);
+  std::vector<int> levels;
+  for (Index c : leaves_of<E>(*body.history().tree))
+    levels.push_back(body.history().tree->cell(c).level);
+  return levels;
+}
+
 inline std::vector<Facet<2>> facets_of(Hierarchy const& tree, int mark) {
   std::vector<Facet<2>> facets;
   for (auto const& facet : tree.facets_of(mark)) facets.push_back(facet.nodes);

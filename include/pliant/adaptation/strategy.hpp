@@ -39,6 +39,10 @@ class Marked {
 
   /// No element with a smaller value acts, whatever the others have.
   Marked floor(double value) const {
+    if (marking_.below())
+      throw Error(
+          "strategy: a floor under values that are to be small; give a floor to rules that "
+          "look for large values");
     Marked m = *this;
     m.marking_.floor = value;
     return m;
@@ -68,6 +72,8 @@ class Marked {
   auto refine(RefineOptions options = {}) const {
     static_assert(From::dim == 2 && From::nodes == From::element::sides().size(),
                   "refine: available for Tri3 and Quad4");
+    if (stay_ != 0)
+      throw Error("strategy: refine has no stay; use stay with become, or check less often");
     return RefineRule<From, Criterion>{criterion_, marking_, options};
   }
 
