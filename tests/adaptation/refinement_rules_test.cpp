@@ -1,0 +1,1 @@
+#include "adaptation/refinement_rules_suite.hpp"
