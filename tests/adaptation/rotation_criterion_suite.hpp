@@ -31,7 +31,7 @@ TEST_CASE("Rotation is the chord of the angle, whatever the stretch", "[adaptati
         // Displacements of order one are rounded over edges of 0.5; stretches magnify by 4.
         double const rounding = 64 * epsilon * (stretched ? 4 : std::min(1.0, angle)) + 1e-14;
         for (double r : values_at<E>(backend, mesh, u, Rotation{}))
-          CHECK(r == Approx(2 * std::sin(angle / 2)).margin(rounding).epsilon(1e-14));
+          CHECK(std::abs(r - 2 * std::sin(angle / 2)) / rounding < 1);
       }
     }
   });
