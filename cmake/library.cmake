@@ -24,6 +24,13 @@ target_link_libraries(pliant INTERFACE Eigen3::Eigen)
 pliant_add_headers(pliant_openmp backends/openmp)
 set_target_properties(pliant_openmp PROPERTIES EXPORT_NAME openmp)
 target_link_libraries(pliant_openmp INTERFACE pliant OpenMP::OpenMP_CXX)
+# g++ 12 crashes in this pass on the largest kernels of packs; packs are vectors already and gain
+# nothing from it.
+target_compile_options(
+  pliant_openmp
+  INTERFACE
+    "$<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-fno-tree-slp-vectorize>"
+)
 if(pliant_has_openmp)
   add_library(pliant::openmp ALIAS pliant_openmp)
 endif()
