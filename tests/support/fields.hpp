@@ -73,7 +73,10 @@ FieldOf<Dim> uniform(FieldOf<Dim> const& nodes, Tensor<double, int{Dim}> const& 
 template <class T, std::size_t Dim>
 FieldOf<Dim> rounded(FieldOf<Dim> a) {
   for (auto& v : a)
-    for (double& x : v) x = static_cast<double>(static_cast<T>(x));
+    for (double& x : v) {
+      T volatile kept = static_cast<T>(x);  // GCC 12 drops a rounding to and fro in pairs
+      x = static_cast<double>(kept);
+    }
   return a;
 }
 
