@@ -24,13 +24,6 @@ struct OpenMPOptions {
   int threads = 0;  // 0: as many as the OpenMP runtime gives
 };
 
-// GCC 12's vectoriser of straight-line code crashes on kernels as long as these, whose lanes are vectors
-// already.
-#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ < 13
-#pragma GCC push_options
-#pragma GCC optimize("no-tree-slp-vectorize")
-#endif
-
 /// Threads over patches of elements, SIMD lanes over the elements of a patch. The results have the
 /// same bits for any number of threads.
 template <std::floating_point T>
@@ -219,9 +212,5 @@ class OpenMP {
 
   int threads_;
 };
-
-#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ < 13
-#pragma GCC pop_options
-#endif
 
 }  // namespace pliant
