@@ -18,13 +18,15 @@ TEST_CASE("largest and smallest combine criteria", "[adaptation]") {
                alone = of(largest(AreaRatio{})),
                nested = of(largest(smallest(EdgeLengthRatio{}, AreaRatio{}), Rotation{}));
 
+    // A criterion is the distance of a ratio from 1, and rounded like that ratio however small it is.
     double const rounding = 16 * double{std::numeric_limits<typename B::scalar>::epsilon()};
+    auto const rounded = [&](double value) { return Approx(value).epsilon(0).margin(rounding); };
     int each[3]{};
     for (std::size_t e = 0; e < a.size(); ++e) {
-      CHECK(greatest[e] == Approx(std::max({a[e], b[e], c[e]})).epsilon(rounding));
-      CHECK(least[e] == Approx(std::min({a[e], b[e], c[e]})).epsilon(rounding));
-      CHECK(alone[e] == Approx(b[e]).epsilon(rounding));
-      CHECK(nested[e] == Approx(std::max(std::min(a[e], b[e]), c[e])).epsilon(rounding));
+      CHECK(greatest[e] == rounded(std::max({a[e], b[e], c[e]})));
+      CHECK(least[e] == rounded(std::min({a[e], b[e], c[e]})));
+      CHECK(alone[e] == rounded(b[e]));
+      CHECK(nested[e] == rounded(std::max(std::min(a[e], b[e]), c[e])));
       ++each[a[e] > b[e] && a[e] > c[e] ? 0 : b[e] > c[e] ? 1 : 2];
     }
     for (int times : each) CHECK((E::dim == 3 || times > 0));
