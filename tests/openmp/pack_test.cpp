@@ -57,8 +57,14 @@ TEMPLATE_TEST_CASE("elementary functions of packs are as exact as those of numbe
       CHECK(double{exp(z)[l]} == Approx(std::exp(t)).epsilon(epsilon));
       CHECK(double{log(x)[l]} == Approx(std::log(s)).epsilon(epsilon).margin(epsilon / 4));
       CHECK(double{log1p(z)[l]} == Approx(std::log1p(t)).epsilon(epsilon).margin(0));
+      CHECK(double{expm1(z)[l]} == Approx(std::expm1(t)).epsilon(epsilon).margin(0));
+      CHECK(double{cbrt(z)[l]} == Approx(std::cbrt(t)).epsilon(epsilon).margin(0));
     }
   }
+}
+
+TEMPLATE_TEST_CASE("the cube root of nothing is nothing", "[openmp]", float, double) {
+  CHECK(cbrt(Pack<TestType>(0))[0] == 0);
 }
 
 TEMPLATE_TEST_CASE("gathering and scattering move whole nodes", "[openmp]", float, double) {

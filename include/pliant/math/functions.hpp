@@ -30,13 +30,21 @@ PLIANT_HOST_DEVICE T exp(T x) {
   return std::exp(x);
 }
 template <std::floating_point T>
+PLIANT_HOST_DEVICE T expm1(T x) {
+  return std::expm1(x);
+}
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T cbrt(T x) {
+  return std::cbrt(x);
+}
+template <std::floating_point T>
 PLIANT_HOST_DEVICE T abs(T x) {
   return std::fabs(x);
 }
 
 /// `condition ? a : b`, evaluated without a branch on packs of elements.
 template <Arithmetic T>
-PLIANT_HOST_DEVICE T select(bool condition, T a, T b) {
+PLIANT_HOST_DEVICE constexpr T select(bool condition, T a, T b) {
   return condition ? a : b;
 }
 
@@ -73,6 +81,15 @@ PLIANT_HOST_DEVICE T excess_of_log1p(T const& x) {
   T series = T(1) / T(14);
   for (int k = 13; k >= 2; --k) series = T(1) / T(k) - x * series;
   return select(abs(x) < T(0.0625), x * x * series, x - log1p(x));
+}
+
+/// eˣ − 1 − x, without the cancellation that the plain difference suffers for small x.
+template <class T>
+PLIANT_HOST_DEVICE T excess_of_expm1(T const& x) {
+  // Truncation below 1e-18 relative to x²/2 for |x| < 1/2; beyond, the difference loses < 3 bits.
+  T series = T(1);
+  for (int k = 16; k >= 3; --k) series = T(1) + T(1) / T(k) * x * series;
+  return select(abs(x) < T(0.5), x * x / T(2) * series, expm1(x) - x);
 }
 
 /// The scalar in which a value's parts are stored: `float` for a pack of floats or their duals.

@@ -96,8 +96,20 @@ PLIANT_HOST_DEVICE Pack<T, L> exp(Pack<T, L> const& x) {
   return detail::lanewise(x, [](auto const& a) { return a.exp(); });
 }
 template <class T, int L>
+PLIANT_HOST_DEVICE Pack<T, L> expm1(Pack<T, L> const& x) {
+  return detail::lanewise(x, [](auto const& a) { return a.expm1(); });
+}
+template <class T, int L>
 PLIANT_HOST_DEVICE Pack<T, L> abs(Pack<T, L> const& x) {
   return select(x < Pack<T, L>(0), -x, x);
+}
+template <class T, int L>
+PLIANT_HOST_DEVICE Pack<T, L> cbrt(Pack<T, L> const& x) {
+  // A step of Newton's method takes away what the logarithm and the exponential round.
+  using P = Pack<T, L>;
+  P const size = abs(x), root = exp(log(size) / P(3));
+  P const better = root - (root - size / (root * root)) / P(3);
+  return select(P(0) < size, select(x < P(0), -better, better), x);
 }
 
 }  // namespace pliant
