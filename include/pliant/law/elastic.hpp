@@ -16,6 +16,7 @@ struct Elastic {
 
   double lame_lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
   double lame_mu() const { return young / (2 * (1 + poisson)); }
+  double bulk() const { return young / (3 * (1 - 2 * poisson)); }
 
   /// Throws Error when a value is impossible.
   Elastic const& checked() const {

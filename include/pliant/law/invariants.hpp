@@ -85,7 +85,7 @@ struct GreenInvariants {
       for (int j = i; j < Dim; ++j) {
         S product = h(0, i) * h(0, j);
         for (int k = 1; k < Dim; ++k) product = product + h(k, i) * h(k, j);
-        e(i, j) = (h(i, j) + h(j, i) + product) / S(2);
+        e(i, j) = (h(i, j) + h(j, i) + product) / 2;
         e(j, i) = e(i, j);
       }
     return e;

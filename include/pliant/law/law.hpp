@@ -2,11 +2,16 @@
 
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 #include <pliant/law/elastic.hpp>
+#include <pliant/law/green_strain.hpp>
 #include <pliant/law/invariants.hpp>
+#include <pliant/law/isochoric_invariants.hpp>
+#include <pliant/law/principal_stretches.hpp>
 
 // A law is an aggregate template of its parameters, all of type T, with its strain energy density
 // written once:
@@ -19,6 +24,7 @@
 //     static MyLaw from(Elastic const& m) { return {T(m.lame_mu()), T(m.lame_lambda())}; }
 //   };
 //
+// An energy of two parts, each in a set of its own, writes two functions `energy`: they add.
 // S may be T, a pack of elements or a dual number of either: write `select`, never `if`, on values,
 // and integers or T(0.5) for constants. `from` is needed only where the law takes its parameters
 // from an `Elastic`. Stress and tangent follow by differentiation.
@@ -34,10 +40,55 @@ template <class L>
 concept EnergyInGradient = requires(L const& law, Tensor<Dual<double, 1>, 3> const& h) {
   { law.energy(h) } -> std::convertible_to<Dual<double, 1>>;
 };
-/// A strain energy density and its parameters.
+/// The energy is that of a plane body, in its displacement gradient, 2×2.
 template <class L>
-concept Law = EnergyIn<L, StrainInvariants> || EnergyIn<L, CauchyGreenInvariants> ||
-              EnergyIn<L, GreenInvariants> || EnergyInGradient<L>;
+concept EnergyInPlane = requires(L const& law, Tensor<Dual<double, 1>, 2> const& h) {
+  { law.energy(h) } -> std::convertible_to<Dual<double, 1>>;
+};
+
+namespace detail {
+
+template <class... Sets>
+struct SetList {
+  static constexpr int size = sizeof...(Sets);
+};
+template <class L, class List, class... Chosen>
+struct ChooseSets {
+  using type = SetList<Chosen...>;
+};
+template <class L, class Set, class... Sets, class... Chosen>
+struct ChooseSets<L, SetList<Set, Sets...>, Chosen...>
+    : ChooseSets<L, SetList<Sets...>, Chosen...> {};
+template <class L, class Set, class... Sets, class... Chosen>
+  requires requires(L const& law, Set const& i) {
+    { law.energy(i) } -> std::convertible_to<Dual<double, 1>>;
+  }
+struct ChooseSets<L, SetList<Set, Sets...>, Chosen...>
+    : ChooseSets<L, SetList<Sets...>, Chosen..., Set> {};
+
+/// The sets of invariants in which a law writes its energy, or the parts of it.
+template <class L, int Dim, class V = Dual<double, 1>>
+using sets_of =
+    typename ChooseSets<L,
+                        SetList<StrainInvariants<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
+                                PrincipalInvariants<V>, IsochoricInvariants<V>, MooneyInvariants<V>,
+                                GreenStrain<V, Dim>, PrincipalStretches<V>>>::type;
+
+}  // namespace detail
+
+/// A strain energy density and its parameters, at one point of one material.
+template <class L>
+concept PointLaw = detail::sets_of<L, 3>::size > 0 || EnergyInGradient<L> || EnergyInPlane<L>;
+
+/// A law some of whose parameters differ between elements: `at(values)`, of `element_values` numbers
+/// that a body keeps per element, is the law of that element. The values may be a pack of elements.
+template <class L>
+concept LawPerElement = requires(L const& law, Vector<double, L::element_values> const& values) {
+  { law.at(values) } -> PointLaw;
+};
+/// What a formulation can be made of.
+template <class L>
+concept Law = PointLaw<L> || LawPerElement<L>;
 
 /// A law whose parameters follow from an `Elastic`.
 template <class L>
@@ -57,63 +108,86 @@ PLIANT_HOST_DEVICE Tensor<S, 3> in_space(Tensor<S, 2> const& h) {
 
 namespace detail {
 
-template <class Family, class L, class S, int Dim>
-PLIANT_HOST_DEVICE Tensor<S, Dim> stress_by_invariants(L const& law, Tensor<S, Dim> const& h) {
-  Family const i = Family::of(h);
-  typename Family::template rebind<Dual<S, Family::count>> variables;
-  for (int k = 0; k < Family::count; ++k) variables[k] = Dual<S, Family::count>::variable(i[k], k);
-  Dual<S, Family::count> const w = law.energy(variables);
-  Family slopes;
-  for (int k = 0; k < Family::count; ++k) slopes[k] = w.derivative[k];
-  return Family::stress(slopes, h);
+template <class Set, class L, class S, int Dim>
+PLIANT_HOST_DEVICE S energy_in(L const& law, Tensor<S, Dim> const& h) {
+  return law.energy(Set::template rebind<S>::of(h));
+}
+template <class Set, class L, class S, int Dim>
+PLIANT_HOST_DEVICE Tensor<S, Dim> stress_in(L const& law, Tensor<S, Dim> const& h) {
+  using Family = typename Set::template rebind<S>;
+  if constexpr (requires { Family::stress_of(law, h); }) {
+    return Family::stress_of(law, h);
+  } else {
+    Family const i = Family::of(h);
+    typename Family::template rebind<Dual<S, Family::count>> variables;
+    for (int k = 0; k < Family::count; ++k)
+      variables[k] = Dual<S, Family::count>::variable(i[k], k);
+    Dual<S, Family::count> const w = law.energy(variables);
+    Family slopes;
+    for (int k = 0; k < Family::count; ++k) slopes[k] = w.derivative[k];
+    return Family::stress(slopes, h);
+  }
 }
 
+template <class L, class S, int Dim>
+PLIANT_HOST_DEVICE auto energy_of_gradient(L const& law, Tensor<S, Dim> const& h) {
+  if constexpr (EnergyInGradient<L>) {
+    return law.energy(in_space(h));
+  } else {
+    static_assert(Dim == 2, "this law is that of a plane body: give it two dimensions");
+    return law.energy(h);
+  }
+}
 template <class L, class S, int Dim>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress_by_gradient(L const& law, Tensor<S, Dim> const& h) {
   using Variable = Dual<S, Dim * Dim>;
   Tensor<Variable, Dim> variables;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) variables(i, j) = Variable::variable(h(i, j), i * Dim + j);
-  Variable const w = law.energy(in_space(variables));
+  Variable const w = energy_of_gradient(law, variables);
   Tensor<S, Dim> p;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) p(i, j) = w.derivative[i * Dim + j];
   return p;
 }
 
+template <class... Sets, class L, class S, int Dim>
+PLIANT_HOST_DEVICE S sum_of_energies(SetList<Sets...>, L const& law, Tensor<S, Dim> const& h) {
+  return (energy_in<Sets>(law, h) + ...);
+}
+template <class... Sets, class L, class S, int Dim>
+PLIANT_HOST_DEVICE Tensor<S, Dim> sum_of_stresses(SetList<Sets...>, L const& law,
+                                                  Tensor<S, Dim> const& h) {
+  return (stress_in<Sets>(law, h) + ...);
+}
+
 }  // namespace detail
 
 /// Strain energy per rest volume (J/m³) at the displacement gradient h.
-template <Law L, class S, int Dim>
+template <PointLaw L, class S, int Dim>
 PLIANT_HOST_DEVICE S energy_density(L const& law, Tensor<S, Dim> const& h) {
-  if constexpr (EnergyIn<L, StrainInvariants>)
-    return law.energy(StrainInvariants<S>::of(h));
-  else if constexpr (EnergyIn<L, CauchyGreenInvariants>)
-    return law.energy(CauchyGreenInvariants<S>::of(h));
-  else if constexpr (EnergyIn<L, GreenInvariants>)
-    return law.energy(GreenInvariants<S>::of(h));
+  using Sets = detail::sets_of<L, Dim>;
+  if constexpr (Sets::size > 0)
+    return detail::sum_of_energies(Sets{}, law, h);
   else
-    return law.energy(in_space(h));
+    return detail::energy_of_gradient(law, h);
 }
 
 /// The first Piola-Kirchhoff stress P = ∂W/∂F (Pa) at the displacement gradient h. A law may write
 /// it by hand as `stress(h)`; otherwise duals on the invariants, or on H, derive it.
-template <Law L, class S, int Dim>
+template <PointLaw L, class S, int Dim>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress(L const& law, Tensor<S, Dim> const& h) {
+  using Sets = detail::sets_of<L, Dim>;
   if constexpr (requires { law.stress(h); })
     return law.stress(h);
-  else if constexpr (EnergyIn<L, StrainInvariants>)
-    return detail::stress_by_invariants<StrainInvariants<S>>(law, h);
-  else if constexpr (EnergyIn<L, CauchyGreenInvariants>)
-    return detail::stress_by_invariants<CauchyGreenInvariants<S>>(law, h);
-  else if constexpr (EnergyIn<L, GreenInvariants>)
-    return detail::stress_by_invariants<GreenInvariants<S>>(law, h);
+  else if constexpr (Sets::size > 0)
+    return detail::sum_of_stresses(Sets{}, law, h);
   else
     return detail::stress_by_gradient(law, h);
 }
 
 /// The change of stress dP = ∂P/∂F : dH, by a one-component dual through the stress.
-template <Law L, class S, int Dim>
+template <PointLaw L, class S, int Dim>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress_change(L const& law, Tensor<S, Dim> const& h,
                                                 Tensor<S, Dim> const& dh) {
   Tensor<Dual<S, 1>, Dim> variables;
@@ -139,24 +213,36 @@ constexpr bool made_of(std::index_sequence<I...>) {
 }
 }  // namespace detail
 
+/// How many numbers the parameters of a law L<T> are.
+template <class Law, class T>
+inline constexpr std::size_t parameter_count = std::is_empty_v<Law> ? 0 : sizeof(Law) / sizeof(T);
+
 /// The parameters of a law as a list of numbers.
 template <template <class> class L, class T>
 auto parameters(L<T> const& law) {
-  constexpr std::size_t count = sizeof(L<T>) / sizeof(T);
-  static_assert(sizeof(L<T>) == count * sizeof(T) &&
-                    detail::made_of<L<T>, T>(std::make_index_sequence<count>()),
-                "every member of a law L<T> must be of type T, or an array of T");
-  return std::bit_cast<std::array<T, count>>(law);
+  constexpr std::size_t count = parameter_count<L<T>, T>;
+  if constexpr (count == 0) {
+    return std::array<T, 0>{};
+  } else {
+    static_assert(sizeof(L<T>) == count * sizeof(T) &&
+                      detail::made_of<L<T>, T>(std::make_index_sequence<count>()),
+                  "every member of a law L<T> must be of type T, or an array of T");
+    return std::bit_cast<std::array<T, count>>(law);
+  }
 }
 
 /// The same law with its parameters in another precision.
 template <class To, template <class> class L, class From>
 L<To> law_cast(L<From> const& law) {
   auto const from = parameters(law);
-  std::array<To, from.size()> to;
-  for (std::size_t k = 0; k < from.size(); ++k) to[k] = static_cast<To>(from[k]);
-  static_assert(sizeof(L<To>) == sizeof(to), "a law L<T> has the same members for each T");
-  return std::bit_cast<L<To>>(to);
+  if constexpr (from.size() == 0) {
+    return {};
+  } else {
+    std::array<To, from.size()> to;
+    for (std::size_t k = 0; k < from.size(); ++k) to[k] = static_cast<To>(from[k]);
+    static_assert(sizeof(L<To>) == sizeof(to), "a law L<T> has the same members for each T");
+    return std::bit_cast<L<To>>(to);
+  }
 }
 
 }  // namespace pliant

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <pliant/law/invariants.hpp>
+
+// Invariants with I₂, and those of the isochoric part F̄ = J^(−1/3) F of a deformation.
+namespace pliant {
+
+/// Of the right Cauchy-Green tensor: the distortions D1 = I₁ − 3 − 2(J − 1) and
+/// D2 = I₂ − 3 − 4(J − 1), which are of second order in the strain, and J − 1.
+template <class S>
+struct PrincipalInvariants {
+  static constexpr int count = 3;
+  S D1;   // I₁ − 3 − 2(J − 1)
+  S D2;   // I₂ − 3 − 4(J − 1)
+  S J_1;  // J − 1
+
+  PLIANT_HOST_DEVICE S I1_3() const { return D1 + (J_1 + J_1); }  // I₁ − 3
+  PLIANT_HOST_DEVICE S I2_3() const { return D2 + 4 * J_1; }      // I₂ − 3
+
+  template <class T>
+  using rebind = PrincipalInvariants<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? D1 : k == 1 ? D2 : J_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? D1 : k == 1 ? D2 : J_1; }
+
+  template <int Dim>
+  PLIANT_HOST_DEVICE static PrincipalInvariants of(Tensor<S, Dim> const& h) {
+    auto const first = CauchyGreenInvariants<S>::of(h);
+    if constexpr (Dim == 2) {
+      return {first.D, first.D + square(first.J_1), first.J_1};
+    } else {
+      // I₂ = |cof F|² and, with C = cof F − I, tr C = 2 tr H + tr cof H.
+      Tensor<S, 3> const c = cofactor_less_identity(h);
+      S const beyond = determinant_beyond_trace(h), minors = pliant::trace(cofactor(h));
+      return {first.D, dot(c, c) + 2 * minors - 4 * beyond, first.J_1};
+    }
+  }
+  /// With ∂I₂/∂F = 2 (I₁ F − F C) = 4 F (I + tr E I − E).
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(PrincipalInvariants const& w,
+                                                  Tensor<S, Dim> const& h) {
+    if constexpr (Dim == 2) {
+      S const j_1 = determinant_less_one(h);
+      return CauchyGreenInvariants<S>::stress({w.D1 + w.D2, w.J_1 + (w.D2 + w.D2) * j_1}, h);
+    } else {
+      Tensor<S, 3> m = builtin_scalar<S>(-1) * GreenInvariants<S>::strain(h);
+      S const t = -pliant::trace(m);
+      for (int i = 0; i < 3; ++i) m(i, i) = m(i, i) + t;
+      Tensor<S, 3> const slope = h + m + h * m - cofactor_less_identity(h);
+      return CauchyGreenInvariants<S>::stress({w.D1, w.J_1}, h) + (4 * w.D2) * slope;
+    }
+  }
+};
+
+/// Of the isochoric part of a deformation, Ī₁ − 3 with Ī₁ = J^(−2/3) I₁, and J − 1. For J > 0.
+template <class S>
+struct IsochoricInvariants {
+  static constexpr int count = 2;
+  S I1_3;  // Ī₁ − 3
+  S J_1;   // J − 1
+
+  template <class T>
+  using rebind = IsochoricInvariants<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? I1_3 : J_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? I1_3 : J_1; }
+
+  /// Ī₁ − 3 = (D + 3 + 2(J − 1) − 3 x²)/x² with x = J^(1/3), whose terms but D make (x − 1)² (2x + 1).
+  PLIANT_HOST_DEVICE static S first(S const& D, S const& x, S const& x_1) {
+    return (D + square(x_1) * (2 * x + 1)) / square(x);
+  }
+
+  template <int Dim>
+  PLIANT_HOST_DEVICE static IsochoricInvariants of(Tensor<S, Dim> const& h) {
+    auto const i = CauchyGreenInvariants<S>::of(h);
+    S const x = cbrt(1 + i.J_1), x_1 = i.J_1 / (square(x) + x + 1);
+    return {first(i.D, x, x_1), i.J_1};
+  }
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(IsochoricInvariants const& w,
+                                                  Tensor<S, Dim> const& h) {
+    auto const i = CauchyGreenInvariants<S>::of(h);
+    S const x = cbrt(1 + i.J_1), by_D = w.I1_3 / square(x);
+    S const by_J = 2 * by_D * (i.J_1 - i.D) / (3 * (1 + i.J_1));
+    return CauchyGreenInvariants<S>::stress({by_D, w.J_1 + by_J}, h);
+  }
+};
+
+/// Of the isochoric part of a deformation, Ī₁ − 3 and Ī₂ − 3 with Ī₂ = J^(−4/3) I₂, and J − 1. For
+/// J > 0.
+template <class S>
+struct MooneyInvariants {
+  static constexpr int count = 3;
+  S I1_3;  // Ī₁ − 3
+  S I2_3;  // Ī₂ − 3
+  S J_1;   // J − 1
+
+  template <class T>
+  using rebind = MooneyInvariants<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? I1_3 : k == 1 ? I2_3 : J_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const {
+    return k == 0 ? I1_3 : k == 1 ? I2_3 : J_1;
+  }
+
+  /// Ī₂ is the Ī₁ of cof F, whose determinant is J².
+  template <int Dim>
+  PLIANT_HOST_DEVICE static MooneyInvariants of(Tensor<S, Dim> const& h) {
+    auto const i = PrincipalInvariants<S>::of(h);
+    S const x = cbrt(1 + i.J_1), x_1 = i.J_1 / (square(x) + x + 1);
+    S const cofactors_D = i.D2 - 2 * square(i.J_1);  // I₂ − 3 − 2(J² − 1)
+    return {IsochoricInvariants<S>::first(i.D1, x, x_1),
+            IsochoricInvariants<S>::first(cofactors_D, square(x), x_1 * (x + 1)), i.J_1};
+  }
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(MooneyInvariants const& w,
+                                                  Tensor<S, Dim> const& h) {
+    auto const i = PrincipalInvariants<S>::of(h);
+    S const J = 1 + i.J_1, x = cbrt(J);
+    S const by_D1 = w.I1_3 / square(x), by_D2 = w.I2_3 / (x * J);
+    S const by_J = 2 * (by_D1 * (i.J_1 - i.D1) - 2 * by_D2 * (i.J_1 + i.D2)) / (3 * J);
+    return PrincipalInvariants<S>::stress({by_D1, by_D2, w.J_1 + by_J}, h);
+  }
+};
+
+}  // namespace pliant
