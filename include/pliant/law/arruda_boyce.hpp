@@ -1,0 +1,51 @@
+#pragma once
+
+#include <pliant/law/law.hpp>
+
+namespace pliant {
+
+/// Arruda-Boyce, of rubber as chains along the diagonals of a cube, to the fifth order of the inverse
+/// Langevin function: W = μ₀ Σₖ aₖ/λₘ^(2k−2) (Ī₁ᵏ − 3ᵏ) + κ/2 (J − 1)² with a = 1/2, 1/20, 11/1050,
+/// 19/7000, 519/673750. For J > 0; true to the chains while the stretch is well below the locking
+/// stretch λₘ, beyond which the series goes on without locking. (Arruda and Boyce, Journal of the
+/// Mechanics and Physics of Solids 41 (1993) 389.)
+template <class T>
+struct ArrudaBoyce {
+  T mu;       // μ₀ = nkT, less than the shear modulus at rest, Pa
+  T locking;  // λₘ
+  T bulk;     // κ, Pa
+
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
+    T const per_square = 1 / square(locking);
+    S const I1 = 3 + i.I1_3;
+    // Ī₁ᵏ − 3ᵏ = (Ī₁ − 3) (Ī₁ᵏ⁻¹ + 3 Ī₁ᵏ⁻² + ... + 3ᵏ⁻¹)
+    S quotient = S(1), sum = S(T(coefficient(1)));
+    T power = T(1), threes = T(1);
+    for (int k = 2; k <= 5; ++k) {
+      threes = 3 * threes;
+      power = power * per_square;
+      quotient = I1 * quotient + threes;
+      sum = sum + T(coefficient(k)) * power * quotient;
+    }
+    return mu * i.I1_3 * sum + bulk / 2 * square(i.J_1);
+  }
+  /// Unless known, λₘ is 7.
+  static ArrudaBoyce from(Elastic const& m, double locking = 7) {
+    double stiffening = 0;  // μ/μ₀
+    for (int k = 1; k <= 5; ++k)
+      stiffening += 2 * k * coefficient(k) * std::pow(3 / (locking * locking), k - 1);
+    return {T(m.lame_mu() / stiffening), T(locking), T(m.bulk())};
+  }
+
+ private:
+  PLIANT_HOST_DEVICE static constexpr double coefficient(int k) {
+    return k == 1   ? 1.0 / 2
+           : k == 2 ? 1.0 / 20
+           : k == 3 ? 11.0 / 1050
+           : k == 4 ? 19.0 / 7000
+                    : 519.0 / 673750;
+  }
+};
+
+}  // namespace pliant

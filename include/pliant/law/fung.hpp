@@ -1,0 +1,27 @@
+#pragma once
+
+#include <pliant/law/law.hpp>
+
+namespace pliant {
+
+/// Fung's law of soft tissue, isotropic: W = μ/(2b) (e^Q − 1), Q = b (2 tr E² + λ/μ (tr E)²) with the
+/// Green strain E = (FᵀF − I)/2. Stiffens as its exponent grows, and softens under compression as
+/// Saint Venant-Kirchhoff does, which it is for b → 0. (Fung, Biomechanics: Mechanical Properties of
+/// Living Tissues, section 7.11.)
+template <class T>
+struct Fung {
+  T lambda, mu;  // Lamé's parameters at rest, Pa
+  T exponent;    // b, not 0
+
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(GreenInvariants<S> const& E) const {
+    S const Q = exponent * (2 * E.squares + lambda / mu * square(E.trace));
+    return mu / (2 * exponent) * expm1(Q);
+  }
+  /// Unless known, b is 1.
+  static Fung from(Elastic const& m, double exponent = 1) {
+    return {T(m.lame_lambda()), T(m.lame_mu()), T(exponent)};
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <pliant/law/law.hpp>
+
+namespace pliant {
+
+/// Gent, of rubber whose chains can stretch no further: W = −μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ) + κ/2 (J − 1)².
+/// For J > 0 and Ī₁ − 3 < Jₘ: the energy goes to infinity there, and is not a number beyond. (Gent,
+/// Rubber Chemistry and Technology 69 (1996) 59.)
+template <class T>
+struct Gent {
+  T mu;     // shear modulus at rest, Pa
+  T limit;  // Jₘ, the Ī₁ − 3 that is never reached
+  T bulk;   // κ, Pa
+
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
+    return -mu * limit / 2 * log1p(-i.I1_3 / limit) + bulk / 2 * square(i.J_1);
+  }
+  /// Unless known, Jₘ is 97.2, what fits Treloar's rubber: a uniaxial stretch of 10.
+  static Gent from(Elastic const& m, double limit = 97.2) {
+    return {T(m.lame_mu()), T(limit), T(m.bulk())};
+  }
+};
+
+}  // namespace pliant

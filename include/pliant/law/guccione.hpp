@@ -1,0 +1,47 @@
+#pragma once
+
+#include <pliant/law/fibre.hpp>
+
+namespace pliant {
+
+/// Guccione's law of heart muscle, stiffer along its fibres: W = c/2 (e^Q − 1) + κ/2 (J − 1)² with
+/// Q = b_f E_ff² + b_t (E_ss² + E_nn² + 2 E_sn²) + 2 b_fs (E_fs² + E_fn²) in the components of the
+/// Green strain along the fibre f and any two directions across. The fibre is the value of an element:
+/// three components, of any length; none where they are 0, and then Q = b_t E:E. Softens under
+/// compression; κ far above c makes muscle nearly incompressible. (Guccione, McCulloch and Waldman,
+/// Journal of Biomechanical Engineering 113 (1991) 42.)
+template <class T>
+struct Guccione {
+  T c;                            // Pa
+  T fibre, transverse, shearing;  // b_f, b_t, b_fs
+  T bulk;                         // κ, Pa
+
+  static constexpr int element_values = 3;
+
+  /// The law of an element with fibres along f.
+  template <class S>
+  struct Along {
+    Guccione law;
+    Vector<S, 3> f;
+
+    template <class V, int Dim>
+    PLIANT_HOST_DEVICE V energy(GreenStrain<V, Dim> const& E) const {
+      auto const Ef = E.times(f);
+      // In no frame: E_fs² + E_fn² = |E f|² − E_ff², and E:E has the rest.
+      V const ff = square(E.along(f, Ef)), shear = dot(Ef, Ef) - ff;
+      V const across = E.squares() - ff - 2 * shear;
+      V const Q = law.fibre * ff + law.transverse * across + 2 * law.shearing * shear;
+      return law.c / 2 * expm1(Q);
+    }
+    template <class V>
+    PLIANT_HOST_DEVICE V energy(CauchyGreenInvariants<V> const& i) const {
+      return law.bulk / 2 * square(i.J_1);
+    }
+  };
+  template <class S>
+  PLIANT_HOST_DEVICE Along<S> at(Vector<S, 3> const& f) const {
+    return {*this, detail::normalised(f)};
+  }
+};
+
+}  // namespace pliant

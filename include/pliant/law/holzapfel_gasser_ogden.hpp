@@ -1,0 +1,55 @@
+#pragma once
+
+#include <pliant/law/fibre.hpp>
+
+namespace pliant {
+
+/// Holzapfel-Gasser-Ogden, of artery walls: a neo-Hookean matrix and two families of fibres that
+/// spread about their directions a₁ and a₂, W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)² +
+/// k₁/(2 k₂) Σ (exp(k₂ ⟨ε⟩²) − 1), ε = d (I₁ − 3) + (1 − 3d) (I₄ − 1), I₄ = a·C a. A family that is
+/// shortened, ε < 0, carries nothing: stress is continuous there, its tangent is not. For J > 0. The
+/// fibres feel the whole C, not its isochoric part, which would let them swell (Nolan, Gower,
+/// Destrade, Ogden and McGarry, J. Mech. Behav. Biomed. Mater. 39 (2014) 48).
+/// The directions are the values of an element: two times three components, of any length; a family
+/// whose components are 0 is not there. (Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15.)
+template <class T>
+struct HolzapfelGasserOgden {
+  T mu;          // shear modulus of the matrix, Pa
+  T k1;          // stiffness of a family, Pa
+  T k2;          // its stiffening, not 0
+  T dispersion;  // d: 0 where all fibres are parallel, 1/3 where they have no direction
+  T bulk;        // κ, Pa
+
+  static constexpr int element_values = 6;
+
+  /// The law of an element with fibres along a₁ and a₂.
+  template <class S>
+  struct Along {
+    HolzapfelGasserOgden law;
+    Vector<S, 3> a1, a2;
+
+    template <class V>
+    PLIANT_HOST_DEVICE V energy(IsochoricInvariants<V> const& i) const {
+      return law.mu / 2 * i.I1_3 + law.bulk / 2 * square(i.J_1);
+    }
+    template <class V, int Dim>
+    PLIANT_HOST_DEVICE V energy(GreenStrain<V, Dim> const& E) const {
+      return family(a1, E) + family(a2, E);
+    }
+
+   private:
+    template <class V, int Dim>
+    PLIANT_HOST_DEVICE V family(Vector<S, 3> const& a, GreenStrain<V, Dim> const& E) const {
+      V const I1_3 = 2 * dot(a, a) * E.trace(), I4_1 = 2 * E.along(a, E.times(a));
+      V const strain = law.dispersion * I1_3 + (1 - 3 * law.dispersion) * I4_1;
+      return law.k1 / (2 * law.k2) * expm1(law.k2 * square(max(strain, V(0))));
+    }
+  };
+  template <class S>
+  PLIANT_HOST_DEVICE Along<S> at(Vector<S, 6> const& a) const {
+    return {*this, detail::normalised(Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
+            detail::normalised(Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})};
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <pliant/law/law.hpp>
+
+namespace pliant {
+
+/// Neo-Hookean, split into change of shape and of volume: W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)². For
+/// J > 0, but blind to it: the energy stays finite where J goes to 0. (Bonet and Wood, Nonlinear
+/// Continuum Mechanics for Finite Element Analysis, section 6.5.)
+template <class T>
+struct IsochoricNeoHookean {
+  T mu, bulk;  // shear modulus and bulk modulus κ, Pa
+
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
+    return mu / 2 * i.I1_3 + bulk / 2 * square(i.J_1);
+  }
+  static IsochoricNeoHookean from(Elastic const& m) { return {T(m.lame_mu()), T(m.bulk())}; }
+};
+
+}  // namespace pliant
