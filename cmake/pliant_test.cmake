@@ -1,9 +1,10 @@
-# pliant_test(NAME <area>/<name> SOURCES <file>... [OPENMP | CUDA] [LINK <library>...])
+# pliant_test(NAME <area>/<name> SOURCES <file>... [OPENMP | CUDA] [LINK <library>...]
+#             [DEFINE <definition>...])
 # One program and one test, labelled with its area. OPENMP and CUDA mark tests that need this
 # backend; they are left out where it is missing. The others get every CPU backend that this build
 # has: the serial one always, <pliant/openmp.hpp> where _OPENMP is defined.
 function(pliant_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "OPENMP;CUDA" "NAME" "SOURCES;LINK")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "OPENMP;CUDA" "NAME" "SOURCES;LINK;DEFINE")
   if((arg_OPENMP AND NOT pliant_has_openmp) OR (arg_CUDA AND NOT pliant_has_cuda))
     return()
   endif()
@@ -15,6 +16,13 @@ function(pliant_test)
     pliant_add_program(${target} CUDA SOURCES ${arg_SOURCES} LINK pliant_gpu_test_main ${arg_LINK})
   else()
     pliant_add_program(${target} SOURCES ${arg_SOURCES} LINK pliant_test_main ${arg_LINK})
+  endif()
+
+  target_compile_definitions(${target} PRIVATE ${arg_DEFINE})
+  # Most tests take longer to optimise than to run. What the optimiser makes of kernels is looked at by
+  # those that compare backends.
+  if(NOT arg_NAME MATCHES "^(backend|openmp)/")
+    target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
   endif()
 
   set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")

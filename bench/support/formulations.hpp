@@ -61,7 +61,7 @@ inline constexpr Elastic soft{5.2, 0.3, 1.5};
 /// The law of a formulation in the shape that kernels take.
 template <class T, class F>
 GroupLaws<T, F> soft_laws() {
-  return {{law_cast<T>(F::template law<double>::from(soft))}};
+  return {{prepared<F>(law_cast<T>(F::template law<double>::from(soft)))}};
 }
 
 }  // namespace pliant::bench

@@ -13,8 +13,9 @@
 #include <pliant/body/body.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/config.hpp>
-#include <pliant/element/simplex.hpp>
-#include <pliant/element/tensor.hpp>
+#include <pliant/element/linear.hpp>
+#include <pliant/element/quadratic_simplex.hpp>
+#include <pliant/element/quadratic_tensor.hpp>
 #include <pliant/error.hpp>
 #include <pliant/law/arruda_boyce.hpp>
 #include <pliant/law/corotated.hpp>
@@ -34,5 +35,9 @@
 #include <pliant/law/yeoh.hpp>
 #include <pliant/mesh/box.hpp>
 #include <pliant/mesh/rectangle.hpp>
+#include <pliant/quadrature/by_need.hpp>
+#include <pliant/quadrature/f_bar.hpp>
 #include <pliant/quadrature/gauss.hpp>
+#include <pliant/quadrature/lobatto.hpp>
+#include <pliant/quadrature/one_point.hpp>
 #include <pliant/solver/central_difference.hpp>

@@ -81,7 +81,8 @@ TEST_CASE("named boundaries and conditions on facets go over to the children", "
       CHECK(nodes_of(now.boundary(name)) == on_it);
       CHECK(now.boundary(name).size() == on_it.size() - 1);
       CHECK(on_it.size() > mesh.boundary(name).size() + 1);
-      for (auto const& [a, b] : now.boundary(name)) {  // the body lies to the left
+      for (auto const& facet : now.boundary(name)) {  // the body lies to the left
+        Index const a = facet[0], b = facet[1];
         auto const along = 1 - direction;
         double const run = now.nodes[static_cast<std::size_t>(b)][along] -
                            now.nodes[static_cast<std::size_t>(a)][along];

@@ -1,8 +1,7 @@
 #include <random>
 
 #include <pliant/cuda.hpp>
-#include <pliant/element/simplex.hpp>
-#include <pliant/element/tensor.hpp>
+#include <pliant/element/linear.hpp>
 #include <pliant/formulation/physics.hpp>
 #include <pliant/law/hooke.hpp>
 #include <pliant/law/neo_hookean.hpp>

@@ -39,7 +39,10 @@ TEST_CASE("masses add up to density times volume, about the right centre", "[for
     }
     CHECK(sum == Approx(soft.density).epsilon(1e-14));
     CHECK(std::ranges::min(masses) > 0);
-    // Row sums keep the first moment: Σ m_a X_a = ρ ∫ Σ N_a X_a dV = ρ ∫ X dV.
+    // Row sums keep the first moment: Σ m_a X_a = ρ ∫ Σ N_a X_a dV = ρ ∫ X dV; so does Simpson's rule.
+    // Diagonal scaling does where opposite nodes get the same share.
+    using E = typename F::element;
+    if (E::lumping == Lumping::diagonal && !SimplexCell<typename E::cell>) return;
     Point<3> const middle{0.25, 1, 0.625};
     for (std::size_t k = 0; k < F::dim; ++k)
       CHECK(centre[k] / sum == Approx(middle[k]).epsilon(1e-14));

@@ -1,21 +1,19 @@
-#include <pliant/element/simplex.hpp>
-#include <pliant/element/tensor.hpp>
 #include <pliant/formulation/kinematics.hpp>
 #include <pliant/quadrature/gauss.hpp>
 
 #include "support/catch.hpp"
+#include "support/elements.hpp"
 #include "support/random.hpp"
 
 namespace pliant::test {
 
 /// The bilinear quadrilateral without what marks it as one: the general basis.
-struct General {
-  using cell = Quadrilateral;
-  static constexpr int nodes = 4, dim = 2;
+struct General : ElementOn<Quadrilateral, 4, 1> {
   static constexpr char const* name() { return "General"; }
-  static constexpr auto shape(Vector<double, 2> const& xi) { return Quad4::shape(xi); }
-  static constexpr auto gradient(Vector<double, 2> const& xi) { return Quad4::gradient(xi); }
-  static constexpr auto sides() { return Quad4::sides(); }
+  template <class S>
+  static constexpr auto shape(Vector<S, 2> const& xi) {
+    return Quad4::shape(xi);
+  }
 };
 static_assert(Multilinear<Quad4> && Multilinear<Hex8>);
 static_assert(!Multilinear<Tri3> && !Multilinear<Tet4> && !Multilinear<General>);
@@ -33,11 +31,11 @@ template <class E>
 Tensor<double, E::dim> plain_gradient(Nodal<E, double> const& v, double const* point) {
   Vector<double, E::dim> xi;
   for (int k = 0; k < E::dim; ++k) xi[k] = point[k];
-  return transpose(v) * E::gradient(xi);
+  return transpose(v) * shape_gradient<E>(xi);
 }
 
 TEMPLATE_TEST_CASE("coefficients give the gradient that the shape functions give", "[formulation]",
-                   Tri3, Tet4, Quad4, Hex8, General) {
+                   Tri3, Tet4, Quad4, Hex8, Tri6, Hex20, Wedge6, General) {
   using E = TestType;
   constexpr auto rule = Gauss<2>::rule<typename E::cell>();
   constexpr auto table = tabulate<E, Gauss<2>, double>();
@@ -49,7 +47,7 @@ TEMPLATE_TEST_CASE("coefficients give the gradient that the shape functions give
 }
 
 TEMPLATE_TEST_CASE("the divergence is the transpose of the gradient", "[formulation]", Tri3, Tet4,
-                   Quad4, Hex8, General) {
+                   Quad4, Hex8, Tri6, Hex20, Wedge6, General) {
   using E = TestType;
   constexpr auto rule = Gauss<2>::rule<typename E::cell>();
   constexpr auto table = tabulate<E, Gauss<2>, double>();
@@ -81,20 +79,15 @@ TEMPLATE_TEST_CASE("where an element lies is not rounded into its gradients", "[
                Coefficients<E, double>::of(far).gradient(table, q)) == 0);
 }
 
-TEMPLATE_TEST_CASE("gradients in rest space are those of a linear field", "[formulation]", Tri3,
-                   Tet4, Quad4, Hex8, General) {
+TEMPLATE_TEST_CASE("gradients in rest space are those of a linear field", "[formulation]",
+                   ALL_ELEMENTS, General) {
   using E = TestType;
   constexpr auto table = tabulate<E, Gauss<2>, double>();
   Random random;
   Nodal<E, double> rest;
   for (int a = 0; a < E::nodes; ++a)  // the reference nodes, moved
     for (int i = 0; i < E::dim; ++i) {
-      if constexpr (Multilinear<E>)
-        rest(a, i) = E::sign(a, i);
-      else if constexpr (std::same_as<E, General>)
-        rest(a, i) = Quad4::sign(a, i);
-      else
-        rest(a, i) = a == i + 1 ? 1 : 0;
+      rest(a, i) = E::place(a)[i];
       rest(a, i) += 0.1 * random();
     }
   auto const h = random.tensor<E::dim>(1);

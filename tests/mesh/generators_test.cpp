@@ -1,7 +1,10 @@
-#include <pliant/formulation/physics.hpp>
+#include <set>
+
+#include <pliant/formulation/mass.hpp>
 #include <pliant/mesh/check.hpp>
 
 #include "support/catch.hpp"
+#include "support/elements.hpp"
 #include "support/fields.hpp"
 #include "support/meshes.hpp"
 
@@ -15,31 +18,35 @@ Mesh<E> slab() {
     return mesh::box<E>({.size = {3, 2, 1.5}, .cells = {4, 3, 2}, .origin = {-1, 5, 0.5}});
 }
 
-TEMPLATE_TEST_CASE("a generated mesh fills its box with sound elements", "[mesh]", Tri3, Quad4,
-                   Tet4, Hex8) {
+TEMPLATE_TEST_CASE("a generated mesh fills its box with sound elements", "[mesh]", ALL_ELEMENTS) {
   auto const mesh = slab<TestType>();
   CHECK_NOTHROW(check(mesh));
-  int const cells = TestType::dim == 2 ? 12 : 24, nodes = TestType::dim == 2 ? 20 : 60;
-  int const split = std::same_as<TestType, Tri3> ? 2 : std::same_as<TestType, Tet4> ? 6 : 1;
-  CHECK(mesh.nodes.size() == static_cast<std::size_t>(nodes));
+  int const cells = TestType::dim == 2 ? 12 : 24;
+  int const split = std::same_as<typename TestType::cell, Triangle>      ? 2
+                    : std::same_as<typename TestType::cell, Tetrahedron> ? 6
+                    : std::same_as<typename TestType::cell, Pyramid>     ? 6
+                    : std::same_as<typename TestType::cell, Wedge>       ? 2
+                                                                         : 1;
   CHECK(mesh.template elements<TestType>().size() == static_cast<std::size_t>(cells * split));
+  // Each node belongs to some element, and no two lie at one place.
+  std::set<Index> used;
+  std::set<Point<TestType::dim>> places(mesh.nodes.begin(), mesh.nodes.end());
+  for (auto const& e : mesh.template elements<TestType>()) used.insert(e.begin(), e.end());
+  CHECK(used.size() == mesh.nodes.size());
+  CHECK(places.size() == mesh.nodes.size());
   double const box = TestType::dim == 2 ? 6 : 9;
   double sum = 0;
   for (auto const& e : mesh.template elements<TestType>()) {
     double const v = volume<TestType, Gauss<2>>(nodal(mesh, e));
     CHECK(v == Approx(box / cells / split).epsilon(1e-13));
-    double shares = 0;
-    auto const nodal_shares = nodal_volumes<TestType>(nodal(mesh, e));
-    for (int a = 0; a < TestType::nodes; ++a) shares += nodal_shares[a];
-    CHECK(shares == Approx(v).epsilon(1e-14));
     sum += v;
   }
   CHECK(sum == Approx(box).epsilon(1e-13));
 }
 
-/// Σ over facets of area × outward normal, and of area, from the corners of a facet.
-template <std::size_t Dim, std::size_t N>
-std::array<double, 3> area_vector(FieldOf<Dim> const& nodes, std::array<Index, N> const& facet) {
+/// Σ over facets of area × outward normal, from the corners of a facet.
+template <int Dim>
+std::array<double, 3> area_vector(std::vector<Point<Dim>> const& nodes, Facet<Dim> const& facet) {
   auto const x = [&](std::size_t a) {
     std::array<double, 3> p{};
     std::ranges::copy(nodes[static_cast<std::size_t>(facet[a])], p.begin());
@@ -47,7 +54,7 @@ std::array<double, 3> area_vector(FieldOf<Dim> const& nodes, std::array<Index, N
   };
   if constexpr (Dim == 2) return {x(1)[1] - x(0)[1], x(0)[0] - x(1)[0], 0};
   std::array<double, 3> sum{};
-  for (std::size_t last = 2; last < N && facet[last] >= 0; ++last)
+  for (std::size_t last = 2; last < facet.corners(); ++last)
     for (std::size_t k = 0; k < 3; ++k) {
       std::size_t const i = (k + 1) % 3, j = (k + 2) % 3;
       sum[k] += ((x(last - 1)[i] - x(0)[i]) * (x(last)[j] - x(0)[j]) -
@@ -57,8 +64,8 @@ std::array<double, 3> area_vector(FieldOf<Dim> const& nodes, std::array<Index, N
   return sum;
 }
 
-TEMPLATE_TEST_CASE("boundaries lie where their names say and look outward", "[mesh]", Tri3, Quad4,
-                   Tet4, Hex8) {
+TEMPLATE_TEST_CASE("boundaries lie where their names say and look outward", "[mesh]",
+                   ALL_ELEMENTS) {
   auto const mesh = slab<TestType>();
   struct Face {
     char const* name;
@@ -78,7 +85,7 @@ TEMPLATE_TEST_CASE("boundaries lie where their names say and look outward", "[me
     INFO(face.name);
     std::array<double, 3> total{};
     for (auto const& facet : mesh.boundary(face.name)) {
-      auto const area = area_vector(mesh.nodes, facet);
+      auto const area = area_vector<TestType::dim>(mesh.nodes, facet);
       CHECK(area[face.direction] * face.area > 0);
       for (std::size_t k = 0; k < 3; ++k) total[k] += area[k];
     }
@@ -93,18 +100,15 @@ TEMPLATE_TEST_CASE("boundaries lie where their names say and look outward", "[me
 TEMPLATE_TEST_CASE("every boundary facet is a side of one element", "[mesh]", Tri3, Quad4, Tet4,
                    Hex8) {
   auto const mesh = slab<TestType>();
-  std::map<std::vector<Index>, int> sides;
-  auto const sorted = [](std::vector<Index> nodes) {
-    std::erase(nodes, -1);
+  auto const key = [](auto const& facet) {
+    std::vector<Index> nodes(facet.begin(), facet.end());
     std::ranges::sort(nodes);
     return nodes;
   };
+  std::map<std::vector<Index>, int> sides;
+  constexpr int count = static_cast<int>(TestType::cell::sides().size());
   for (auto const& e : mesh.template elements<TestType>())
-    for (auto const& side : TestType::sides()) {
-      std::vector<Index> nodes;
-      for (int a : side) nodes.push_back(e[static_cast<std::size_t>(a)]);
-      ++sides[sorted(nodes)];
-    }
+    for (int s = 0; s < count; ++s) ++sides[key(mesh::side_of<TestType>(e, s))];
   std::size_t outside = 0, facets = 0;
   for (auto const& [side, times] : sides) {
     CHECK(times <= 2);
@@ -113,9 +117,32 @@ TEMPLATE_TEST_CASE("every boundary facet is a side of one element", "[mesh]", Tr
   for (auto const& [name, list] : mesh.boundaries)
     for (auto const& facet : list) {
       ++facets;
-      CHECK(sides[sorted({facet.begin(), facet.end()})] == 1);
+      CHECK(sides[key(facet)] == 1);
     }
   CHECK(facets == outside);
+  CHECK(mesh::outer_sides(mesh).size() == outside);
+}
+
+TEST_CASE("a facet has the nodes of its side: corners, then those between them", "[mesh]") {
+  CHECK(mesh::nodes_on_side<Tri6>(1) == Facet<2>{1, 2, 4});
+  CHECK(mesh::nodes_on_side<Quad9>(3) == Facet<2>{3, 0, 7});
+  CHECK(mesh::nodes_on_side<Tet4>(2) == Facet<3>{1, 2, 3});
+  CHECK(mesh::nodes_on_side<Tet10>(0) == Facet<3>{0, 2, 1, 4, 5, 6});
+  CHECK(mesh::nodes_on_side<Hex20>(5) == Facet<3>{4, 5, 6, 7, 12, 13, 14, 15});
+  CHECK(mesh::nodes_on_side<Hex27>(5) == Facet<3>{4, 5, 6, 7, 12, 13, 14, 15, 25});
+  CHECK(mesh::nodes_on_side<Wedge6>(0) == Facet<3>{0, 2, 1});
+  CHECK(mesh::nodes_on_side<Pyramid5>(0) == Facet<3>{0, 3, 2, 1});
+  CHECK(mesh::nodes_on_side<Wedge6>(0).corners() == 3);
+  CHECK(mesh::nodes_on_side<Tet10>(0).corners() == 3);
+  CHECK(mesh::nodes_on_side<Hex20>(0).corners() == 4);
+  CHECK(mesh::nodes_on_side<Hex27>(0).corners() == 4);
+  CHECK(mesh::nodes_on_side<Quad8>(0).corners() == 2);
+}
+
+TEST_CASE("outer sides are found by their place", "[mesh]") {
+  auto const mesh = slab<Hex20>();
+  auto const lid = mesh::outer_sides_where(mesh, [](Point<3> const& p) { return p[2] > 1.99; });
+  CHECK(nodes_of(lid) == nodes_of(mesh.boundary("top")));
 }
 
 TEST_CASE("sizes that make no mesh are refused", "[mesh]") {

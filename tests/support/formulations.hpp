@@ -22,7 +22,7 @@ struct Case {
   using element = typename F::element;
 };
 
-using AllFormulations =
+using LinearFormulations =
     List<Formulation<Tri3, Gauss<1>, Hooke>, Formulation<Tri3, Gauss<2>, SaintVenantKirchhoff>,
          Formulation<Tri3, Gauss<1>, NeoHookean>, Formulation<Quad4, Gauss<2>, Hooke>,
          Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>,
@@ -31,10 +31,44 @@ using AllFormulations =
          Formulation<Hex8, Gauss<2>, Hooke>, Formulation<Hex8, Gauss<3>, SaintVenantKirchhoff>,
          Formulation<Hex8, Gauss<2>, NeoHookean>>;
 /// For what has been seen over all formulations on another backend.
-using FewFormulations =
+using FewLinearFormulations =
     List<Formulation<Tri3, Gauss<1>, NeoHookean>, Formulation<Quad4, Gauss<2>, Hooke>,
          Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>,
          Formulation<Hex8, Gauss<2>, NeoHookean>>;
+
+using QuadraticFormulations =
+    List<Formulation<Tri6, Gauss<2>, NeoHookean>, Formulation<Tri6, Gauss<4>, Hooke>,
+         Formulation<Quad8, Gauss<3>, SaintVenantKirchhoff>,
+         Formulation<Quad9, Gauss<3>, NeoHookean>, Formulation<Tet10, Gauss<2>, NeoHookean>,
+         Formulation<Tet10, Gauss<3>, SaintVenantKirchhoff>, Formulation<Hex20, Gauss<3>, Hooke>,
+         Formulation<Hex27, Gauss<3>, NeoHookean>>;
+using FewQuadraticFormulations =
+    List<Formulation<Tri6, Gauss<2>, NeoHookean>, Formulation<Quad8, Gauss<3>, Hooke>,
+         Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>>;
+
+/// The cells of mixed meshes, and quadratures that are more than points.
+using SpecialFormulations =
+    List<Formulation<Wedge6, Gauss<2>, NeoHookean>, Formulation<Pyramid5, Gauss<2>, NeoHookean>,
+         Formulation<Quad4, OnePoint, NeoHookean>, Formulation<Hex8, OnePoint, Hooke>,
+         Formulation<Hex8, OnePoint, SaintVenantKirchhoff>,
+         Formulation<Quad4, FBar<Gauss<2>>, NeoHookean>, Formulation<Quad4, FBar<Gauss<2>>, Hooke>,
+         Formulation<Hex8, FBar<Gauss<2>>, NeoHookean>,
+         Formulation<Tet10, FBar<Gauss<2>>, SaintVenantKirchhoff>>;
+using FewSpecialFormulations =
+    List<Formulation<Wedge6, Gauss<2>, Hooke>, Formulation<Quad4, OnePoint, NeoHookean>,
+         Formulation<Quad4, FBar<Gauss<2>>, NeoHookean>>;
+
+// The build compiles a suite once for each list; see tests/CMakeLists.txt.
+#if defined(QUADRATIC_FORMULATIONS)
+using AllFormulations = QuadraticFormulations;
+using FewFormulations = FewQuadraticFormulations;
+#elif defined(SPECIAL_FORMULATIONS)
+using AllFormulations = SpecialFormulations;
+using FewFormulations = FewSpecialFormulations;
+#else
+using AllFormulations = LinearFormulations;
+using FewFormulations = FewLinearFormulations;
+#endif
 
 template <class B>
 using formulations_on =
@@ -55,8 +89,9 @@ std::string backend_name() {
 }
 template <class F>
 std::string formulation_name() {
-  return std::string(F::element::name()) + ", " + std::to_string(F::points) + " points, " +
-         law_name<F>();
+  constexpr bool f_bar = has_mean_dilatation<typename F::quadrature>;
+  return std::string(F::element::name()) + ", " + std::to_string(F::points) +
+         (f_bar ? " points with F-bar, " : " points, ") + law_name<F>();
 }
 
 /// Calls visit(B) for each backend of a list, each in a section of its own.

@@ -9,6 +9,14 @@
 
 namespace pliant::test {
 
+/// The linear element on the cell of another.
+template <Element E>
+using LinearOf = std::conditional_t<
+    std::same_as<typename E::cell, Triangle>, Tri3,
+    std::conditional_t<std::same_as<typename E::cell, Quadrilateral>, Quad4,
+                       std::conditional_t<std::same_as<typename E::cell, Tetrahedron>, Tet4,
+                                          std::conditional_t<E::degree == 1, E, Hex8>>>>;
+
 /// A square or cube of edge 1 with n cells along x, n − 1 along the others, away from the origin.
 template <Element E>
 Mesh<E> regular_mesh(int n) {
@@ -74,7 +82,10 @@ Mesh<Es...> shuffled(Mesh<Es...> const& mesh, unsigned seed = 1) {
 /// of a cell.
 template <Element E>
 Mesh<E> distorted_mesh(int n, unsigned seed = 1) {
-  return shuffled(shaken(regular_mesh<E>(n), 0.2 / n, seed), seed);
+  if constexpr (E::degree > 1)  // edges stay straight
+    return shuffled(mesh::raised<E>(shaken(regular_mesh<LinearOf<E>>(n), 0.2 / n, seed)), seed);
+  else
+    return shuffled(shaken(regular_mesh<E>(n), 0.2 / n, seed), seed);
 }
 
 /// Triangles and quadrilaterals side by side, in one distorted square.

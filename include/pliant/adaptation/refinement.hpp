@@ -3,8 +3,7 @@
 #include <map>
 
 #include <pliant/body/ledger.hpp>
-#include <pliant/element/simplex.hpp>
-#include <pliant/element/tensor.hpp>
+#include <pliant/element/linear.hpp>
 #include <pliant/mesh/hierarchy.hpp>
 
 namespace pliant {
@@ -27,13 +26,18 @@ Hierarchy tree_of(TheBody const& body) {
   auto const& mesh = body.mesh();
   Hierarchy tree(mesh.nodes, elements_or_none<Tri3>(mesh), elements_or_none<Quad4>(mesh));
   int mark = 0;
-  for (auto const& [name, facets] : mesh.boundaries) tree.add_boundary(mark++, facets);
-  for (auto const& condition : body.conditions()) tree.add_boundary(mark++, condition.facets);
+  auto const add = [&](std::vector<Facet<2>> const& facets) {
+    std::vector<std::array<Index, 2>> edges;
+    for (auto const& facet : facets) edges.push_back({facet[0], facet[1]});
+    tree.add_boundary(mark++, edges);
+  };
+  for (auto const& [name, facets] : mesh.boundaries) add(facets);
+  for (auto const& condition : body.conditions()) add(condition.facets);
   return tree;
 }
 
 template <Element E>
-inline constexpr int sides_of = static_cast<int>(E::sides().size());
+inline constexpr int sides_of = static_cast<int>(E::cell::sides().size());
 
 /// The leaves of a tree that are elements of a type, in the order of the mesh's list.
 template <Element E>
@@ -56,7 +60,7 @@ std::vector<int> levels_of(TheBody const& body) {
 
 inline std::vector<Facet<2>> facets_of(Hierarchy const& tree, int mark) {
   std::vector<Facet<2>> facets;
-  for (auto const& facet : tree.facets_of(mark)) facets.push_back(facet.nodes);
+  for (auto const& facet : tree.facets_of(mark)) facets.push_back({facet.nodes[0], facet.nodes[1]});
   return facets;
 }
 

@@ -70,7 +70,7 @@ class Marked {
     return SwitchRule<From, To, Criterion>{criterion_, marking_, stay_};
   }
   auto refine(RefineOptions options = {}) const {
-    static_assert(From::dim == 2 && From::nodes == From::element::sides().size(),
+    static_assert(From::dim == 2 && From::nodes == From::element::cell::corners,
                   "refine: available for Tri3 and Quad4");
     if (stay_ != 0)
       throw Error("strategy: refine has no stay; use stay with become, or check less often");

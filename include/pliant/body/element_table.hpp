@@ -28,8 +28,17 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   Laws laws;
   std::vector<Index> user_element;  // by the internal number
   Bookkeeping<B, groups> books;
+  bool straight = false;  // all edges are, with their nodes in the middle
 
   Index count() const { return elements.count(); }
+
+  /// Calls visit(std::integral_constant<Geometry, g>{}) with the cheapest geometry that is right.
+  template <class Visit>
+  void with_geometry(Visit const& visit) const {
+    if constexpr (CurvedSimplex<E>)
+      if (straight) return visit(std::integral_constant<Geometry, Geometry::straight>{});
+    visit(std::integral_constant<Geometry, Geometry::isoparametric>{});
+  }
 };
 
 }  // namespace pliant

@@ -40,9 +40,13 @@ void Body<B, M, Fs...>::add_tangent_product(T const* u, T const* du, T* f, doubl
   clear(own_f, nodes());
   for_each_table([&](auto const& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    backend_.template accumulate<Table::groups>(
-        table.elements, TangentKernel<T, typename Table::Laws>{table.laws, static_cast<T>(factor)},
-        own_f, rest_field(), ConstField{own_u.data}, ConstField{own_du.data});
+    table.with_geometry([&](auto geometry) {
+      backend_.template accumulate<Table::groups>(
+          table.elements,
+          TangentKernel<T, typename Table::Laws, geometry.value>{table.laws,
+                                                                 static_cast<T>(factor)},
+          own_f, rest_field(), ConstField{own_u.data}, ConstField{own_du.data});
+    });
   });
   layout_.slaves.hand_to_masters(backend_, own_f);
   layout_.slaves.clear(backend_, own_f);

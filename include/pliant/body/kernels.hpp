@@ -16,7 +16,7 @@ struct GroupLaws {
   template <int G>
   using formulation = std::tuple_element_t<G, std::tuple<Fs...>>;
 
-  std::tuple<typename Fs::template law<T>...> laws;
+  std::tuple<decltype(prepared<Fs>(std::declval<typename Fs::template law<T>>()))...> laws;
 
   template <int G>
   PLIANT_HOST_DEVICE auto const& law() const {
@@ -24,33 +24,33 @@ struct GroupLaws {
   }
 };
 
-template <class Laws>
+template <class Laws, Geometry How = Geometry::isoparametric>
 struct ForceKernel {
   Laws groups;
   template <int G, class V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& rest, V const& u) const {
-    return force<typename Laws::template formulation<G>>(groups.template law<G>(), rest, u);
+    return force<typename Laws::template formulation<G>, How>(groups.template law<G>(), rest, u);
   }
 };
 
 /// Adds factor · ∂F/∂u · du.
-template <class T, class Laws>
+template <class T, class Laws, Geometry How = Geometry::isoparametric>
 struct TangentKernel {
   Laws groups;
   T factor;
   template <int G, class V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& rest, V const& u, V const& du) const {
-    return factor * force_change<typename Laws::template formulation<G>>(groups.template law<G>(),
-                                                                         rest, u, du);
+    return factor * force_change<typename Laws::template formulation<G>, How>(
+                        groups.template law<G>(), rest, u, du);
   }
 };
 
-template <class Laws>
+template <class Laws, Geometry How = Geometry::isoparametric>
 struct EnergyKernel {
   Laws groups;
   template <int G, class V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& rest, V const& u) const {
-    return energy<typename Laws::template formulation<G>>(groups.template law<G>(), rest, u);
+    return energy<typename Laws::template formulation<G>, How>(groups.template law<G>(), rest, u);
   }
 };
 

@@ -125,12 +125,34 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     table.elements = {backend, std::move(std::get<I>(numbering.tables)), TableType::groups, tags,
                       nodes};
     scratch = std::max(scratch, table.elements.scratch_nodes());
+    table.straight = is_straight<typename TableType::element>(mesh);
     [&]<int... G>(std::integer_sequence<int, G...>) {
-      ((std::get<G>(table.laws.laws) = law_cast<T>(
-            std::get<Group<typename TableType::template formulation<G>>>(groups).law_for(
-                material))),
+      ((std::get<G>(table.laws.laws) =
+            prepared<typename TableType::template formulation<G>>(law_cast<T>(
+                std::get<Group<typename TableType::template formulation<G>>>(groups).law_for(
+                    material)))),
        ...);
     }(std::make_integer_sequence<int, TableType::groups>());
+  }
+
+  /// Whether the nodes between corners lie in the middle, as far as T tells.
+  template <Element E>
+  static bool is_straight(Mesh<Es...> const& mesh) {
+    if constexpr (CurvedSimplex<E>) {
+      double largest = 0, furthest = 0;
+      for (auto const& p : mesh.nodes)
+        for (double x : p) largest = std::max(largest, std::abs(x));
+      constexpr auto edges = E::edges();
+      for (auto const& element : mesh.template elements<E>()) {
+        auto const x = nodal(mesh, element);
+        for (std::size_t e = 0; e < edges.size(); ++e)
+          for (int k = 0; k < dim; ++k)
+            furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
+                                                   (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
+      }
+      return furthest <= 8 * double{std::numeric_limits<T>::epsilon()} * largest;
+    }
+    return false;
   }
 
   /// Positions relative to the middle of the body: single precision keeps its digits.

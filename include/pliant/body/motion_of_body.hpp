@@ -9,8 +9,11 @@ template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::accumulate_forces(ConstField u, Field f) const {
   for_each_table([&](auto const& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    backend_.template accumulate<Table::groups>(
-        table.elements, ForceKernel<typename Table::Laws>{table.laws}, f, rest_field(), u);
+    table.with_geometry([&](auto geometry) {
+      backend_.template accumulate<Table::groups>(
+          table.elements, ForceKernel<typename Table::Laws, geometry.value>{table.laws}, f,
+          rest_field(), u);
+    });
   });
   layout_.slaves.hand_to_masters(backend_, f);
 }

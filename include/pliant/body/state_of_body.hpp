@@ -57,9 +57,11 @@ double Body<B, M, Fs...>::energy_at(typename B::template Array<T> const& u) cons
   double total = 0;
   for_each_table([&](auto const& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    total += backend_.template sum_elements<Table::groups>(
-        table.elements, EnergyKernel<typename Table::Laws>{table.laws}, rest_field(),
-        ConstField{u.data()});
+    table.with_geometry([&](auto geometry) {
+      total += backend_.template sum_elements<Table::groups>(
+          table.elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
+          rest_field(), ConstField{u.data()});
+    });
   });
   return total;
 }

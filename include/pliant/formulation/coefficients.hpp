@@ -1,15 +1,10 @@
 #pragma once
 
+#include <pliant/element/linear.hpp>
 #include <pliant/formulation/formulation.hpp>
 #include <pliant/math/unroll.hpp>
 
 namespace pliant {
-
-/// A tensor-product element of degree one: node a at ξ_k = sign(a, k).
-template <class E>
-concept Multilinear = Element<E> && E::nodes == 1 << E::dim && requires {
-  { E::sign(0, 0) } -> std::same_as<int>;
-};
 
 /// A nodal field in the basis in which its gradient costs least; made once per element, used at each
 /// quadrature point. All bases are differences of nodal values: the position of an element in space is
@@ -28,6 +23,13 @@ struct Coefficients {
     Coefficients d;
     for (auto& row : d.c)
       for (S& x : row) x = S(0);
+    return d;
+  }
+  /// The differences of the corners 1 to d of a simplex to corner 0, one per row.
+  PLIANT_HOST_DEVICE Tensor<S, E::dim> to_corners() const {
+    Tensor<S, E::dim> d;
+    for (int a = 0; a < E::dim; ++a)
+      for (int i = 0; i < E::dim; ++i) d(a, i) = c[a][i];
     return d;
   }
   /// ∂v_i/∂ξ_k at point q.
@@ -178,7 +180,7 @@ struct Coefficients<E, S> {
   /// A node's corner as bits: 1 where ξ_k = 1.
   PLIANT_HOST_DEVICE static constexpr int corner(int a) {
     int b = 0;
-    for (int k = 0; k < E::dim; ++k) b |= (E::sign(a, k) > 0 ? 1 : 0) << k;
+    for (int k = 0; k < E::dim; ++k) b |= (E::cell::corner(a)[k] > 0 ? 1 : 0) << k;
     return b;
   }
   /// f(without direction k, with it) for all sets of directions, k after k: a butterfly.

@@ -6,11 +6,28 @@
 
 namespace pliant {
 
+namespace detail {
+/// Whether as many strains are looked at as there are ways to deform the element. (That no deformation
+/// escapes them is tested for every formulation that passes.)
+template <Element E, class Q>
+constexpr bool enough_points() {
+  constexpr int strains = E::dim == 2 ? 3 : 6, rigid_motions = strains;
+  constexpr bool controlled = requires { Q::controls_hourglasses; };
+  return controlled ||
+         Tabulation<E, Q, double>::count * strains >= E::nodes * E::dim - rigid_motions;
+}
+}  // namespace detail
+
 /// Element × quadrature × law: the thing that has forces. A type only; the parameters of the law
 /// live in the group.
 template <Element E, class Q, template <class> class L>
   requires QuadratureOn<Q, typename E::cell> && Law<L<double>>
 struct Formulation {
+  static_assert(
+      detail::enough_points<E, Q>(),
+      "this quadrature has too few points for this element: some deformations would meet no "
+      "resistance (zero-energy modes). Take a rule with more points, or OnePoint, which "
+      "controls them on Quad4 and Hex8");
   using element = E;
   using quadrature = Q;
   template <class T>

@@ -98,6 +98,10 @@ PLIANT_HOST_DEVICE constexpr T dot(Matrix<T, R, C> const& a, Matrix<T, R, C> con
     for (int j = 0; j < C; ++j) sum = sum + a(i, j) * b(i, j);
   return sum;
 }
+template <class T>
+PLIANT_HOST_DEVICE constexpr Vector<T, 3> cross(Vector<T, 3> const& a, Vector<T, 3> const& b) {
+  return {{{a[1] * b[2] - a[2] * b[1]}, {a[2] * b[0] - a[0] * b[2]}, {a[0] * b[1] - a[1] * b[0]}}};
+}
 template <class T, int R, int C>
 PLIANT_HOST_DEVICE T norm(Matrix<T, R, C> const& a) {
   return sqrt(dot(a, a));

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <pliant/element/simplex.hpp>
-#include <pliant/element/tensor.hpp>
-#include <pliant/mesh/mesh.hpp>
+#include <pliant/element/linear.hpp>
+#include <pliant/mesh/sides.hpp>
 
 namespace pliant::mesh {
 
@@ -12,41 +11,48 @@ struct BoxOptions {
   Point<3> origin{0, 0, 0};  // the lowest corner, m
 };
 
-/// A box of Hex8 cells, or of Tet4 by Kuhn's split of each cell: six tetrahedra, one per path from the
-/// lowest to the highest corner along the axes. Boundaries: left, right (x), front, back (y), bottom,
-/// top (z).
+namespace detail {
+
+/// Six tetrahedra (Kuhn's split): one per path from the lowest to the highest corner along the axes.
+inline std::vector<Connectivity<Tet4>> split_cell(Connectivity<Hex8> const& c, Tet4) {
+  return {{c[0], c[1], c[2], c[6]}, {c[0], c[3], c[7], c[6]}, {c[0], c[4], c[5], c[6]},
+          {c[0], c[5], c[1], c[6]}, {c[0], c[7], c[4], c[6]}, {c[0], c[2], c[3], c[6]}};
+}
+/// Two wedges along z, beside the diagonal from the lowest corner.
+inline std::vector<Connectivity<Wedge6>> split_cell(Connectivity<Hex8> const& c, Wedge6) {
+  return {{c[0], c[1], c[2], c[4], c[5], c[6]}, {c[0], c[2], c[3], c[4], c[6], c[7]}};
+}
+
+}  // namespace detail
+
+/// A box of hexahedra, or of cells that hexahedra are split into: six tetrahedra (Kuhn's split, along
+/// the paths from the lowest to the highest corner), two wedges along z, or six pyramids around a node
+/// in the middle; of any degree. Boundaries: left, right (x), front, back (y), bottom, top (z).
 template <Element E = Hex8>
 Mesh<E> box(BoxOptions const& o) {
-  auto const [nx, ny, nz] = o.cells;
-  if (nx < 1 || ny < 1 || nz < 1 || !(o.size[0] > 0) || !(o.size[1] > 0) || !(o.size[2] > 0))
-    throw Error("mesh::box: needs a positive size and at least one cell along each side");
-  Mesh<E> mesh;
-  auto const node = [nx = nx, ny = ny](int i, int j, int k) {
-    return Index{(k * (ny + 1) + j) * (nx + 1) + i};
-  };
-  for (int k = 0; k <= nz; ++k)
-    for (int j = 0; j <= ny; ++j)
-      for (int i = 0; i <= nx; ++i)
-        mesh.nodes.push_back({o.origin[0] + o.size[0] * i / nx, o.origin[1] + o.size[1] * j / ny,
-                              o.origin[2] + o.size[2] * k / nz});
-  constexpr int paths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  auto const add_facet = [&](char const* name, std::array<Index, 4> const& quad) {
-    auto& facets = mesh.boundaries[name];
-    if constexpr (std::same_as<E, Hex8>) {
-      facets.push_back(quad);
-    } else {  // Kuhn's diagonal runs from the lowest to the highest corner of the face
-      auto const lowest = std::ranges::min_element(quad) - quad.begin();
-      auto const at = [&](std::ptrdiff_t i) {
-        return quad[static_cast<std::size_t>((lowest + i) % 4)];
-      };
-      facets.push_back({at(0), at(1), at(2), -1});
-      facets.push_back({at(0), at(2), at(3), -1});
-    }
-  };
-  for (int k = 0; k < nz; ++k)
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        std::array<Index, 8> const c{node(i, j, k),
+  static_assert(E::dim == 3, "mesh::box makes solid elements; mesh::rectangle makes plane ones");
+  using Cell = typename E::cell;
+  using Linear = std::conditional_t<std::same_as<Cell, Tetrahedron>, Tet4,
+                                    std::conditional_t<std::same_as<Cell, Hexahedron>, Hex8, E>>;
+  if constexpr (E::degree > 1) {
+    return raised<E>(box<Linear>(o));
+  } else {
+    auto const [nx, ny, nz] = o.cells;
+    if (nx < 1 || ny < 1 || nz < 1 || !(o.size[0] > 0) || !(o.size[1] > 0) || !(o.size[2] > 0))
+      throw Error("mesh::box: needs a positive size and at least one cell along each side");
+    Mesh<E> mesh;
+    auto& elements = mesh.template elements<E>();
+    auto const node = [nx = nx, ny = ny](int i, int j, int k) {
+      return Index{(k * (ny + 1) + j) * (nx + 1) + i};
+    };
+    std::vector<std::array<int, 3>> place;  // of each node, in half cells
+    for (int k = 0; k <= nz; ++k)
+      for (int j = 0; j <= ny; ++j)
+        for (int i = 0; i <= nx; ++i) place.push_back({2 * i, 2 * j, 2 * k});
+    for (int k = 0; k < nz; ++k)
+      for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+          Connectivity<Hex8> const c{node(i, j, k),
                                      node(i + 1, j, k),
                                      node(i + 1, j + 1, k),
                                      node(i, j + 1, k),
@@ -54,29 +60,35 @@ Mesh<E> box(BoxOptions const& o) {
                                      node(i + 1, j, k + 1),
                                      node(i + 1, j + 1, k + 1),
                                      node(i, j + 1, k + 1)};
-        if constexpr (std::same_as<E, Hex8>) {
-          mesh.template elements<E>().push_back(c);
-        } else {
-          static_assert(std::same_as<E, Tet4>, "mesh::box makes Hex8 or Tet4 elements");
-          for (int p = 0; p < 6; ++p) {
-            std::array<int, 3> at{i, j, k};
-            std::array<Index, 4> t{c[0], 0, 0, 0};
-            for (std::size_t s = 0; s < 3; ++s) {
-              ++at[static_cast<std::size_t>(paths[p][s])];
-              t[s + 1] = node(at[0], at[1], at[2]);
+          if constexpr (std::same_as<Cell, Hexahedron>) {
+            elements.push_back(c);
+          } else if constexpr (std::same_as<Cell, Pyramid>) {
+            auto const middle = static_cast<Index>(place.size());
+            place.push_back({2 * i + 1, 2 * j + 1, 2 * k + 1});
+            for (auto const& s : Hexahedron::sides()) {
+              auto const at = [&](std::size_t a) { return c[static_cast<std::size_t>(s[a])]; };
+              elements.push_back({at(0), at(3), at(2), at(1), middle});
             }
-            if (p >= 3) std::swap(t[1], t[2]);  // odd paths turn the other way
-            mesh.template elements<E>().push_back(t);
+          } else {
+            for (auto const& part : detail::split_cell(c, Linear{})) elements.push_back(part);
           }
         }
-        if (i == 0) add_facet("left", {c[0], c[4], c[7], c[3]});
-        if (i == nx - 1) add_facet("right", {c[1], c[2], c[6], c[5]});
-        if (j == 0) add_facet("front", {c[0], c[1], c[5], c[4]});
-        if (j == ny - 1) add_facet("back", {c[3], c[7], c[6], c[2]});
-        if (k == 0) add_facet("bottom", {c[0], c[3], c[2], c[1]});
-        if (k == nz - 1) add_facet("top", {c[4], c[5], c[6], c[7]});
-      }
-  return mesh;
+    std::array<int, 3> const ends{2 * nx, 2 * ny, 2 * nz};
+    for (auto const& p : place) {
+      mesh.nodes.emplace_back();
+      for (std::size_t d = 0; d < 3; ++d)
+        mesh.nodes.back()[d] = o.origin[d] + o.size[d] * p[d] / ends[d];
+    }
+    constexpr char const* names[3][2] = {{"left", "right"}, {"front", "back"}, {"bottom", "top"}};
+    for (auto const& facet : outer_sides(mesh))
+      for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t end = 0; end < 2; ++end)
+          if (std::ranges::all_of(facet, [&](Index n) {
+                return place[static_cast<std::size_t>(n)][d] == (end ? ends[d] : 0);
+              }))
+            mesh.boundaries[names[d][end]].push_back(facet);
+    return mesh;
+  }
 }
 
 }  // namespace pliant::mesh

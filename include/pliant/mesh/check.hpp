@@ -44,8 +44,7 @@ void check_elements(M const& mesh) {
         size = std::max(size, std::abs(rest(a, k) - rest(0, k)));
       }
     }
-    // Corners and quadrature points: where a bilinear or trilinear map first folds, and where the
-    // forces look.
+    // Corners and quadrature points: where a map first folds, and where the forces look.
     double const smallest = 1e-12 * std::pow(size, E::dim);
     auto const check = [&]<class Q>(Q) {
       constexpr auto table = tabulate<E, Q, double>();
@@ -60,8 +59,8 @@ void check_elements(M const& mesh) {
                       "); number its nodes counter-clockwise, or repair the mesh there");
       }
     };
-    check(Gauss<2>{});
-    check(Corners{});
+    check(Gauss<E::degree + 1>{});
+    if constexpr (QuadratureOn<Corners, typename E::cell>) check(Corners{});
   }
 }
 

@@ -15,10 +15,35 @@ namespace pliant {
 template <int Dim>
 using Point = std::array<double, Dim>;
 
-/// One side of an element on the boundary: the numbers of its corner nodes; behind a triangle's
-/// three, −1.
+/// One side of an element on the boundary: the numbers of its nodes, corners first, then those on its
+/// edges, then one in its middle; counter-clockwise seen from outside, the body on the left in 2D.
 template <int Dim>
-using Facet = std::array<Index, Dim == 2 ? 2 : 4>;
+class Facet {
+ public:
+  static constexpr std::size_t capacity = Dim == 2 ? 3 : 9;
+
+  template <std::convertible_to<Index>... I>
+  constexpr Facet(I... nodes) : nodes_{static_cast<Index>(nodes)...}, count_(sizeof...(I)) {
+    static_assert(sizeof...(I) <= capacity, "a facet has at most 3 nodes in 2D and 9 in 3D");
+  }
+  constexpr void push_back(Index node) { nodes_[count_++] = node; }
+
+  constexpr std::size_t size() const { return count_; }
+  constexpr Index operator[](std::size_t a) const { return nodes_[a]; }
+  constexpr Index* begin() { return nodes_.data(); }
+  constexpr Index* end() { return nodes_.data() + count_; }
+  constexpr Index const* begin() const { return nodes_.data(); }
+  constexpr Index const* end() const { return nodes_.data() + count_; }
+  /// How many of the nodes are corners.
+  constexpr std::size_t corners() const {
+    return Dim == 2 ? 2 : count_ % 3 == 0 && count_ < 9 ? 3 : 4;
+  }
+  friend constexpr bool operator==(Facet const&, Facet const&) = default;
+
+ private:
+  std::array<Index, capacity> nodes_{};
+  std::size_t count_ = 0;
+};
 
 /// Nodes at rest, and the elements of each type that join them. Plain data, in the user's order.
 template <Element... Es>
@@ -60,12 +85,10 @@ auto nodal(Mesh<Es...> const& mesh, std::array<Index, Nodes> const& element) {
 }
 
 /// The nodes on some facets, ascending, each once.
-template <std::size_t N>
-std::vector<Index> nodes_of(std::vector<std::array<Index, N>> const& facets) {
+template <int Dim>
+std::vector<Index> nodes_of(std::vector<Facet<Dim>> const& facets) {
   std::vector<Index> nodes;
-  for (auto const& facet : facets)
-    for (Index node : facet)
-      if (node >= 0) nodes.push_back(node);
+  for (auto const& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;

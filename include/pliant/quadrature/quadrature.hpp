@@ -43,7 +43,7 @@ PLIANT_HOST_DEVICE constexpr Tabulation<E, Q, T> tabulate() {
       table.monomial[q][b] = static_cast<T>(product);
     }
     auto const shape = E::shape(xi);
-    auto const gradient = E::gradient(xi);
+    auto const gradient = shape_gradient<E>(xi);
     for (int a = 0; a < E::nodes; ++a) {
       table.shape[q][a] = static_cast<T>(shape[a]);
       for (int k = 0; k < E::dim; ++k) table.gradient[q][a][k] = static_cast<T>(gradient(a, k));

@@ -71,8 +71,8 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
                                        wi * wj * k(a * dim + p, b * dim + q));
     };
     [&]<int... G>(std::integer_sequence<int, G...>) {
-      auto const laws =
-          std::tuple{body.template law_of<typename Table::template formulation<G>>()...};
+      auto const laws = std::tuple{prepared<typename Table::template formulation<G>>(
+          body.template law_of<typename Table::template formulation<G>>())...};
       for (std::size_t e = 0; e < elements.size(); ++e)
         (void)((tags[e] == G ? (add(GroupNumber<G>{}, e, std::get<G>(laws)), true) : false) || ...);
     }(std::make_integer_sequence<int, Table::groups>());

@@ -34,7 +34,7 @@ struct AspectRatio {
       } else if constexpr (std::same_as<typename E::cell, Quadrilateral>) {
         return longest * sum / (T(4) * size);
       } else {
-        constexpr auto sides = E::sides();
+        constexpr auto sides = E::cell::sides();
         S area(0);
         for (auto const& side : sides) {
           Vector<S, 3> p, q;

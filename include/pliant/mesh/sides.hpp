@@ -1,0 +1,130 @@
+#pragma once
+
+#include <map>
+
+#include <pliant/mesh/mesh.hpp>
+
+// From elements to the boundary, and from corners to the nodes between them.
+namespace pliant::mesh {
+
+/// The nodes of an element type on one side of its cell, in the order of a facet.
+template <Element E>
+constexpr auto nodes_on_side(int side) {
+  constexpr auto sides = E::cell::sides();
+  Facet<E::dim> local;
+  auto const& corners = sides[static_cast<std::size_t>(side)];
+  for (int corner : corners)
+    if (corner >= 0) local.push_back(corner);
+  for (int a = E::cell::corners; a < E::nodes; ++a) {
+    auto const share = E::cell::linear(E::place(a));  // adds up to one over the corners of the side
+    double on_side = 0;
+    for (int corner : corners)
+      if (corner >= 0) on_side += share[corner];
+    if (on_side > 1 - 1e-9) local.push_back(a);
+  }
+  return local;
+}
+
+/// The side of an element as a facet.
+template <Element E>
+Facet<E::dim> side_of(Connectivity<E> const& element, int side) {
+  static constexpr auto local = [] {
+    std::array<Facet<E::dim>, E::cell::sides().size()> all;
+    for (std::size_t s = 0; s < all.size(); ++s) all[s] = nodes_on_side<E>(static_cast<int>(s));
+    return all;
+  }();
+  Facet<E::dim> facet = local[static_cast<std::size_t>(side)];
+  for (Index& node : facet) node = element[static_cast<std::size_t>(node)];
+  return facet;
+}
+
+/// The corners of a facet in ascending order: the same for both elements beside it.
+template <int Dim>
+std::array<Index, 4> key_of(Facet<Dim> const& facet) {
+  std::array<Index, 4> key{-1, -1, -1, -1};
+  std::copy_n(facet.begin(), facet.corners(), key.begin());
+  std::ranges::sort(key);
+  return key;
+}
+
+/// The sides of elements that have no element behind them: the boundary of a mesh.
+template <Element... Es>
+std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
+  struct Seen {
+    Facet<Mesh<Es...>::dim> facet;
+    int times = 0;
+  };
+  std::map<std::array<Index, 4>, Seen> seen;
+  auto const look_at = [&]<Element E>(E) {
+    for (auto const& element : mesh.template elements<E>())
+      for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
+        auto const facet = side_of<E>(element, static_cast<int>(s));
+        auto& entry = seen[key_of(facet)];
+        entry.facet = facet;
+        ++entry.times;
+      }
+  };
+  (look_at(Es{}), ...);
+  std::vector<Facet<Mesh<Es...>::dim>> outer;
+  for (auto const& [key, entry] : seen)
+    if (entry.times == 1) outer.push_back(entry.facet);
+  return outer;
+}
+
+/// The outer sides all of whose nodes satisfy a condition on their place: belongs(Point) -> bool.
+template <Element... Es, class Belongs>
+std::vector<Facet<Mesh<Es...>::dim>> outer_sides_where(Mesh<Es...> const& mesh,
+                                                       Belongs const& belongs) {
+  auto facets = outer_sides(mesh);
+  std::erase_if(facets, [&](auto const& facet) {
+    return !std::ranges::all_of(
+        facet, [&](Index node) { return belongs(mesh.nodes[static_cast<std::size_t>(node)]); });
+  });
+  return facets;
+}
+
+/// The same cells with elements of a higher degree: nodes are added in the middle of edges, sides and
+/// cells, on straight lines. Facets of the boundaries gain their nodes. (Move nodes afterwards for
+/// curved cells.)
+template <Element E, Element Linear>
+  requires std::same_as<typename E::cell, typename Linear::cell> && (Linear::degree == 1)
+Mesh<E> raised(Mesh<Linear> const& from) {
+  constexpr int corners = E::cell::corners;
+  Mesh<E> to;
+  to.nodes = from.nodes;
+  std::map<std::array<Index, corners>, Index> between;  // by the corners around the new node
+  for (auto const& element : from.template elements<Linear>()) {
+    Connectivity<E> raised;
+    std::copy_n(element.begin(), corners, raised.begin());
+    for (int a = corners; a < E::nodes; ++a) {
+      auto const share = E::cell::linear(E::place(a));
+      std::array<Index, corners> around;
+      around.fill(-1);
+      Point<E::dim> middle{};
+      for (int b = 0; b < corners; ++b) {
+        if (!(share[b] > 1e-9)) continue;
+        Index const node = element[static_cast<std::size_t>(b)];
+        around[static_cast<std::size_t>(b)] = node;
+        for (std::size_t k = 0; k < E::dim; ++k)
+          middle[k] += share[b] * from.nodes[static_cast<std::size_t>(node)][k];
+      }
+      std::ranges::sort(around);
+      auto const [entry, is_new] = between.try_emplace(around, static_cast<Index>(to.nodes.size()));
+      if (is_new) to.nodes.push_back(middle);
+      raised[static_cast<std::size_t>(a)] = entry->second;
+    }
+    to.template elements<E>().push_back(raised);
+  }
+  if (from.boundaries.empty()) return to;
+  std::map<std::array<Index, 4>, Facet<E::dim>> facets;
+  for (auto const& element : to.template elements<E>())
+    for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
+      auto const facet = side_of<E>(element, static_cast<int>(s));
+      facets[key_of(facet)] = facet;
+    }
+  for (auto const& [name, list] : from.boundaries)
+    for (auto const& facet : list) to.boundaries[name].push_back(facets.at(key_of(facet)));
+  return to;
+}
+
+}  // namespace pliant::mesh
