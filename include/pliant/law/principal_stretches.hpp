@@ -19,6 +19,7 @@ struct PrincipalFrame {
     auto const strain = Spectrum<S, Dim>::of(GreenInvariants<S>::strain(h));
     PrincipalFrame f{{}, strain.vectors + h * strain.vectors, strain.vectors};
     constexpr auto rounding = std::numeric_limits<builtin_scalar<S>>::epsilon();
+    constexpr auto half = builtin_scalar<S>(0.5);
     Vector<S, Dim> size, is_least;
     for (int k = 0; k < Dim; ++k) size[k] = sqrt(max(1 + 2 * strain.values[k], S(0)));
     S least = size[0];
@@ -28,18 +29,23 @@ struct PrincipalFrame {
       is_least[k] = select(least < size[k], S(0), unclaimed);
       unclaimed = unclaimed - is_least[k];
     }
-    S const twice_if_inverted = select(determinant_less_one(h) < S(-1), S(2), S(0));
     for (int k = 0; k < Dim; ++k) {
-      f.less_one[k] =
-          2 * strain.values[k] / (1 + size[k]) - is_least[k] * twice_if_inverted * size[k];
+      f.less_one[k] = 2 * strain.values[k] / (1 + size[k]);
       S const divisor = max(size[k], S(rounding));
       for (int i = 0; i < Dim; ++i) f.now(i, k) = f.now(i, k) / divisor;
     }
-    // F N of a stretch near zero says nothing of n, but the others do.
+    // F N of the least stretch, which may be near zero, says little of n, but the others do; and
+    // n·F N then knows the sign of the stretch, and more of its digits than its square does.
     Tensor<S, Dim> const completed = cofactor(f.now);
-    for (int k = 0; k < Dim; ++k)
+    for (int k = 0; k < Dim; ++k) {
+      S least_stretch = completed(0, k) * f.now(0, k);
+      for (int i = 1; i < Dim; ++i) least_stretch = least_stretch + completed(i, k) * f.now(i, k);
+      least_stretch = least_stretch * max(size[k], S(rounding));
+      S const small = is_least[k] * select(least_stretch < S(half), S(1), S(0));
+      f.less_one[k] = select(S(0) < small, least_stretch - 1, f.less_one[k]);
       for (int i = 0; i < Dim; ++i)
         f.now(i, k) = select(S(0) < is_least[k], completed(i, k), f.now(i, k));
+    }
     return f;
   }
   /// Σ w_kl n_k ⊗ N_l
