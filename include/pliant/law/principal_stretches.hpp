@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-
 #include <pliant/law/invariants.hpp>
 #include <pliant/math/spectrum.hpp>
 
@@ -18,7 +16,7 @@ struct PrincipalFrame {
   PLIANT_HOST_DEVICE static PrincipalFrame of(Tensor<S, Dim> const& h) {
     auto const strain = Spectrum<S, Dim>::of(GreenInvariants<S>::strain(h));
     PrincipalFrame f{{}, strain.vectors + h * strain.vectors, strain.vectors};
-    constexpr auto rounding = std::numeric_limits<builtin_scalar<S>>::epsilon();
+    constexpr auto rounding = builtin_scalar<S>(sizeof(builtin_scalar<S>) == 4 ? 1e-7 : 1e-16);
     constexpr auto half = builtin_scalar<S>(0.5);
     Vector<S, Dim> size, is_least;
     for (int k = 0; k < Dim; ++k) size[k] = sqrt(max(1 + 2 * strain.values[k], S(0)));
