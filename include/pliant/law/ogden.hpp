@@ -16,19 +16,26 @@ struct Ogden {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalStretches<S> const& l) const {
-    S const log_l[3] = {log1p(l[0]), log1p(l[1]), log1p(l[2])};
-    S const log_J = log_l[0] + log_l[1] + log_l[2];
+    S const log_1 = log1p(l[0]), log_2 = log1p(l[1]), log_3 = log1p(l[2]);
+    S const log_J = log_1 + log_2 + log_3, mean = log_J / 3;
+    S const log_bar[3] = {log_1 - mean, log_2 - mean, log_3 - mean};  // of the isochoric stretches
     S w = bulk / 2 * square(expm1(log_J));
-    // The sum of all α ln λ̄ is 0, which is taken from each power with its 1.
-    for (int p = 0; p < 3; ++p)
-      for (int k = 0; k < 3; ++k)
-        w = w + mu[p] / alpha[p] * excess_of_expm1(alpha[p] * (log_l[k] - log_J / 3));
+    for (int p = 0; p < 3; ++p) w = w + term(mu[p], alpha[p], log_bar);
     return w;
   }
   /// With the exponents and the proportions of Treloar's rubber (Ogden 1972).
   static Ogden from(Elastic const& m) {
     double const unit = m.lame_mu() / 4.225;
     return {{T(6.3 * unit), T(0.012 * unit), T(-0.1 * unit)}, {T(1.3), T(5), T(-2)}, T(m.bulk())};
+  }
+
+ private:
+  /// μ/α (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3), where from each power goes α ln λ̄ too: their sum is 0.
+  template <class S>
+  PLIANT_HOST_DEVICE static S term(T const& mu, T const& alpha, S const (&log_bar)[3]) {
+    return mu / alpha *
+           (excess_of_expm1(alpha * log_bar[0]) + excess_of_expm1(alpha * log_bar[1]) +
+            excess_of_expm1(alpha * log_bar[2]));
   }
 };
 
