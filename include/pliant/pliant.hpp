@@ -29,6 +29,7 @@
 #include <pliant/law/neo_hookean.hpp>
 #include <pliant/law/ogden.hpp>
 #include <pliant/law/per_element.hpp>
+#include <pliant/law/plane_stress.hpp>
 #include <pliant/law/saint_venant_kirchhoff.hpp>
 #include <pliant/law/simo_neo_hookean.hpp>
 #include <pliant/law/stable_neo_hookean.hpp>
