@@ -35,6 +35,7 @@
 #include <pliant/law/stable_neo_hookean.hpp>
 #include <pliant/law/yeoh.hpp>
 #include <pliant/mesh/box.hpp>
+#include <pliant/mesh/loads.hpp>
 #include <pliant/mesh/rectangle.hpp>
 #include <pliant/quadrature/by_need.hpp>
 #include <pliant/quadrature/f_bar.hpp>

@@ -66,9 +66,10 @@ class Body {
   void drive(std::vector<Index> const& nodes, Motion<dim> motion) {
     add_condition({{}, nodes, all_directions<dim>, std::move(motion)});
   }
-  void set_gravity(Point<dim> const& g);               // m/s²
-  void set_damping(double per_mass);                   // 1/s
-  void set_load(Index node, Point<dim> const& force);  // N, constant in direction
+  void set_gravity(Point<dim> const& g);                  // m/s²
+  void set_damping(double per_mass);                      // 1/s
+  void set_load(Index node, Point<dim> const& force);     // N, constant in direction
+  void set_loads(std::vector<Point<dim>> const& forces);  // of all nodes; see mesh/loads.hpp
   Point<dim> const& gravity() const { return gravity_; }
   double damping() const { return damping_; }
   std::vector<Point<dim>> const& loads() const { return loads_; }  // empty, or one per node

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/body/body.hpp>
+#include <pliant/body/state_of_body.hpp>
 
 // Members of Body: its groups, and what holds and pulls it.
 namespace pliant {
@@ -182,6 +183,15 @@ void Body<B, M, Fs...>::set_load(Index node, Point<dim> const& force) {
   change_loads([&] {
     if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
     loads_[static_cast<std::size_t>(node)] = force;
+    upload_loads();
+  });
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::set_loads(std::vector<Point<dim>> const& forces) {
+  detail::check_field("body.set_loads", forces, nodes());
+  change_loads([&] {
+    loads_ = forces;
     upload_loads();
   });
 }
