@@ -37,6 +37,16 @@ struct Dual {
 template <class T, int N>
 struct BuiltinScalar<Dual<T, N>> : BuiltinScalar<T> {};
 
+/// The number itself, without its derivatives, those of first and of second order.
+template <class T>
+PLIANT_HOST_DEVICE constexpr T const& plain_value(T const& x) {
+  return x;
+}
+template <class T, int N>
+PLIANT_HOST_DEVICE constexpr auto const& plain_value(Dual<T, N> const& x) {
+  return plain_value(x.value);
+}
+
 /// What takes part in an expression with duals as a constant.
 template <class C, class T>
 concept ConstantFor = std::constructible_from<T, C const&>;
