@@ -23,10 +23,23 @@ void check_derivatives(L const& law, Tensor<double, Dim> const& h, Random& rando
   CHECK(largest<Dim>(dp - slope) < 1e-8 * largest<Dim>(dp));
 }
 
+/// The corotated law as a user may write it.
+template <class T>
+struct OfStretches {
+  T lambda, mu;
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(PrincipalStretches<S> const& l) const {
+    return mu * (square(l[0]) + square(l[1]) + square(l[2])) +
+           lambda / 2 * square(l[0] + l[1] + l[2]);
+  }
+};
+static_assert(EnergyIn<OfStretches<double>, PrincipalStretches>);
+
 template <class Check>
 void on_laws_of_stretches(Check const& check) {
   SECTION("Ogden") { check(law_of_section_6<Ogden>); }
   SECTION("Corotated") { check(law_of_section_6<Corotated>); }
+  SECTION("in stretches") { check(OfStretches<double>{3, 2}); }
 }
 
 TEST_CASE("stresses and tangents are exact where stretches are equal, or nearly", "[law]") {
@@ -70,6 +83,7 @@ TEST_CASE("single precision keeps tangents where stretches are nearly equal", "[
 TEST_CASE("the corotated law turns inverted states about, not inside out", "[law]") {
   // The smallest stretch is negative: W = μ Σ (λₖ − 1)² + λ/2 (Σ λₖ − 3)².
   auto const law = law_of_section_6<Corotated>;
+  OfStretches<double> const in_stretches{3, 2};
   Random random(23);
   for (std::array<double, 3> const& l :
        {std::array{1.2, 0.9, -0.3}, {1.2, 0.9, 1e-9}, {1.2, 0.9, 0.0}, {1.2, 0.9, -0.7}}) {
@@ -80,6 +94,9 @@ TEST_CASE("the corotated law turns inverted states about, not inside out", "[law
       auto const h = stretched<3>(l, random);
       CHECK(energy_density(law, h) == Approx(w).epsilon(1e-12));
       check_derivatives<3>(law, h, random, 5e-4);
+      CHECK(energy_density(in_stretches, h) == Approx(w).epsilon(1e-12));
+      check_derivatives<3>(in_stretches, h, random, 5e-4);
+      CHECK(largest<3>(stress(law, h) - stress(in_stretches, h)) < 1e-11);
     }
   }
 }
@@ -91,6 +108,7 @@ TEST_CASE("the corotated law bears mirrored states, whose rotation is anyone's",
     double const sum = h(0, 0) == -1.999 ? -1.999 : -2;  // one stretch of −1, or nearly
     CHECK(energy_density(law, h) == Approx(2 * sum * sum + 1.5 * sum * sum).epsilon(0.01));
     CHECK(largest<3>(stress(law, h)) < 50);
+    CHECK(largest<3>(stress(OfStretches<double>{3, 2}, h)) < 50);
   }
 }
 

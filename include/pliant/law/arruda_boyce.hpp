@@ -4,11 +4,11 @@
 
 namespace pliant {
 
-/// Arruda-Boyce, of rubber as chains along the diagonals of a cube, to the fifth order of the inverse
-/// Langevin function: W = μ₀ Σₖ aₖ/λₘ^(2k−2) (Ī₁ᵏ − 3ᵏ) + κ/2 (J − 1)² with a = 1/2, 1/20, 11/1050,
-/// 19/7000, 519/673750. For J > 0; true to the chains while the stretch is well below the locking
-/// stretch λₘ, beyond which the series goes on without locking. (Arruda and Boyce, Journal of the
-/// Mechanics and Physics of Solids 41 (1993) 389.)
+/// Arruda-Boyce, of rubber as chains along the diagonals of a cube, to the fifth order of the
+/// inverse Langevin function: W = μ₀ Σₖ aₖ/λₘ^(2k−2) (Ī₁ᵏ − 3ᵏ) + κ/2 (J − 1)² with a = 1/2, 1/20,
+/// 11/1050, 19/7000, 519/673750. For J > 0; true to the chains while the stretch is well below the
+/// locking stretch λₘ, beyond which the series goes on without locking. (Arruda and Boyce, Journal
+/// of the Mechanics and Physics of Solids 41 (1993) 389.)
 template <class T>
 struct ArrudaBoyce {
   T mu;       // μ₀ = nkT, less than the shear modulus at rest, Pa

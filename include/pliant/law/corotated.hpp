@@ -4,11 +4,12 @@
 
 namespace pliant {
 
-/// Corotated linear: W = μ |F − R|² + λ/2 (tr(RᵀF − I))² with the rotation R of the polar decomposition
-/// F = R U. Hooke's law without its error under rotation, and no more than that: a finite energy
-/// resists inversion. Where J < 0, R stays a rotation, and U has one negative eigenvalue; R jumps
-/// where two eigenvalues add up to 0, the mirrored states, about which the energy is good to 1%. (Chao, Pinkall, Sanan and Schröder, A simple geometric model for
-/// elastic deformations, ACM Trans. Graph. 29, 2010.)
+/// Corotated linear: W = μ |F − R|² + λ/2 (tr(RᵀF − I))² with the rotation R of the polar
+/// decomposition F = R U. Hooke's law without its error under rotation, and no more than that: a
+/// finite energy resists inversion. Where J < 0, R stays a rotation, and U has one negative
+/// eigenvalue; R jumps where two eigenvalues add up to 0, the mirrored states, about which the
+/// energy is good to 1%. (Chao, Pinkall, Sanan and Schröder, A simple geometric model for elastic
+/// deformations, ACM Trans. Graph. 29, 2010.)
 template <class T>
 struct Corotated {
   T lambda, mu;  // Lamé's parameters, Pa
@@ -22,9 +23,10 @@ struct Corotated {
   static Corotated from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 
  private:
-  /// tr U is the largest root f of f⁴ − 2 I₁ f² − 8 J f + I₁² − 4 I₂ (Lin, Floyd, Chitalu and Komura,
-  /// Isotropic ARAP energy using Cauchy-Green invariants, ACM Trans. Graph. 41, 2022), written here
-  /// in s = f − 3 − (J − 1), which is of second order, so that nothing of first order cancels.
+  /// tr U is the largest root f of f⁴ − 2 I₁ f² − 8 J f + I₁² − 4 I₂ (Lin, Floyd, Chitalu and
+  /// Komura, Isotropic ARAP energy using Cauchy-Green invariants, ACM Trans. Graph. 41, 2022),
+  /// written here in s = f − 3 − (J − 1), which is of second order, so that nothing of first order
+  /// cancels.
   template <class S>
   struct Quartic {
     S J_1, x, constant;  // J − 1, I₁ − 3
@@ -44,8 +46,8 @@ struct Corotated {
       return 96 - 4 * x + a * (72 + 12 * a);
     }
   };
-  /// By Laguerre's method from √(3 I₁), which lies above all roots: 3 steps are exact to 12 digits at
-  /// stretches of 0.3 to 3. Two steps of Newton's then bring derivatives of both orders.
+  /// By Laguerre's method from √(3 I₁), which lies above all roots: 3 steps are exact to 12 digits
+  /// at stretches of 0.3 to 3. Two steps of Newton's then bring derivatives of both orders.
   template <class S>
   PLIANT_HOST_DEVICE static S trace_beyond_volume(PrincipalInvariants<S> const& i) {
     using V = std::remove_cvref_t<decltype(plain_value(i.D1))>;

@@ -4,10 +4,10 @@
 
 namespace pliant {
 
-/// Fung's law of soft tissue, isotropic: W = μ/(2b) (e^Q − 1), Q = b (2 tr E² + λ/μ (tr E)²) with the
-/// Green strain E = (FᵀF − I)/2. Stiffens as its exponent grows, and softens under compression as
-/// Saint Venant-Kirchhoff does, which it is for b → 0. (Fung, Biomechanics: Mechanical Properties of
-/// Living Tissues, section 7.11.)
+/// Fung's law of soft tissue, isotropic: W = μ/(2b) (e^Q − 1), Q = b (2 tr E² + λ/μ (tr E)²) with
+/// the Green strain E = (FᵀF − I)/2. Stiffens as its exponent grows, and softens under compression
+/// as Saint Venant-Kirchhoff does, which it is for b → 0. (Fung, Biomechanics: Mechanical
+/// Properties of Living Tissues, section 7.11.)
 template <class T>
 struct Fung {
   T lambda, mu;  // Lamé's parameters at rest, Pa

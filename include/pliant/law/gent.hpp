@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// Gent, of rubber whose chains can stretch no further: W = −μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ) + κ/2 (J − 1)².
-/// For J > 0 and Ī₁ − 3 < Jₘ: the energy goes to infinity there, and is not a number beyond. (Gent,
-/// Rubber Chemistry and Technology 69 (1996) 59.)
+/// Gent, of rubber whose chains can stretch no further: W = −μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ) + κ/2 (J −
+/// 1)². For J > 0 and Ī₁ − 3 < Jₘ: the energy goes to infinity there, and is not a number beyond.
+/// (Gent, Rubber Chemistry and Technology 69 (1996) 59.)
 template <class T>
 struct Gent {
   T mu;     // shear modulus at rest, Pa

@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// The components of the Green strain E = (FᵀF − I)/2, each once: what laws of directions are written
-/// in. In 2D the strain is plane: E₁₃ = E₂₃ = E₃₃ = 0.
+/// The components of the Green strain E = (FᵀF − I)/2, each once: what laws of directions are
+/// written in. In 2D the strain is plane: E₁₃ = E₂₃ = E₃₃ = 0.
 template <class S, int Dim>
 struct GreenStrain {
   static constexpr int count = Dim * (Dim + 1) / 2;

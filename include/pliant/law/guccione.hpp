@@ -6,10 +6,10 @@ namespace pliant {
 
 /// Guccione's law of heart muscle, stiffer along its fibres: W = c/2 (e^Q − 1) + κ/2 (J − 1)² with
 /// Q = b_f E_ff² + b_t (E_ss² + E_nn² + 2 E_sn²) + 2 b_fs (E_fs² + E_fn²) in the components of the
-/// Green strain along the fibre f and any two directions across. The fibre is the value of an element:
-/// three components, of any length; none where they are 0, and then Q = b_t E:E. Softens under
-/// compression; κ far above c makes muscle nearly incompressible. (Guccione, McCulloch and Waldman,
-/// Journal of Biomechanical Engineering 113 (1991) 42.)
+/// Green strain along the fibre f and any two directions across. The fibre is the value of an
+/// element: three components, of any length; none where they are 0, and then Q = b_t E:E. Softens
+/// under compression; κ far above c makes muscle nearly incompressible. (Guccione, McCulloch and
+/// Waldman, Journal of Biomechanical Engineering 113 (1991) 42.)
 template <class T>
 struct Guccione {
   T c;                            // Pa

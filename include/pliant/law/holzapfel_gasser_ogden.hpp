@@ -5,13 +5,13 @@
 namespace pliant {
 
 /// Holzapfel-Gasser-Ogden, of artery walls: a neo-Hookean matrix and two families of fibres that
-/// spread about their directions a₁ and a₂, W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)² +
-/// k₁/(2 k₂) Σ (exp(k₂ ⟨ε⟩²) − 1), ε = d (I₁ − 3) + (1 − 3d) (I₄ − 1), I₄ = a·C a. A family that is
-/// shortened, ε < 0, carries nothing: stress is continuous there, its tangent is not. For J > 0. The
-/// fibres feel the whole C, not its isochoric part, which would let them swell (Nolan, Gower,
-/// Destrade, Ogden and McGarry, J. Mech. Behav. Biomed. Mater. 39 (2014) 48).
-/// The directions are the values of an element: two times three components, of any length; a family
-/// whose components are 0 is not there. (Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15.)
+/// spread about their directions a₁ and a₂, W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)² + k₁/(2 k₂) Σ (exp(k₂
+/// ⟨ε⟩²) − 1), ε = d (I₁ − 3) + (1 − 3d) (I₄ − 1), I₄ = a·C a. A family that is shortened, ε < 0,
+/// carries nothing: stress is continuous there, its tangent is not. For J > 0. The fibres feel the
+/// whole C, not its isochoric part, which would let them swell (Nolan, Gower, Destrade, Ogden and
+/// McGarry, J. Mech. Behav. Biomed. Mater. 39 (2014) 48). The directions are the values of an
+/// element: two times three components, of any length; a family whose components are 0 is not
+/// there. (Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15.)
 template <class T>
 struct HolzapfelGasserOgden {
   T mu;          // shear modulus of the matrix, Pa

@@ -63,7 +63,8 @@ struct IsochoricInvariants {
   PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? I1_3 : J_1; }
   PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? I1_3 : J_1; }
 
-  /// Ī₁ − 3 = (D + 3 + 2(J − 1) − 3 x²)/x² with x = J^(1/3), whose terms but D make (x − 1)² (2x + 1).
+  /// Ī₁ − 3 = (D + 3 + 2(J − 1) − 3 x²)/x² with x = J^(1/3), whose terms but D make (x − 1)² (2x +
+  /// 1).
   PLIANT_HOST_DEVICE static S first(S const& D, S const& x, S const& x_1) {
     return (D + square(x_1) * (2 * x + 1)) / square(x);
   }

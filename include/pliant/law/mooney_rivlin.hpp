@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// Mooney-Rivlin, of rubber up to a stretch of about 2: W = c₁ (Ī₁ − 3) + c₂ (Ī₂ − 3) + κ/2 (J − 1)².
-/// For J > 0. The shear modulus at rest is 2 (c₁ + c₂). (Rivlin, Philosophical Transactions A 241
-/// (1948) 379.)
+/// Mooney-Rivlin, of rubber up to a stretch of about 2: W = c₁ (Ī₁ − 3) + c₂ (Ī₂ − 3) + κ/2 (J −
+/// 1)². For J > 0. The shear modulus at rest is 2 (c₁ + c₂). (Rivlin, Philosophical Transactions A
+/// 241 (1948) 379.)
 template <class T>
 struct MooneyRivlin {
   T c1, c2, bulk;  // Pa

@@ -5,9 +5,9 @@
 namespace pliant {
 
 /// Ogden, of rubber at all strains: W = Σₚ μₚ/αₚ (λ̄₁^αₚ + λ̄₂^αₚ + λ̄₃^αₚ − 3) + κ/2 (J − 1)², three
-/// terms in the isochoric stretches λ̄ = J^(−1/3) λ. For J > 0. The shear modulus at rest is Σ μₚ αₚ/2;
-/// a term that is not wanted has μₚ = 0, and no αₚ may be 0. (Ogden, Proceedings of the Royal Society
-/// A 326 (1972) 565.)
+/// terms in the isochoric stretches λ̄ = J^(−1/3) λ. For J > 0. The shear modulus at rest is Σ μₚ
+/// αₚ/2; a term that is not wanted has μₚ = 0, and no αₚ may be 0. (Ogden, Proceedings of the Royal
+/// Society A 326 (1972) 565.)
 template <class T>
 struct Ogden {
   T mu[3];     // μₚ, Pa

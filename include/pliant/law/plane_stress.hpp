@@ -12,8 +12,8 @@ struct Sheet {
   L solid;
 
   /// F₃₃ − 1 at the in-plane displacement gradient h, by Newton's method on ln F₃₃. It starts from
-  /// F₃₃ = J₂^(−r), J₂ = det F in the plane, r the law's own ratio at rest, which is exact for
-  /// λ/2 (ln J)² and in the limit of incompressibility. At stretches of 0.6 to 1.6 all laws here are
+  /// F₃₃ = J₂^(−r), J₂ = det F in the plane, r the law's own ratio at rest, which is exact for λ/2
+  /// (ln J)² and in the limit of incompressibility. At stretches of 0.6 to 1.6 all laws here are
   /// exact to rounding after 6 steps; at 0.37 to 2.7, after 10.
   template <class S>
   PLIANT_HOST_DEVICE S thickening(Tensor<S, 2> const& h) const {

@@ -91,8 +91,8 @@ struct PrincipalStretches {
   }
 };
 
-/// On dual numbers: what the principal frame does as F changes is written out, as its derivative has
-/// the poles 1/(λ_k − λ_l) that cancel from the change of stress.
+/// On dual numbers: what the principal frame does as F changes is written out, as its derivative
+/// has the poles 1/(λ_k − λ_l) that cancel from the change of stress.
 template <class U, int N>
 struct PrincipalStretches<Dual<U, N>> {
   using S = Dual<U, N>;
@@ -180,8 +180,8 @@ struct PrincipalStretches<Dual<U, N>> {
       for (int j = 0; j < Dim; ++j) v(i, j) = h(i, j).derivative[n];
     return v;
   }
-  /// (w_k − w_l)/(λ_k − λ_l); between stretches closer than the cube root of the rounding, its limit
-  /// ∂²W/∂λ_k² − ∂²W/∂λ_k∂λ_l in the middle, which is off by the square of their difference.
+  /// (w_k − w_l)/(λ_k − λ_l); between stretches closer than the cube root of the rounding, its
+  /// limit ∂²W/∂λ_k² − ∂²W/∂λ_k∂λ_l in the middle, which is off by the square of their difference.
   PLIANT_HOST_DEVICE static U divided_difference(Dual<Dual<U, 3>, 3> const& w,
                                                  PrincipalStretches<U> const& l_1, int k, int l) {
     constexpr double close = sizeof(builtin_scalar<U>) == 4 ? 5e-3 : 6e-6;

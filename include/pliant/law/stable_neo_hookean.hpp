@@ -5,9 +5,9 @@
 namespace pliant {
 
 /// Neo-Hookean without a logarithm: W = μ/2 (I₁ − 3) − μ (J − 1) + (λ + μ)/2 (J − 1)². Defined for
-/// every F, inverted and flattened too. The first form of Smith, de Goes and Kim (Stable Neo-Hookean
-/// Flesh Simulation, ACM Trans. Graph. 37, 2018, section 3.2), whose λ is λ + μ here, so that these
-/// are Lamé's parameters.
+/// every F, inverted and flattened too. The first form of Smith, de Goes and Kim (Stable
+/// Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37, 2018, section 3.2), whose λ is λ + μ here,
+/// so that these are Lamé's parameters.
 template <class T>
 struct StableNeoHookean {
   T lambda, mu;  // Lamé's parameters, Pa

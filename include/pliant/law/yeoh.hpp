@@ -5,8 +5,8 @@
 namespace pliant {
 
 /// Yeoh, of filled rubber up to large strains: W = Σₖ cₖ (Ī₁ − 3)ᵏ + κ/2 (J − 1)², k = 1, 2, 3. For
-/// J > 0. The shear modulus at rest is 2 c₁; c₂ is mostly negative, and c₃ > 0 stiffens the law again.
-/// (Yeoh, Rubber Chemistry and Technology 66 (1993) 754.)
+/// J > 0. The shear modulus at rest is 2 c₁; c₂ is mostly negative, and c₃ > 0 stiffens the law
+/// again. (Yeoh, Rubber Chemistry and Technology 66 (1993) 754.)
 template <class T>
 struct Yeoh {
   T c1, c2, c3, bulk;  // Pa

@@ -4,7 +4,8 @@
 
 namespace pliant {
 
-/// The eigenvalues of a symmetric tensor and its eigenvectors, the columns of a rotation; in no order.
+/// The eigenvalues of a symmetric tensor and its eigenvectors, the columns of a rotation; in no
+/// order.
 template <class S, int N>
 struct Spectrum {
   Vector<S, N> values;
@@ -13,8 +14,8 @@ struct Spectrum {
   /// By Jacobi's rotations: each digit of the small values is kept that the tensor has, and equal
   /// values are no exception. A fixed number of sweeps, no branch on values; not for dual numbers.
   PLIANT_HOST_DEVICE static Spectrum of(Tensor<S, N> a) {
-    // The error squares at least in each sweep: of 2e5 random tensors the worst is left with 0.1, 2e-5
-    // and 4e-15 of its size after 2, 3 and 4. In 2D one rotation is exact.
+    // The error squares at least in each sweep: of 2e5 random tensors the worst is left with 0.1,
+    // 2e-5 and 4e-15 of its size after 2, 3 and 4. In 2D one rotation is exact.
     constexpr int sweeps = N == 2 ? 1 : sizeof(builtin_scalar<S>) == 4 ? 4 : 5;
     auto v = Tensor<S, N>::identity();
     for (int sweep = 0; sweep < sweeps; ++sweep)
