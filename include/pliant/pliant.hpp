@@ -33,6 +33,7 @@
 #include <pliant/law/saint_venant_kirchhoff.hpp>
 #include <pliant/law/simo_neo_hookean.hpp>
 #include <pliant/law/stable_neo_hookean.hpp>
+#include <pliant/law/viscosity.hpp>
 #include <pliant/law/yeoh.hpp>
 #include <pliant/mesh/box.hpp>
 #include <pliant/mesh/loads.hpp>

@@ -5,7 +5,7 @@
 namespace pliant::test {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
-using Turning = Formulation<Quad4, Gauss<1>, SaintVenantKirchhoff>;
+using Turning = Formulation<Quad4, Gauss<3>, SaintVenantKirchhoff>;
 using Rubber = Formulation<Quad4, Gauss<3>, NeoHookean>;
 
 /// The forces of some elements alone, from a body of the same nodes that has no others.

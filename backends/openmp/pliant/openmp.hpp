@@ -91,7 +91,7 @@ class OpenMP {
         std::fill(&out(first, 0), &out(first, 0) + std::ptrdiff_t{node_stride} * (last - first),
                   T(0));
         for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
-          auto const values = kernel(group, gather_pack<Nodes>(elements, m, fields)...);
+          auto const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
           for (int a = 0; a < Nodes; ++a) {
             Index rows[Scalar::lanes];
             for (int l = 0; l < Scalar::lanes; ++l) rows[l] = elements.targets(m.element[l])[a];
@@ -116,7 +116,7 @@ class OpenMP {
     return ordered_sum(elements.patch_count(), [&](Index p) {
       double total = 0;
       for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
-        Scalar const values = kernel(group, gather_pack<Nodes>(elements, m, fields)...);
+        Scalar const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
         for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
       });
       return total;
@@ -143,6 +143,15 @@ class OpenMP {
   struct PackMembers {
     Index element[Scalar::lanes];
     int count;
+
+    /// The values of a field per element.
+    template <class U, int C>
+    Vector<Scalar, C> operator()(ElementField<U, C> const& field) const {
+      Vector<Scalar, C> values;
+      for (int k = 0; k < C; ++k)
+        for (int l = 0; l < Scalar::lanes; ++l) values[k].v[l] = field(element[l], k);
+      return values;
+    }
   };
 
   template <int Groups, int Nodes, class F>
@@ -169,7 +178,8 @@ class OpenMP {
     std::array<double, Visitor::counters> counters{};
     auto const tally = [&](int k, double x) { counters[static_cast<std::size_t>(k)] += x; };
     for_each_pack<Groups>(elements, patch, [&](auto group, PackMembers const& m) {
-      auto const values = visitor.evaluate(group, gather_pack<Nodes>(elements, m, fields)...);
+      auto const values =
+          evaluate_at(visitor, group, m, gather_pack<Nodes>(elements, m, fields)...);
       for (int l = 0; l < m.count; ++l) {
         Gather<Nodes, Fields...> const again{elements.nodes(m.element[l]), {fields...}};
         visitor.finish(group, m.element[l], lane_of(values, l), again, tally);

@@ -71,7 +71,7 @@ class Reference {
                   Fields const&... fields) const {
     loop<Groups>(elements, [&](auto group, Index e) {
       Index const* nodes = elements.nodes(e);
-      auto const values = kernel(group, gather<Nodes>(fields, nodes)...);
+      auto const values = call(kernel, group, OneElement{e}, gather<Nodes>(fields, nodes)...);
       for (int a = 0; a < Nodes; ++a)
         for (int k = 0; k < C; ++k) out(nodes[a], k) += values(a, k);
     });
@@ -81,7 +81,8 @@ class Reference {
                       Fields const&... fields) const {
     double total = 0;
     loop<Groups>(elements, [&](auto group, Index e) {
-      total += static_cast<double>(kernel(group, gather<Nodes>(fields, elements.nodes(e))...));
+      total += static_cast<double>(
+          call(kernel, group, OneElement{e}, gather<Nodes>(fields, elements.nodes(e))...));
     });
     return total;
   }
@@ -90,7 +91,8 @@ class Reference {
              Fields const&... fields) const {
     auto const tally = [&counters](int k, double x) { counters.data()[k] += x; };
     loop<Groups>(elements, [&](auto group, Index e) {
-      auto const values = visitor.evaluate(group, gather<Nodes>(fields, elements.nodes(e))...);
+      auto const values =
+          evaluate_at(visitor, group, OneElement{e}, gather<Nodes>(fields, elements.nodes(e))...);
       visitor.finish(group, e, values, Gather<Nodes, Fields...>{elements.nodes(e), {fields...}},
                      tally);
     });

@@ -10,18 +10,19 @@ template <class Table, class Criterion>
 struct EvaluateVisitor {
   using T = typename Table::scalar;
   static constexpr int counters = 1;
+  static constexpr bool reads_elements = Table::Laws::reads_elements;
   typename Table::Laws groups;
   Criterion criterion;
   T* values;  // (elements)
 
-  template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
-    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
-    auto const& law = groups.template law<G>();
-    using L = std::remove_cvref_t<decltype(law)>;
-    Vector<S, 1> value;
-    value[0] = criterion(ElementState<typename Table::template formulation<G>, L, S>{law, rest, u});
-    return value;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [this](auto const& law, auto const& rest, auto const& u) {
+          return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>{
+              {{criterion(state_of<typename Table::template formulation<G>>(law, rest, u))}}};
+        },
+        v...);
   }
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& value, Again const&,

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include <pliant/backend/dispatch.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/mesh/hierarchy.hpp>
@@ -62,6 +63,52 @@ inline std::vector<Facet<2>> facets_of(Hierarchy const& tree, int mark) {
   std::vector<Facet<2>> facets;
   for (auto const& facet : tree.facets_of(mark)) facets.push_back({facet.nodes[0], facet.nodes[1]});
   return facets;
+}
+
+/// Where a point of a child lies on its parent's cell; the fourth child of a triangle is turned by half a
+/// turn.
+template <class Cell>
+Vector<double, 2> on_parent(Vector<double, 2> const& xi, int child) {
+  if (child < Cell::corners) return 0.5 * (Cell::corner(child) + xi);
+  Vector<double, 2> const middle{{{0.5}, {0.5}}};
+  return middle - 0.5 * xi;
+}
+
+/// Appends what the points of an element remember: what the nearest point of its ancestor does.
+template <class Table>
+void inherit_history(Table const&, std::vector<double> const& rows, std::size_t ancestor, Tag tag,
+                     std::vector<int> const& children, std::vector<double>& history) {
+  constexpr int width = Table::Laws::history_count;
+  if constexpr (width > 0) {
+    std::size_t const first = history.size();
+    history.resize(first + std::size_t{width}, 0.0);
+    auto const fill = [&]<int G>(GroupNumber<G>) {
+      using F = typename Table::template formulation<G>;
+      if constexpr (history_size<F> > 0) {
+        using Cell = typename F::element::cell;
+        constexpr auto rule = F::quadrature::template rule<Cell>();
+        constexpr int size = history_size<F> / F::points;
+        for (int q = 0; q < F::points; ++q) {
+          Vector<double, 2> at{{{rule.points[q][0]}, {rule.points[q][1]}}};
+          for (auto child = children.rbegin(); child != children.rend(); ++child)
+            at = on_parent<Cell>(at, *child);
+          int nearest = 0;
+          double least = std::numeric_limits<double>::infinity();
+          for (int p = 0; p < F::points; ++p) {
+            double const apart = std::hypot(rule.points[p][0] - at[0], rule.points[p][1] - at[1]);
+            if (apart < least) {
+              least = apart;
+              nearest = p;
+            }
+          }
+          for (int k = 0; k < size; ++k)
+            history[first + static_cast<std::size_t>(size * q + k)] =
+                rows[std::size_t{width} * ancestor + static_cast<std::size_t>(size * nearest + k)];
+        }
+      }
+    };
+    dispatch<Table::groups>(tag, fill);
+  }
 }
 
 /// The area that each node of a cell carries.
@@ -178,16 +225,28 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   // The new mesh, with the groups that its elements inherit.
   auto mesh = body.mesh();
   mesh.nodes = after->points();
-  std::vector<std::vector<Tag>> inherited;
+  std::vector<ElementStart> inherited;
+  std::vector<std::vector<double>> histories;
   body.for_each_table([&](auto const& table) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
-    std::map<Index, Tag> tag_of;  // by cell
+    struct Origin {
+      std::size_t element;        // by the user's number
+      std::vector<int> children;  // from it downwards
+    };
+    std::map<Index, Origin> origin_of;  // by cell
     auto const old_leaves = detail::leaves_of<E>(before);
     auto const old_tags = body.template groups_of<E>();
-    for (std::size_t e = 0; e < old_leaves.size(); ++e) tag_of[old_leaves[e]] = old_tags[e];
+    for (std::size_t e = 0; e < old_leaves.size(); ++e) origin_of[old_leaves[e]] = {e, {}};
     for (Index parent : done.parents)
-      if (auto const found = tag_of.find(parent); found != tag_of.end())
-        for (Index c = 0; c < 4; ++c) tag_of[after->cell(parent).first_child + c] = found->second;
+      if (auto const found = origin_of.find(parent); found != origin_of.end())
+        for (int c = 0; c < 4; ++c) {
+          Origin origin = found->second;
+          origin.children.push_back(c);
+          origin_of[after->cell(parent).first_child + c] = std::move(origin);
+        }
+    auto const old_history = table.in_user_order(table.history);
+    std::size_t const values = old_tags.empty() ? 0 : table.value_rows.size() / old_tags.size();
+    auto& history = histories.emplace_back();
     auto& elements = mesh.template elements<E>();
     elements.clear();
     inherited.emplace_back();
@@ -195,7 +254,13 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
       Connectivity<E> nodes;
       std::copy_n(after->cell(c).nodes.begin(), nodes.size(), nodes.begin());
       elements.push_back(nodes);
-      inherited.back().push_back(tag_of.at(c));
+      Origin const& origin = origin_of.at(c);
+      ElementStart& start = inherited.back();
+      start.tags.push_back(old_tags[origin.element]);
+      for (std::size_t k = 0; k < values; ++k)
+        start.values.push_back(table.value_rows[values * origin.element + k]);
+      detail::inherit_history(table, old_history, origin.element, old_tags[origin.element],
+                              origin.children, history);
     }
   });
   int mark = 0;
@@ -240,6 +305,12 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   using T = typename TheBody::scalar;
   layout.u.upload(layout.padded(u));
   layout.v.upload(layout.padded(v));
+  std::size_t type = 0;
+  std::apply(
+      [&](auto&... table) {
+        (table.history.upload(table.in_internal_order(histories[type++])), ...);
+      },
+      layout.tables);
   layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.u.data()});
   layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.v.data()});
   body.replace(std::move(layout), std::move(conditions), std::move(loads), after,

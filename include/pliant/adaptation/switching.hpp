@@ -20,6 +20,7 @@ struct RankVisitor {
   using T = typename Table::scalar;
   using Laws = typename Table::Laws;
   static constexpr int counters = 1;
+  static constexpr bool reads_elements = Laws::reads_elements;
   Laws groups;
   Rule rule;
   T* values;  // (elements)
@@ -28,16 +29,16 @@ struct RankVisitor {
   static constexpr bool looks_at =
       std::same_as<typename Table::template formulation<G>, typename Rule::from>;
 
-  template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
-    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
-    Vector<S, 1> value{};
-    if constexpr (looks_at<G>) {
-      auto const& law = groups.template law<G>();
-      value[0] = rule.criterion(
-          ElementState<typename Rule::from, std::remove_cvref_t<decltype(law)>, S>{law, rest, u});
-    }
-    return value;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [this](auto const& law, auto const& rest, auto const& u) {
+          Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1> value{};
+          if constexpr (looks_at<G>)
+            value[0] = rule.criterion(state_of<typename Rule::from>(law, rest, u));
+          return value;
+        },
+        v...);
   }
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& value, Again const&,
@@ -54,6 +55,7 @@ struct SwitchVisitor {
   using Laws = typename Table::Laws;
   using Counters = CounterLayout<Table::groups>;
   static constexpr int counters = Counters::count;
+  static constexpr bool reads_elements = Laws::reads_elements;
   static constexpr int rule_count = sizeof...(Rules);
 
   Laws groups;
@@ -71,12 +73,15 @@ struct SwitchVisitor {
   static constexpr bool looks_at =
       std::same_as<typename Table::template formulation<G>, typename rule<R>::from>;
 
-  template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u, V const&) const {
-    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
-    Vector<S, rule_count> values{};
-    evaluate_rules<G, 0>(rest, u, values);
-    return values;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [this](auto const& law, auto const& rest, auto const& u, auto const&) {
+          Vector<std::remove_cvref_t<decltype(rest(0, 0))>, rule_count> values{};
+          evaluate_rules<G, 0>(law, rest, u, values);
+          return values;
+        },
+        v...);
   }
 
   template <int G, class Again, class Tally>
@@ -86,17 +91,14 @@ struct SwitchVisitor {
   }
 
  private:
-  template <int G, int R, class V, class Values>
-  PLIANT_HOST_DEVICE void evaluate_rules(V const& rest, V const& u, Values& values) const {
-    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+  template <int G, int R, class L, class V, class Values>
+  PLIANT_HOST_DEVICE void evaluate_rules(L const& law, V const& rest, V const& u,
+                                         Values& values) const {
     if constexpr (R < rule_count) {
-      if constexpr (looks_at<G, R>) {
-        auto const& law = groups.template law<G>();
-        using L = std::remove_cvref_t<decltype(law)>;
+      if constexpr (looks_at<G, R>)
         values[R] = std::get<R>(rules).criterion(
-            ElementState<typename Table::template formulation<G>, L, S>{law, rest, u});
-      }
-      evaluate_rules<G, R + 1>(rest, u, values);
+            state_of<typename Table::template formulation<G>>(law, rest, u));
+      evaluate_rules<G, R + 1>(law, rest, u, values);
     }
   }
 
@@ -124,8 +126,9 @@ struct SwitchVisitor {
   [[gnu::noinline]] constexpr void move(Index e, Again const& again, Tally const& tally) const {
     using Old = typename Table::template formulation<From>;
     using New = typename Table::template formulation<To>;
-    auto const& old_law = groups.template law<From>();
-    auto const& new_law = groups.template law<To>();
+    OneElement const own{e};
+    auto const old_law = groups.template law<From>(own);
+    auto const new_law = groups.template law<To>(own);
     auto const [rest, u, v] = again();
     T const before = energy<Old>(old_law, rest, u), after = energy<New>(new_law, rest, u);
     auto const difference = force<New>(new_law, rest, u) - force<Old>(old_law, rest, u);
@@ -133,6 +136,7 @@ struct SwitchVisitor {
     tally(Counters::steps_of(From), static_cast<double>(step - since[e]));
     tally(Counters::moves(From, To), 1.0);
     tally(Counters::energy(From, To), static_cast<double>(after - before));
+    if constexpr (!keeps_history<Old, New>) forget_past<To>(groups, e, rest, u);
     tags[e] = static_cast<Tag>(To);
     since[e] = step;
     switches[e] = static_cast<std::uint16_t>(switches[e] + 1);

@@ -28,7 +28,9 @@
 // of the element's group. Each kernel is called with the group as a compile-time constant,
 // kernel(GroupNumber<g>{}, v...), where v are the values of the node fields at the element's
 // nodes, Matrix<S, Nodes, Components>, and S is a scalar of the backend's choice (a pack of elements
-// in SIMD lanes, or a plain number). Elements whose tag is `no_group` are passed over.
+// in SIMD lanes, or a plain number). Elements whose tag is `no_group` are passed over. A kernel or
+// visitor with `reads_elements = true` gets one more argument before v...: own(field) gives it the
+// values of an ElementField at its element, Vector<S, Components>.
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go

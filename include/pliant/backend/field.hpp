@@ -32,6 +32,34 @@ struct NodeField {
   }
 };
 
+/// A view of values per element in a backend's memory: value k of element e is `data[k elements + e]`.
+template <class T, int Components>
+struct ElementField {
+  T* data;  // (components, elements)
+  Index elements;
+
+  PLIANT_HOST_DEVICE T& operator()(Index element, int k) const {
+    return data[static_cast<std::ptrdiff_t>(elements) * k + element];
+  }
+  /// `Count` of the values, from value `first` on.
+  template <int Count>
+  PLIANT_HOST_DEVICE ElementField<T, Count> part(int first) const {
+    return {data + static_cast<std::ptrdiff_t>(elements) * first, elements};
+  }
+};
+
+/// Gives the values of an ElementField at one element, when called.
+struct OneElement {
+  Index element;
+
+  template <class T, int C>
+  PLIANT_HOST_DEVICE auto operator()(ElementField<T, C> const& field) const {
+    Vector<std::remove_const_t<T>, C> values;
+    for (int k = 0; k < C; ++k) values[k] = field(element, k);
+    return values;
+  }
+};
+
 /// The values of a field at the nodes of one element: (nodes, components).
 template <int Nodes, class T, int Components>
 PLIANT_HOST_DEVICE auto gather(NodeField<T, Components> const& field, Index const* nodes) {

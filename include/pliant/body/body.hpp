@@ -17,6 +17,8 @@ template <Backend B, class M, class... Fs>
 class Body {
  public:
   static constexpr int dim = M::dim;
+  /// Whether a law remembers: see LawWithHistory.
+  static constexpr bool has_history = ((history_size<Fs> > 0) || ...);
   using backend_type = B;
   using scalar = typename B::scalar;
   using T = scalar;
@@ -123,6 +125,11 @@ class Body {
   void forget_forces();
   /// Velocities and displacements go forward: see Advance. Leaves a half kick of `open` owed.
   void advance(double lag, double kick, double drift);
+  /// Laws with history see time steps of this size, s; see LawWithHistory.
+  void set_step_size(double step);
+  double step_size() const { return step_size_; }
+  /// What quadrature points remember is brought up to the present displacements.
+  void remember();
   void owe(double half_kick) { owed_ = half_kick; }
   double owed() const { return owed_; }
   /// Pays the half kick that the last step left open, so that velocities belong to time().
@@ -155,10 +162,10 @@ class Body {
   History<dim> const& history() const { return history_; }
   /// The largest mesh that refinement may make; one that would be larger throws Error.
   void set_capacity(Capacity capacity) { history_.capacity = capacity; }
-  /// A layout of another mesh. `tags`: groups by the user's number, one list per element type.
+  /// A layout of another mesh. `starts`: one for each element type.
   layout_type make_layout(M mesh, std::vector<Slave> slaves,
-                          std::vector<std::vector<Tag>> const& tags) const {
-    return {backend_, std::move(mesh), std::move(slaves), material_, groups_, tags};
+                          std::vector<ElementStart> const& starts) const {
+    return {backend_, std::move(mesh), std::move(slaves), material_, groups_, starts};
   }
   /// Swaps in another mesh; used by refinement.
   void replace(layout_type layout, std::vector<Condition<dim>> conditions,
@@ -181,14 +188,15 @@ class Body {
  private:
   layout_type first_layout(M mesh) const {
     check(mesh);
-    auto const tags = first_groups(mesh);
-    return make_layout(std::move(mesh), {}, tags);
+    auto const starts = first_elements(mesh);
+    return make_layout(std::move(mesh), {}, starts);
   }
   template <Element... Es>
-  static auto first_groups(Mesh<Es...> const& mesh) {
-    return std::vector<std::vector<Tag>>{
-        std::vector<Tag>(mesh.template elements<Es>().size(), 0)...};
+  std::vector<ElementStart> first_elements(Mesh<Es...> const& mesh) const {
+    return {first_elements_of<Es>(mesh.template elements<Es>().size())...};
   }
+  template <Element E>
+  ElementStart first_elements_of(std::size_t count) const;
   void add_condition(Condition<dim> condition);
   void upload_conditions();
   void upload_loads();
@@ -204,7 +212,8 @@ class Body {
   Scratch& scratch();
   struct Checkpoint {
     typename B::template Array<T> u, v;
-    double time;
+    std::vector<typename B::template Array<T>> histories;  // of the tables that have one
+    double time, step_size;
     long steps;
   };
   struct RecordedStep {
@@ -227,6 +236,7 @@ class Body {
   std::vector<Point<dim>> loads_;
   Point<dim> gravity_{};
   double damping_ = 0, time_ = 0, owed_ = 0, energy_of_new_loads_ = 0;
+  double step_size_ = 0;  // s, since quadrature points last remembered; only laws with history care
   long steps_ = 0, revision_ = 0;
   bool forces_current_ = false;  // while they are not, the nodes' rows of layout().f are zero
   History<dim> history_;

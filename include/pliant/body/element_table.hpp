@@ -3,9 +3,16 @@
 #include <vector>
 
 #include <pliant/body/bookkeeping.hpp>
+#include <pliant/body/group.hpp>
 #include <pliant/body/kernels.hpp>
 
 namespace pliant {
+
+/// How the elements of one type begin, by the user's number.
+struct ElementStart {
+  std::vector<Tag> tags;       // the group of each
+  std::vector<double> values;  // (elements, values): what laws read per element
+};
 
 /// The elements of one type in a body, and the groups they may belong to.
 template <Backend B, Element E, class Formulations>
@@ -16,6 +23,7 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   using element = E;
   using scalar = typename B::scalar;
   using Laws = GroupLaws<scalar, Fs...>;
+  using HostLaws = GroupLaws<double, Fs...>;
   using formulations = detail::TypeList<Fs...>;
   static constexpr int groups = sizeof...(Fs);
   template <int G>
@@ -26,11 +34,37 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
 
   typename B::template Elements<E::nodes> elements;
   Laws laws;
-  std::vector<Index> user_element;  // by the internal number
+  std::vector<Index> user_element;             // by the internal number
+  std::vector<double> value_rows;              // (elements, values), by the user's number
+  typename B::template Array<scalar> values;   // (values, elements)
+  typename B::template Array<scalar> history;  // (history, elements)
   Bookkeeping<B, groups> books;
+  mutable typename B::template Array<double> no_counters{1};
   bool straight = false;  // all edges are, with their nodes in the middle
 
   Index count() const { return elements.count(); }
+
+  /// The rows of values per element, in the order of the backend's memory.
+  std::vector<scalar> in_internal_order(std::vector<double> const& rows) const {
+    std::vector<scalar> columns(rows.size());
+    std::size_t const n = user_element.size(), width = n > 0 ? rows.size() / n : 0;
+    for (std::size_t e = 0; e < n; ++e)
+      for (std::size_t k = 0; k < width; ++k)
+        columns[k * n + e] =
+            static_cast<scalar>(rows[width * static_cast<std::size_t>(user_element[e]) + k]);
+    return columns;
+  }
+  /// The inverse, of what an array holds.
+  std::vector<double> in_user_order(typename B::template Array<scalar> const& array) const {
+    auto const columns = download<scalar>(array);
+    std::vector<double> rows(columns.size());
+    std::size_t const n = user_element.size(), width = n > 0 ? rows.size() / n : 0;
+    for (std::size_t e = 0; e < n; ++e)
+      for (std::size_t k = 0; k < width; ++k)
+        rows[width * static_cast<std::size_t>(user_element[e]) + k] =
+            static_cast<double>(columns[k * n + e]);
+    return rows;
+  }
 
   /// Calls visit(std::integral_constant<Geometry, g>{}) with the cheapest geometry that is right.
   template <class Visit>

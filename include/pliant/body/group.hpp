@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include <pliant/formulation/formulation.hpp>
+#include <pliant/body/group_laws.hpp>
 
 namespace pliant {
 
@@ -14,6 +14,9 @@ struct Group {
   using formulation = F;
   /// The parameters of the law; when not given they follow from the body's `Elastic`.
   std::optional<typename F::template law<double>> law{};
+  /// Where the law has values per element (LawPerElement): those of each element of this type, in the
+  /// user's order, or one row for all.
+  std::vector<std::array<double, element_values<F>>> values{};
 
   typename F::template law<double> law_for(Elastic const& material) const {
     using L = typename F::template law<double>;

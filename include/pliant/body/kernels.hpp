@@ -1,56 +1,144 @@
 #pragma once
 
-#include <tuple>
-
 #include <pliant/backend/backend.hpp>
-#include <pliant/body/group.hpp>
-#include <pliant/formulation/physics.hpp>
+#include <pliant/body/group_laws.hpp>
 
 // The adapters between the element loops of a backend, which speak of group numbers and gathered
 // values, and the physics of a formulation.
 namespace pliant {
 
-/// The formulations of one element type and their laws in the precision of the kernels.
-template <class T, class... Fs>
-struct GroupLaws {
-  template <int G>
-  using formulation = std::tuple_element_t<G, std::tuple<Fs...>>;
-
-  std::tuple<decltype(prepared<Fs>(std::declval<typename Fs::template law<T>>()))...> laws;
-
-  template <int G>
-  PLIANT_HOST_DEVICE auto const& law() const {
-    return std::get<G>(laws);
-  }
-};
-
 template <class Laws, Geometry How = Geometry::isoparametric>
 struct ForceKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
   Laws groups;
-  template <int G, class V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& rest, V const& u) const {
-    return force<typename Laws::template formulation<G>, How>(groups.template law<G>(), rest, u);
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [](auto const& law, auto const& rest, auto const& u) {
+          return force<typename Laws::template formulation<G>, How>(law, rest, u);
+        },
+        v...);
   }
 };
 
 /// Adds factor · ∂F/∂u · du.
 template <class T, class Laws, Geometry How = Geometry::isoparametric>
 struct TangentKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
   Laws groups;
   T factor;
-  template <int G, class V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& rest, V const& u, V const& du) const {
-    return factor * force_change<typename Laws::template formulation<G>, How>(
-                        groups.template law<G>(), rest, u, du);
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [this](auto const& law, auto const& rest, auto const& u, auto const& du) {
+          return factor *
+                 force_change<typename Laws::template formulation<G>, How>(law, rest, u, du);
+        },
+        v...);
   }
 };
 
 template <class Laws, Geometry How = Geometry::isoparametric>
 struct EnergyKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
   Laws groups;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [](auto const& law, auto const& rest, auto const& u) {
+          return energy<typename Laws::template formulation<G>, How>(law, rest, u);
+        },
+        v...);
+  }
+};
+
+/// Calls visit(q, H) at each quadrature point of an element.
+template <class F, class S, class Visit>
+PLIANT_HOST_DEVICE void for_each_point(Nodal<typename F::element, S> const& rest,
+                                       Nodal<typename F::element, S> const& u, Visit const& visit) {
+  using E = typename F::element;
+  static constexpr auto table = tabulate<E, typename F::quadrature, builtin_scalar<S>>();
+  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
+  for (int q = 0; q < F::points; ++q)
+    visit(q, RestMap<E, S>::at(x, table, q).gradient(v, table, q));
+}
+
+/// Brings what quadrature points remember up to the displacements u.
+template <class T, class Laws>
+struct HistoryVisitor {
+  static constexpr bool reads_elements = true;
+  static constexpr int counters = 1, count = Laws::history_count;
+  Laws groups;
+
+  template <int G, class Own, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, Own const& own, V const& rest,
+                                   V const& u) const {
+    using F = typename Laws::template formulation<G>;
+    Vector<std::remove_cvref_t<decltype(rest(0, 0))>, count> now{};
+    if constexpr (history_size<F> > 0) {
+      constexpr int size = history_size<F> / F::points;
+      ElementField<T const, 0> const all{groups.data.history, groups.data.elements};
+      for_each_point<F>(rest, u, [&](int q, auto const& h) {
+        auto const past = own(all.template part<size>(size * q));
+        auto const next = groups.template law<G>().advanced(past, h);
+        for (int k = 0; k < size; ++k) now[size * q + k] = next[k];
+      });
+    }
+    return now;
+  }
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, count> const& now, Again const&,
+                                 Tally const&) const {
+    ElementField<T, count> const all{groups.data.history, groups.data.elements};
+    for (int k = 0; k < history_size<typename Laws::template formulation<G>>; ++k)
+      all(e, k) = now[k];
+  }
+};
+
+/// An element comes to group G without a past: its points are as if they had always been where they are.
+template <int G, class Laws, class V>
+PLIANT_HOST_DEVICE void forget_past(Laws const& groups, Index e, V const& rest, V const& u) {
+  using F = typename Laws::template formulation<G>;
+  using T = std::remove_cvref_t<decltype(rest(0, 0))>;
+  constexpr int size = history_size<F> / F::points;
+  for_each_point<F>(rest, u, [&](int q, auto const& h) {
+    auto const past = groups.template law<G>().relaxed(h);
+    ElementField<T, Laws::history_count> const all{groups.data.history, groups.data.elements};
+    for (int k = 0; k < size; ++k) all(e, size * q + k) = past[k];
+  });
+}
+
+/// The same for all elements that were put into another group by hand.
+template <class T, class Laws>
+struct ForgetVisitor {
+  static constexpr int counters = 1;
+  Laws groups;
+  Tag const* before;  // (elements)
+
   template <int G, class V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& rest, V const& u) const {
-    return energy<typename Laws::template formulation<G>, How>(groups.template law<G>(), rest, u);
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&) const {
+    return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>::zero();
+  }
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const&, Again const& again,
+                                 Tally const&) const {
+    if constexpr (history_size<typename Laws::template formulation<G>> > 0) {
+      if (keeps<G, 0>(before[e])) return;
+      auto const [rest, u] = again();
+      forget_past<G>(groups, e, rest, u);
+    }
+  }
+
+ private:
+  /// Whether an element of group `from` keeps its past in group G.
+  template <int G, int From>
+  PLIANT_HOST_DEVICE static bool keeps(Tag from) {
+    if constexpr (From == std::tuple_size_v<decltype(Laws::laws)>)
+      return false;
+    else
+      return from == From ? keeps_history<typename Laws::template formulation<From>,
+                                          typename Laws::template formulation<G>>
+                          : keeps<G, From + 1>(from);
   }
 };
 

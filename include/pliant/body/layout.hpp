@@ -43,9 +43,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   std::tuple<Table<Es>...> tables;
   Slaves<B> slaves;
 
-  /// `tags`: the group of each element, by the user's number; one list per element type.
+  /// `starts`: one for each element type.
   Layout(B const& backend, Mesh<Es...> m, std::vector<Slave> hanging, Elastic const& material,
-         std::tuple<Group<Fs>...> const& groups, std::vector<std::vector<Tag>> const& tags)
+         std::tuple<Group<Fs>...> const& groups, std::vector<ElementStart> const& starts)
       : mesh(std::move(m)), slave_list(std::move(hanging)) {
     Numbering<Es...> numbering(mesh);
     internal_node = std::move(numbering.internal_node);
@@ -55,7 +55,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
     Index scratch = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, material, groups, tags[I], scratch), ...);
+      (make_table<I>(backend, numbering, material, groups, starts[I], scratch), ...);
     }(std::index_sequence_for<Es...>());
 
     auto const padded = static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes);
@@ -114,18 +114,24 @@ struct Layout<B, Mesh<Es...>, Fs...> {
  private:
   template <std::size_t I>
   void make_table(B const& backend, Numbering<Es...>& numbering, Elastic const& material,
-                  std::tuple<Group<Fs>...> const& groups, std::vector<Tag> const& user_tags,
+                  std::tuple<Group<Fs>...> const& groups, ElementStart const& start,
                   Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
     table.user_element = std::move(numbering.user_element[I]);
     std::vector<Tag> tags(table.user_element.size());
     for (std::size_t e = 0; e < tags.size(); ++e)
-      tags[e] = user_tags[static_cast<std::size_t>(table.user_element[e])];
+      tags[e] = start.tags[static_cast<std::size_t>(table.user_element[e])];
     table.elements = {backend, std::move(std::get<I>(numbering.tables)), TableType::groups, tags,
                       nodes};
     scratch = std::max(scratch, table.elements.scratch_nodes());
     table.straight = is_straight<typename TableType::element>(mesh);
+    table.value_rows = start.values;
+    table.values = upload(backend, table.in_internal_order(start.values));
+    table.history =
+        Array<T>(static_cast<std::size_t>(TableType::Laws::history_count) * tags.size());
+    if constexpr (TableType::Laws::reads_elements)
+      table.laws.data = {table.values.data(), table.history.data(), table.count()};
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((std::get<G>(table.laws.laws) =
             prepared<typename TableType::template formulation<G>>(law_cast<T>(

@@ -52,6 +52,36 @@ void Body<B, M, Fs...>::advance(double lag, double kick, double drift) {
 }
 
 template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::set_step_size(double step) {
+  if (!has_history || step == step_size_) return;
+  step_size_ = step;
+  for_each_table([&](auto& table) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    auto const prepare = [&]<class F>(F const*, auto& law) {
+      if constexpr (history_size<F> > 0) law = prepared<F>(law_cast<T>(law_of<F>()), step);
+    };
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      (prepare(static_cast<typename Table::template formulation<G> const*>(nullptr),
+               std::get<G>(table.laws.laws)),
+       ...);
+    }(std::make_integer_sequence<int, Table::groups>());
+  });
+  forget_forces();
+  ++revision_;
+}
+
+template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::remember() {
+  for_each_table([&](auto& table) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    if constexpr (Table::Laws::history_count > 0)
+      backend_.template visit<Table::groups>(
+          table.elements, HistoryVisitor<T, typename Table::Laws>{table.laws}, table.no_counters,
+          rest_field(), std::as_const(*this).displacement_field());
+  });
+}
+
+template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::synchronize_velocities() {
   if (owed_ == 0) return;
   evaluate_forces();
@@ -76,15 +106,21 @@ void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> 
   checkpoint_.reset();
   recorded_.reset();
   owed_ = 0;
-  forces_current_ = false;  // those of the new layout are zero
+  forces_current_ = false;                        // those of the new layout are zero
+  set_step_size(std::exchange(step_size_, 0.0));  // and its laws new
 }
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::step(double dt, int steps) {
   // Steps that are not like the others.
-  for (; steps > 0 && (owed_ != dt / 2 || has_motions() || forces_current_); --steps) {
+  auto const special = [&] {
+    return owed_ != dt / 2 || has_motions() || forces_current_ || (has_history && step_size_ != dt);
+  };
+  for (; steps > 0 && special(); --steps) {
     evaluate_forces();
+    remember();
     advance(owed_, dt / 2, dt);
+    set_step_size(dt);
     owed_ = dt / 2;
     time_ += dt;
     ++steps_;
@@ -96,6 +132,7 @@ void Body<B, M, Fs...>::step(double dt, int steps) {
     recorded_ = RecordedStep{backend_.record([this, dt] {
                                accumulate_forces(std::as_const(*this).displacement_field(),
                                                  Field{layout_.f.data()});
+                               remember();
                                advance(dt / 2, dt / 2, dt);
                              }),
                              this, dt, revision_};
@@ -109,12 +146,22 @@ void Body<B, M, Fs...>::checkpoint() {
   synchronize_velocities();
   if (!checkpoint_) {
     using A = typename B::template Array<T>;
-    checkpoint_ = Checkpoint{A(layout_.u.size()), A(layout_.v.size()), 0, 0};
+    checkpoint_ = Checkpoint{A(layout_.u.size()), A(layout_.v.size()), {}, 0, 0, 0};
+    for_each_table([&](auto const& table) {
+      if (table.history.size() > 0) checkpoint_->histories.emplace_back(table.history.size());
+    });
   }
   auto const count = static_cast<Index>(layout_.u.size());
   backend_.for_each(count, Copy<T>{layout_.u.data(), checkpoint_->u.data()});
   backend_.for_each(count, Copy<T>{layout_.v.data(), checkpoint_->v.data()});
+  std::size_t which = 0;
+  for_each_table([&](auto& table) {
+    if (table.history.size() > 0)
+      backend_.for_each(static_cast<Index>(table.history.size()),
+                        Copy<T>{table.history.data(), checkpoint_->histories[which++].data()});
+  });
   checkpoint_->time = time_;
+  checkpoint_->step_size = step_size_;
   checkpoint_->steps = steps_;
 }
 
@@ -124,6 +171,13 @@ bool Body<B, M, Fs...>::restore() {
   auto const count = static_cast<Index>(layout_.u.size());
   backend_.for_each(count, Copy<T>{checkpoint_->u.data(), layout_.u.data()});
   backend_.for_each(count, Copy<T>{checkpoint_->v.data(), layout_.v.data()});
+  std::size_t which = 0;
+  for_each_table([&](auto& table) {
+    if (table.history.size() > 0)
+      backend_.for_each(static_cast<Index>(table.history.size()),
+                        Copy<T>{checkpoint_->histories[which++].data(), table.history.data()});
+  });
+  set_step_size(checkpoint_->step_size);
   time_ = checkpoint_->time;
   steps_ = checkpoint_->steps;
   owed_ = 0;

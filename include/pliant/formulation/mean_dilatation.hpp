@@ -63,7 +63,9 @@ struct MeanDilatation {
     }
   };
   template <class L>
-  static constexpr bool linear = EnergyIn<L, StrainInvariants>;
+  static constexpr bool linear =
+      EnergyIn<std::remove_cvref_t<decltype(at_point(std::declval<L const&>(), 0))>,
+               StrainInvariants>;
 
   template <class L, class S, class Table>
   PLIANT_HOST_DEVICE static S mean(Coefficients<E, S> const& x, Coefficients<E, S> const& v,
@@ -90,7 +92,7 @@ struct MeanDilatation {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       Point<S, linear<L>> const point(map.gradient(v, table, q), mean_dilatation);
-      sum = sum + map.volume * T(table.weight[q]) * energy_density(law, point.h_bar);
+      sum = sum + map.volume * T(table.weight[q]) * energy_density(at_point(law, q), point.h_bar);
     }
     return sum;
   }
@@ -110,7 +112,7 @@ struct MeanDilatation {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       Point<S, linear<L>> const point(map.gradient(v, table, q), mean_dilatation);
-      auto const p = stress(law, point.h_bar);
+      auto const p = stress(at_point(law, q), point.h_bar);
       S const work = point.work(p) / S(dim);
       auto const slope = point.slope();
       S const here = linear<L> ? work : work / (S(1) + point.dilatation);

@@ -18,16 +18,29 @@ using SchemeOf =
     std::conditional_t<std::same_as<typename F::quadrature, OnePoint>, HourglassControl<F>,
                        std::conditional_t<has_mean_dilatation<typename F::quadrature>,
                                           MeanDilatation<F, G>, Pointwise<F, G>>>;
+template <class L>
+struct ScalarOf;
+template <template <class> class L, class T>
+struct ScalarOf<L<T>> {
+  using type = T;
+};
 }  // namespace detail
 
 /// A law as the functions below take it for a formulation: itself, or with what its hourglass control
-/// needs to know of it.
-template <class F, template <class> class L, class T>
-auto prepared(L<T> const& law) {
-  if constexpr (std::same_as<typename F::quadrature, OnePoint>) {
+/// needs to know of it, or with what the time since its history was brought up to date makes of that (s;
+/// 0: at once; infinite: relaxed).
+template <class F, class L>
+auto prepared(L const& law, [[maybe_unused]] double step = 0) {
+  if constexpr (LawWithHistory<L>) {
+    static_assert(!std::same_as<typename F::quadrature, OnePoint>,
+                  "laws with history take quadratures without hourglass control");
+    return law.over(step);
+  } else if constexpr (std::same_as<typename F::quadrature, OnePoint>) {
+    static_assert(PointLaw<L>, "OnePoint takes laws that are the same for all elements");
+    using T = typename detail::ScalarOf<L>::type;
     auto shear = Tensor<T, F::dim>::zero();
     shear(0, 1) = T(1);
-    return WithModulus<L<T>, T>{law, stress_change(law, Tensor<T, F::dim>::zero(), shear)(0, 1)};
+    return WithModulus<L, T>{law, stress_change(law, Tensor<T, F::dim>::zero(), shear)(0, 1)};
   } else {
     return law;
   }

@@ -18,7 +18,7 @@ struct Pointwise {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       auto const h = map.gradient(v, table, q);
-      sum = sum + map.volume * T(table.weight[q]) * energy_density(law, h);
+      sum = sum + map.volume * T(table.weight[q]) * energy_density(at_point(law, q), h);
     }
     return sum;
   }
@@ -33,7 +33,7 @@ struct Pointwise {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       auto const h = map.gradient(v, table, q);
-      auto const p = stress(law, h);
+      auto const p = stress(at_point(law, q), h);
       f.add_divergence(T(-table.weight[q]) * (p * map.cofactors), table, q);
     }
     return f.per_node();
@@ -50,7 +50,7 @@ struct Pointwise {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       auto const h = map.gradient(v, table, q), dh = map.gradient(dv, table, q);
-      auto const dp = stress_change(law, h, dh);
+      auto const dp = stress_change(at_point(law, q), h, dh);
       df.add_divergence(T(-table.weight[q]) * (dp * map.cofactors), table, q);
     }
     return df.per_node();

@@ -80,15 +80,37 @@ using sets_of =
 template <class L>
 concept PointLaw = detail::sets_of<L, 3>::size > 0 || EnergyInGradient<L> || EnergyInPlane<L>;
 
-/// A law some of whose parameters differ between elements: `at(values)`, of `element_values` numbers
-/// that a body keeps per element, is the law of that element. The values may be a pack of elements.
+/// A law some of whose parameters differ between elements: `at(values)`, of `element_values`
+/// numbers that a body keeps per element, is the law of that element. The values may be a pack of
+/// elements.
 template <class L>
 concept LawPerElement = requires(L const& law, Vector<double, L::element_values> const& values) {
   { law.at(values) } -> PointLaw;
 };
+/// A law whose quadrature points remember, `history<d>` numbers each in d dimensions. `over(step)` is what
+/// a time step (s) makes of it; then `after(past)` is the law at a point with that past, and
+/// `advanced(past, H)` what the point remembers once it has come to H, and `relaxed(H)` what it
+/// remembers if it has always been there. See KelvinVoigt and Prony.
+template <class L>
+concept LawWithHistory =
+    requires(L const& law, Vector<double, L::template history<3>> const& past,
+             Tensor<double, 3> const& h) {
+      { law.over(1.0).after(past) } -> PointLaw;
+      { law.over(1.0).advanced(past, h) } -> std::same_as<Vector<double, L::template history<3>>>;
+      { law.over(1.0).relaxed(h) } -> std::same_as<Vector<double, L::template history<3>>>;
+    };
 /// What a formulation can be made of.
 template <class L>
-concept Law = PointLaw<L> || LawPerElement<L>;
+concept Law = PointLaw<L> || LawPerElement<L> || LawWithHistory<L>;
+
+/// The law at quadrature point q of an element.
+template <class L>
+PLIANT_HOST_DEVICE decltype(auto) at_point(L const& law, [[maybe_unused]] int q) {
+  if constexpr (requires { law.at_point(q); })
+    return law.at_point(q);
+  else
+    return (law);
+}
 
 /// A law whose parameters follow from an `Elastic`.
 template <class L>

@@ -16,6 +16,17 @@ struct Assembled {
   Eigen::SparseMatrix<double> stiffness;  // ∂²W/∂u², N/m; empty when not asked for
 };
 
+namespace detail {
+/// A table of rows as one of columns.
+inline std::vector<double> columns(std::vector<double> const& rows, std::size_t count) {
+  std::vector<double> turned(rows.size());
+  std::size_t const width = count > 0 ? rows.size() / count : 0;
+  for (std::size_t e = 0; e < count; ++e)
+    for (std::size_t k = 0; k < width; ++k) turned[k * count + e] = rows[e * width + k];
+  return turned;
+}
+}  // namespace detail
+
 enum class Assemble { energy_and_force, stiffness_too };
 
 /// Rows and columns of slaves are handed to their masters: their own are zero. `u` must give the
@@ -71,10 +82,20 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
                                        wi * wj * k(a * dim + p, b * dim + q));
     };
     [&]<int... G>(std::integer_sequence<int, G...>) {
-      auto const laws = std::tuple{prepared<typename Table::template formulation<G>>(
-          body.template law_of<typename Table::template formulation<G>>())...};
-      for (std::size_t e = 0; e < elements.size(); ++e)
-        (void)((tags[e] == G ? (add(GroupNumber<G>{}, e, std::get<G>(laws)), true) : false) || ...);
+      // Laws with history are relaxed.
+      typename Table::HostLaws laws{{prepared<typename Table::template formulation<G>>(
+          body.template law_of<typename Table::template formulation<G>>(),
+          std::numeric_limits<double>::infinity())...}};
+      std::vector<double> const values = detail::columns(table.value_rows, elements.size());
+      std::vector<double> history(static_cast<std::size_t>(Table::Laws::history_count) *
+                                  elements.size());
+      laws.data = {values.data(), history.data(), static_cast<Index>(elements.size())};
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        OneElement const own{static_cast<Index>(e)};
+        (void)((tags[e] == G ? (add(GroupNumber<G>{}, e, laws.template law<G>(own)), true)
+                             : false) ||
+               ...);
+      }
     }(std::make_integer_sequence<int, Table::groups>());
   });
   if (what == Assemble::stiffness_too) {

@@ -40,7 +40,7 @@ __device__ __forceinline__ Matrix<T, Nodes, C> columns(T const (&rows)[Nodes][M]
 
 /// kernel(group, fields...) with the fields cut out of node rows.
 template <int... C, class Group, class Kernel, class T, int Nodes, int M>
-__device__ __forceinline__ auto call_on_rows(Kernel const& kernel, Group group,
+__device__ __forceinline__ auto call_on_rows(Kernel const& kernel, Group group, Index e,
                                              T const (&rows)[Nodes][M]) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     constexpr auto offset = [](std::size_t field) {
@@ -49,7 +49,7 @@ __device__ __forceinline__ auto call_on_rows(Kernel const& kernel, Group group,
       for (std::size_t k = 0; k < field; ++k) sum += sizes[k];
       return sum;
     };
-    return kernel(group, columns<offset(I), C>(rows)...);
+    return call(kernel, group, OneElement{e}, columns<offset(I), C>(rows)...);
   }(std::make_index_sequence<sizeof...(C)>());
 }
 
@@ -101,6 +101,7 @@ __global__ void __launch_bounds__(
     T values[Nodes][M];
 #pragma unroll
     for (int a = 0; a < Nodes; ++a) memory.rows.load(own.unpacked().local[a], values[a]);
+    Index const own_element = e;
     e += threads;
     auto const load_next = [&] {
       if (e >= last) return;
@@ -110,7 +111,7 @@ __global__ void __launch_bounds__(
     if constexpr (tuning.prefetch) load_next();
     auto shares = Matrix<T, Nodes, C>::zero();
     dispatch<Groups>(own_tag, [&](auto group) {
-      shares = call_on_rows<Fields::components...>(kernel, group, values);
+      shares = call_on_rows<Fields::components...>(kernel, group, own_element, values);
       any = true;
     });
 #pragma unroll

@@ -75,7 +75,8 @@ struct ElementTerm {
     dispatch<Groups>(elements.tags[e], [&](auto group) {
       value = std::apply(
           [&](auto const&... field) {
-            return static_cast<double>(kernel(group, gather_nodes<Nodes>(field, row)...));
+            return static_cast<double>(
+                call(kernel, group, OneElement{e}, gather_nodes<Nodes>(field, row)...));
           },
           fields);
     });

@@ -18,7 +18,7 @@ __global__ void __launch_bounds__(scatter_threads)
   if (e >= elements.count) return;
   Index const* const row = elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
   dispatch<Groups>(elements.tags[e], [&](auto group) {
-    auto const shares = kernel(group, gather_nodes<Nodes>(fields, row)...);
+    auto const shares = call(kernel, group, OneElement{e}, gather_nodes<Nodes>(fields, row)...);
 #pragma unroll
     for (int a = 0; a < Nodes; ++a) add_to_node(out, row[a], shares.entries[a]);
   });

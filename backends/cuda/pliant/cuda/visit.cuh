@@ -28,7 +28,8 @@ __global__ void __launch_bounds__(visit_threads)
     dispatch<Groups>(elements.tags[e], [&](auto group) {
       auto const again = [&] { return std::tuple{gather_nodes<Nodes>(fields, row)...}; };
       auto const tally = [&](int k, double x) { atomicAdd(tallies + k, x); };
-      auto const values = visitor.evaluate(group, gather_nodes<Nodes>(fields, row)...);
+      auto const values =
+          evaluate_at(visitor, group, OneElement{e}, gather_nodes<Nodes>(fields, row)...);
       visitor.finish(group, e, values, again, tally);
     });
   }

@@ -56,4 +56,11 @@ struct ElementState {
   static constexpr int edge_count = static_cast<int>(element::edges().size());
 };
 
+template <class F, class L, class S>
+PLIANT_HOST_DEVICE ElementState<F, L, S> state_of(L const& law,
+                                                  Nodal<typename F::element, S> const& rest,
+                                                  Nodal<typename F::element, S> const& u) {
+  return {law, rest, u};
+}
+
 }  // namespace pliant

@@ -1,0 +1,187 @@
+#pragma once
+
+#include <cmath>
+
+#include <pliant/law/law.hpp>
+
+// Viscosity as a decorator of any elastic law: Formulation<Hex8, Gauss<2>, Prony<NeoHookean>::law>. What
+// flows is the second Piola-Kirchhoff stress S = F⁻¹ P, so that rotations are exact.
+namespace pliant {
+
+namespace detail {
+
+/// The entries on and above the diagonal, row by row.
+template <class S, int Dim>
+PLIANT_HOST_DEVICE Vector<S, Dim*(Dim + 1) / 2> upper_part(Tensor<S, Dim> const& a) {
+  Vector<S, Dim*(Dim + 1) / 2> v;
+  for (int i = 0, k = 0; i < Dim; ++i)
+    for (int j = i; j < Dim; ++j) v[k++] = a(i, j);
+  return v;
+}
+/// F s, with s symmetric given by its upper part.
+template <class S, class U, int Dim>
+PLIANT_HOST_DEVICE Tensor<S, Dim> pushed_forward(Tensor<S, Dim> const& h,
+                                                 Vector<U, Dim*(Dim + 1) / 2> const& upper) {
+  Tensor<S, Dim> s;
+  for (int i = 0, k = 0; i < Dim; ++i)
+    for (int j = i; j < Dim; ++j) s(i, j) = s(j, i) = S(upper[k++]);
+  return s + h * s;
+}
+/// S = F⁻¹ P, by its upper part.
+template <class L, class S, int Dim>
+PLIANT_HOST_DEVICE Vector<S, Dim*(Dim + 1) / 2> second_stress(L const& law,
+                                                              Tensor<S, Dim> const& h) {
+  auto const p = stress(law, h);
+  auto c = cofactor_less_identity(h);
+  for (int i = 0; i < Dim; ++i) c(i, i) = c(i, i) + S(1);
+  return upper_part(reciprocal(S(1) + determinant_less_one(h)) * (transpose(c) * p));
+}
+template <class S, int Dim>
+PLIANT_HOST_DEVICE Vector<S, Dim*(Dim + 1) / 2> green_strain(Tensor<S, Dim> const& h) {
+  return upper_part(GreenInvariants<S>::strain(h));
+}
+
+}  // namespace detail
+
+/// Kelvin-Voigt: a dashpot beside the elastic law L, S = S_L + η dE/dt. Under central differences the
+/// rate lags half a step, which shortens the stable step.
+template <template <class> class L>
+struct KelvinVoigt {
+  template <class T>
+  struct law {
+    L<T> elastic;
+    T viscosity;  // η, Pa s
+
+    template <int Dim>
+    static constexpr int history = Dim * (Dim + 1) / 2;  // E
+
+    /// A point with its past.
+    template <class S, int N>
+    struct Point {
+      L<T> elastic;
+      T rate;  // η/Δt, Pa
+      Vector<S, N> past;
+
+      template <class I>
+      PLIANT_HOST_DEVICE auto energy(I const& i) const -> decltype(elastic.energy(i)) {
+        return elastic.energy(i);
+      }
+      template <class V, int Dim>
+      PLIANT_HOST_DEVICE Tensor<V, Dim> stress(Tensor<V, Dim> const& h) const {
+        auto e = detail::green_strain(h);
+        for (int k = 0; k < N; ++k) e[k] = rate * (e[k] - past[k]);
+        return pliant::stress(elastic, h) + detail::pushed_forward(h, e);
+      }
+    };
+    /// What a time step makes of the law.
+    struct Stepped {
+      L<T> elastic;
+      T rate;  // η/Δt, Pa; 0 where no time has passed
+
+      template <class S, int N>
+      PLIANT_HOST_DEVICE Point<S, N> after(Vector<S, N> const& past) const {
+        return {elastic, rate, past};
+      }
+      template <class S, int N, int Dim>
+      PLIANT_HOST_DEVICE Vector<S, N> advanced(Vector<S, N> const&, Tensor<S, Dim> const& h) const {
+        return detail::green_strain(h);
+      }
+      template <class S, int Dim>
+      PLIANT_HOST_DEVICE auto relaxed(Tensor<S, Dim> const& h) const {
+        return detail::green_strain(h);
+      }
+    };
+    Stepped over(double step) const {
+      return {elastic, step > 0 ? static_cast<T>(static_cast<double>(viscosity) / step) : T(0)};
+    }
+  };
+};
+
+/// A Prony series of Maxwell branches beside the elastic law L, which is what remains when all are
+/// relaxed: S = S_L + Σ_i Q_i with dQ_i/dt + Q_i/τ_i = β_i dS_L/dt. With one branch the standard linear
+/// solid. Integrated exactly for a stress S_L that is linear in time over a step (Taylor, Pister and
+/// Goudreau 1970; Simo 1987).
+template <template <class> class L, int Branches = 1>
+struct Prony {
+  template <class T>
+  struct law {
+    L<T> elastic;
+    T share[Branches];       // β_i: stiffness of a branch over that of L
+    T relaxation[Branches];  // τ_i, s
+
+    template <int Dim>
+    static constexpr int history = (Branches + 1) * Dim * (Dim + 1) / 2;  // S_L, then the Q_i
+
+    /// A point with its past.
+    template <class S, int N>
+    struct Point {
+      L<T> elastic;
+      T gain[Branches];
+      Vector<S, N / (Branches + 1)> last, flowed;  // S_L before the step, Σ_i decay_i Q_i
+
+      template <class I>
+      PLIANT_HOST_DEVICE auto energy(I const& i) const -> decltype(elastic.energy(i)) {
+        return elastic.energy(i);
+      }
+      template <class V, int Dim>
+      PLIANT_HOST_DEVICE Tensor<V, Dim> stress(Tensor<V, Dim> const& h) const {
+        T sum = gain[0];
+        for (int b = 1; b < Branches; ++b) sum = sum + gain[b];
+        auto s = detail::second_stress(elastic, h);
+        for (int k = 0; k < N / (Branches + 1); ++k) s[k] = sum * (s[k] - last[k]) + flowed[k];
+        return pliant::stress(elastic, h) + detail::pushed_forward(h, s);
+      }
+    };
+    /// What a time step makes of the law.
+    struct Stepped {
+      L<T> elastic;
+      T decay[Branches];  // e^(−Δt/τ)
+      T gain[Branches];   // β (1 − e^(−Δt/τ)) τ/Δt
+
+      template <class S, int N>
+      PLIANT_HOST_DEVICE Point<S, N> after(Vector<S, N> const& past) const {
+        constexpr int n = N / (Branches + 1);
+        Point<S, N> point{elastic, {}, {}, Vector<S, n>::zero()};
+        for (int k = 0; k < n; ++k) point.last[k] = past[k];
+        for (int b = 0; b < Branches; ++b) {
+          point.gain[b] = gain[b];
+          for (int k = 0; k < n; ++k)
+            point.flowed[k] = point.flowed[k] + decay[b] * past[(b + 1) * n + k];
+        }
+        return point;
+      }
+      template <class S, int N, int Dim>
+      PLIANT_HOST_DEVICE Vector<S, N> advanced(Vector<S, N> const& past,
+                                               Tensor<S, Dim> const& h) const {
+        constexpr int n = N / (Branches + 1);
+        auto const s = detail::second_stress(elastic, h);
+        Vector<S, N> now;
+        for (int k = 0; k < n; ++k) {
+          now[k] = s[k];
+          for (int b = 0; b < Branches; ++b)
+            now[(b + 1) * n + k] = decay[b] * past[(b + 1) * n + k] + gain[b] * (s[k] - past[k]);
+        }
+        return now;
+      }
+      template <class S, int Dim>
+      PLIANT_HOST_DEVICE auto relaxed(Tensor<S, Dim> const& h) const {
+        auto const s = detail::second_stress(elastic, h);
+        auto now = Vector<S, history<Dim>>::zero();
+        for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) now[k] = s[k];
+        return now;
+      }
+    };
+    Stepped over(double step) const {
+      Stepped stepped{elastic, {}, {}};
+      for (int b = 0; b < Branches; ++b) {
+        double const x = step / static_cast<double>(relaxation[b]);
+        stepped.decay[b] = static_cast<T>(std::exp(-x));
+        stepped.gain[b] =
+            static_cast<T>(static_cast<double>(share[b]) * (x > 0 ? -std::expm1(-x) / x : 1.0));
+      }
+      return stepped;
+    }
+  };
+};
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <pliant/law/per_element.hpp>
+#include <pliant/law/viscosity.hpp>
+
+#include "support/formulations.hpp"
+
+namespace pliant::test {
+
+TEST_CASE("children have their parent's values, and its points' memory", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const visit = [&]<class E>(E) {
+      using Q = Gauss<2>;
+      using Graded = Formulation<E, Q, PerElement<SaintVenantKirchhoff>::template law>;
+      using Viscous = Formulation<E, Q, Prony<SaintVenantKirchhoff>::template law>;
+      auto const mesh = distorted_mesh<E>(3);
+      std::size_t const count = mesh.template elements<E>().size();
+      Random random;
+      std::vector<std::array<double, 2>> values(count);
+      for (auto& v : values) v = {4 + random(), 2 + random()};
+      Body body{backend, mesh, soft, Group<Graded>{.values = values},
+                Group<Viscous>{typename Viscous::template law<double>{{3, 2}, {0.5}, {0.1}}}};
+      std::vector<Index> every_other;
+      for (std::size_t e = 0; e < count; e += 2) every_other.push_back(static_cast<Index>(e));
+      body.template assign<Viscous>(every_other);
+      body.clamp(boundary_nodes(mesh));
+      // A linear field is exact on every mesh; it is kept for a while, so that branches relax in part.
+      auto h = Tensor<double, 2>::zero();
+      h(0, 0) = 0.1;
+      h(0, 1) = 0.2;
+      body.step(0.01, 1);
+      body.set_displacements(uniform(body.mesh().nodes, h));
+      body.remember();
+      body.set_step_size(0.05);
+      auto const along = uniform(mesh.nodes, h);
+      double const energy = body.strain_energy(), work = inner(body.forces(), along);
+
+      std::vector<Index> marked{1, 2, 5};
+      refine(body, {marked});
+      refine(body, {{0, static_cast<Index>(body.mesh().template elements<E>().size()) - 1}});
+
+      CHECK(body.mesh().template elements<E>().size() > count + 9);
+      auto const finer = uniform(body.mesh().nodes, h);
+      CHECK(difference(body.displacements(), finer) < 1e-14);
+      CHECK(body.strain_energy() == Approx(energy).epsilon(1e-13));
+      CHECK(inner(body.forces(), finer) == Approx(work).epsilon(1e-13));
+    };
+    SECTION("Tri3") { visit(Tri3{}); }
+    SECTION("Quad4") { visit(Quad4{}); }
+  });
+}
+
+}  // namespace pliant::test

@@ -1,0 +1,1 @@
+#include "adaptation/refinement_memory_suite.hpp"

@@ -1,0 +1,1 @@
+#include "body/element_values_suite.hpp"

@@ -1,0 +1,168 @@
+#pragma once
+
+#include <pliant/law/viscosity.hpp>
+
+#include "support/formulations.hpp"
+
+// One element under a prescribed motion: what its quadrature points remember follows from the strain's
+// history in closed form.
+namespace pliant::test {
+
+template <template <class> class L>
+using OneSquare = Formulation<Quad4, Gauss<2>, L>;
+
+inline Mesh<Quad4> unit_square() { return mesh::rectangle({.size = {1, 1}, .cells = {1, 1}}); }
+
+/// The force on the side x = 1 while the square is stretched along x by `stretch(t)`, confined.
+template <class TheBody>
+double pull(TheBody& body) {
+  auto const f = body.forces();
+  return -f[1][0] - f[3][0];
+}
+template <class TheBody, class Stretch>
+void confine(TheBody& body, Stretch const& stretch) {
+  body.hold(std::vector<Index>{0, 2}, all_directions<2>);
+  body.drive(std::vector<Index>{1, 3}, [=](double t) { return Point<2>{stretch(t), 0}; });
+}
+
+TEST_CASE("a stretch that is held relaxes as the Prony series does", "[body]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using F = OneSquare<Prony<SaintVenantKirchhoff, 2>::template law>;
+    typename F::template law<double> const law{{3, 2}, {0.5, 0.25}, {0.1, 1}};
+    double const h = 0.2, e = h + h * h / 2, s = (3 + 4) * e;  // S₁₁ of the elastic law
+    auto body = Body{backend, unit_square(), soft, Group<F>{law}};
+    confine(body, [h](double t) { return t > 0 ? h : 0.0; });
+    CentralDifference step{{.step = 1e-3}};
+
+    for (int tenths = 1; tenths <= 10; ++tenths) {
+      step(body, tenths == 1 ? 101 : 100);  // the first step stretches
+      double const t = 0.1 * tenths;
+      // Taken up within the first step, each branch by its mean decay over it.
+      auto const branch = [t](double share, double tau) {
+        double const x = 1e-3 / tau;
+        return share * (1 - std::exp(-x)) / x * std::exp(-t / tau);
+      };
+      double const expected = (1 + h) * s * (1 + branch(0.5, 0.1) + branch(0.25, 1));
+      CHECK(pull(body) == Approx(expected).epsilon(sizeof(typename B::scalar) == 4 ? 2e-4 : 1e-11));
+    }
+  });
+}
+
+TEST_CASE("a dashpot pulls in proportion to the rate", "[body]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using F = OneSquare<KelvinVoigt<SaintVenantKirchhoff>::template law>;
+    typename F::template law<double> const law{{3, 2}, 0.5};
+    auto body = Body{backend, unit_square(), soft, Group<F>{law}};
+    double const rate = 0.4, dt = 1e-3;
+    confine(body, [rate](double t) { return rate * t; });
+    CentralDifference step{{.step = dt}};
+    step(body, 500);
+    double const h = rate * body.time(), before = h - rate * dt;
+    double const strain = h + h * h / 2, strain_before = before + before * before / 2;
+
+    double const expected = (1 + h) * (7 * strain + 0.5 * (strain - strain_before) / dt);
+
+    CHECK(pull(body) == Approx(expected).epsilon(sizeof(typename B::scalar) == 4 ? 1e-3 : 1e-11));
+  });
+}
+
+TEST_CASE(
+    "an element that changes its elastic law keeps its past, and one without a past begins relaxed",
+    "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using A = OneSquare<Prony<SaintVenantKirchhoff>::template law>;
+    using C = OneSquare<Prony<NeoHookean>::template law>;
+    using Elastic = OneSquare<SaintVenantKirchhoff>;
+    typename A::template law<double> const first{{3, 2}, {0.5}, {10}};
+    typename C::template law<double> const second{{3, 2}, {0.5}, {10}};
+    auto const stretched = [&] {
+      Body body{backend, unit_square(), soft, Group<A>{first}, Group<C>{second}, Group<Elastic>{}};
+      confine(body, [](double t) { return t > 0 ? 0.1 : 0.0; });
+      CentralDifference step{{.step = 1e-2}};
+      step(body, 3);
+      return body;
+    };
+    SECTION("kept") {
+      auto body = stretched();
+      double const viscous = pull(body) / (1.1 * 7 * 0.105);  // over the relaxed pull
+      body.template assign<C>({0});
+      CentralDifference{{.step = 1e-2}}(body, 1);
+      double const elastic = 2 * (1.1 - 1 / 1.1) + 3 * std::log(1.1) / 1.1;
+      // The branch still carries what the first law loaded it with: 1.1 Q.
+      CHECK(viscous == Approx(1.5).epsilon(5e-3));
+      CHECK(pull(body) > 1.3 * elastic);
+    }
+    SECTION("begun") {
+      auto body = stretched();
+      body.template assign<Elastic>({0});
+      double const elastic = pull(body);
+      CHECK(elastic == Approx(1.1 * 7 * 0.105).epsilon(1e-12));
+      body.template assign<A>({0});
+      CHECK(pull(body) == Approx(elastic).epsilon(1e-12));
+    }
+  });
+}
+
+TEST_CASE("going back to a checkpoint goes back in memory too", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, Prony<NeoHookean>::template law>;
+    auto const mesh = distorted_mesh<Tri3>(6);
+    Body body{backend, mesh, soft, Group<F>{typename F::template law<double>{{3, 2}, {1}, {0.05}}}};
+    body.clamp(mesh.boundary("left"));
+    body.set_gravity({0, -0.5});
+    auto const advance = [&](int steps) { body.step(2e-3, steps); };
+    advance(100);
+    body.checkpoint();
+    advance(100);
+    auto const once = body.displacements();
+    REQUIRE(body.restore());
+    advance(100);
+    double const rounding = sizeof(typename B::scalar) == 4 ? 1e-5 : 1e-12;
+    CHECK(difference(body.displacements(), once) < rounding * largest(once));
+    CHECK(largest(once) > 1e-3);
+  });
+}
+
+TEST_CASE("the stable step is stable with dashpots, and not far from the limit", "[body]") {
+  MainBackend const backend;
+  using F = Formulation<Quad4, Gauss<2>, KelvinVoigt<SaintVenantKirchhoff>::template law>;
+  double last = 1;
+  for (double viscosity : {0.0, 0.01, 0.1, 1.0}) {
+    auto const mesh = distorted_mesh<Quad4>(5);
+    Body body{backend, mesh, soft, Group<F>{typename F::template law<double>{{3, 2}, viscosity}}};
+    body.clamp(mesh.boundary("left"));
+    body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 1e-3));
+    double const step = stable_step(body), energy = body.total_energy();
+    INFO("viscosity " << viscosity << " Pa s, step " << step << " s");
+    CHECK(step < last);
+    last = step;
+    body.step(step, 2000);
+    CHECK(body.total_energy() < 1.5 * energy);
+    // Nor is it timid: three times the step explodes.
+    body.step(3 * step, 400);
+    CHECK(!(body.total_energy() < 100 * energy));
+  }
+}
+
+TEST_CASE("viscosity takes energy from a vibration", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Quad4, Gauss<2>, KelvinVoigt<SaintVenantKirchhoff>::template law>;
+    auto const energy_left = [&](double viscosity) {
+      auto const mesh = distorted_mesh<Quad4>(5);
+      Body body{backend, mesh, soft, Group<F>{typename F::template law<double>{{3, 2}, viscosity}}};
+      body.clamp(mesh.boundary("left"));
+      auto shear = Tensor<double, 2>::zero();
+      shear(1, 0) = 0.2;
+      body.set_velocities(uniform(mesh.nodes, shear));
+      double const before = body.total_energy();
+      CentralDifference step{{.step = 2e-3, .energy_growth = 0.01}};
+      step(body, 1000);
+      return body.total_energy() / before;
+    };
+    CHECK(energy_left(0) == Approx(1).epsilon(1e-3));
+    CHECK(energy_left(0.05) < 0.9);
+    CHECK(energy_left(0.2) < energy_left(0.05));
+  });
+}
+
+}  // namespace pliant::test

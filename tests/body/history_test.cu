@@ -1,0 +1,1 @@
+#include "body/history_suite.hpp"
