@@ -4,9 +4,9 @@
 using namespace pliant;
 
 #ifndef PLIANT_MISUSE_OFF
-using Exact = Formulation<Tri3, Gauss<7>, Hooke>;
+using Ruled = Formulation<Tri3, Gauss<7>, Hooke>;
 #else
-using Exact = Formulation<Tri3, Gauss<4>, Hooke>;
+using Ruled = Formulation<Tri3, Gauss<4>, Hooke>;
 #endif
 
-static_assert(Exact::nodes == 3);
+static_assert(Ruled::nodes == 3);

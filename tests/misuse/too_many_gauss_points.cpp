@@ -4,9 +4,9 @@
 using namespace pliant;
 
 #ifndef PLIANT_MISUSE_OFF
-using Exact = Formulation<Hex8, Gauss<11>, Hooke>;
+using Ruled = Formulation<Hex8, Gauss<11>, Hooke>;
 #else
-using Exact = Formulation<Hex8, Gauss<4>, Hooke>;
+using Ruled = Formulation<Hex8, Gauss<4>, Hooke>;
 #endif
 
-static_assert(Exact::nodes == 8);
+static_assert(Ruled::nodes == 8);
