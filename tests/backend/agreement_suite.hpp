@@ -17,7 +17,7 @@ double largest_element_force(TheBody const& body, FieldOf<F::dim> const& u) {
       for (int k = 0; k < E::dim; ++k)
         own(a, k) = u[static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)])]
                      [static_cast<std::size_t>(k)];
-    auto const f = force<F>(prepared<F>(body.template law_of<F>()), nodal(body.mesh(), nodes), own);
+    auto const f = force<F>(prepared<F>(law_at_a_point<F>(body)), nodal(body.mesh(), nodes), own);
     for (int a = 0; a < E::nodes; ++a)
       for (int k = 0; k < E::dim; ++k) m = std::max(m, std::abs(f(a, k)));
   }

@@ -6,12 +6,16 @@
 
 namespace pliant::test {
 
-/// Displacements with a strain of about 0.1 from element to element.
-template <class M>
+/// Displacements with a strain of about 0.1 from element to element, about the stretch at which a law is
+/// smooth.
+template <class F, class M>
 FieldOf<M::dim> rough_state(M const& mesh, int n, unsigned seed) {
   Random random(seed);
-  return plus(uniform(mesh.nodes, random.tensor<M::dim>(0.1)), 1,
-              random.field<M::dim>(mesh.nodes.size(), 0.05 / n));
+  auto h = random.tensor<M::dim>(0.1);
+  using S = Sample<typename F::template law<double>>;
+  if constexpr (requires { S::smooth_at; })
+    for (int i = 0; i < M::dim; ++i) h(i, i) += S::smooth_at - 1;
+  return plus(uniform(mesh.nodes, h), 1, random.field<M::dim>(mesh.nodes.size(), 0.05 / n));
 }
 
 template <class TheBody>
@@ -22,11 +26,12 @@ double energy_at(TheBody& body, FieldOf<TheBody::dim> const& u) {
 
 TEST_CASE("forces are minus the derivative of the energy", "[formulation]") {
   on_each_formulation<DoubleBackends>([]<class B, class F>(Case<B, F>) {
+    if constexpr (history_size<F> > 0) return;  // dashpots have no energy
     int const n = F::dim == 2 ? 4 : 3;
     auto const mesh = distorted_mesh<typename F::element>(n);
     auto body = body_of<F>(B{}, mesh);
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      auto const u = rough_state(mesh, n, seed);
+      auto const u = rough_state<F>(mesh, n, seed);
       auto const along = Random(seed + 10).field<F::dim>(u.size(), 1.0);
       auto const f = forces_at(body, u);
 
@@ -46,7 +51,7 @@ TEST_CASE("the tangent product is the derivative of the forces", "[formulation]"
     auto const mesh = distorted_mesh<typename F::element>(n);
     auto body = body_of<F>(B{}, mesh);
     for (unsigned seed = 1; seed <= 2; ++seed) {
-      auto const u = rough_state(mesh, n, seed);
+      auto const u = rough_state<F>(mesh, n, seed);
       auto const along = Random(seed + 10).field<F::dim>(u.size(), 1.0);
 
       auto const product = tangent_product(body, u, along);
@@ -64,7 +69,7 @@ TEST_CASE("the tangent is symmetric", "[formulation]") {
     int const n = F::dim == 2 ? 6 : 4;
     auto const mesh = distorted_mesh<typename F::element>(n);
     auto body = body_of<F>(B{}, mesh);
-    auto const u = rough_state(mesh, n, 1);
+    auto const u = rough_state<F>(mesh, n, 1);
     auto const x = Random(2).field<F::dim>(u.size(), 1.0);
     auto const y = Random(3).field<F::dim>(u.size(), 1.0);
 

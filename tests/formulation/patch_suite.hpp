@@ -60,7 +60,7 @@ TEST_CASE("a uniform state leaves no force inside, and its stress on the outside
         for (double x : f[static_cast<std::size_t>(i)]) inside = std::max(inside, std::abs(x));
       CHECK(inside < tolerance);
       // On a linear field v = G X the forces do the work −P:G V.
-      auto const p = stress(body.template law_of<F>(), h);
+      auto const p = stress(law_at_a_point<F>(body), h);
       for (int i = 0; i < dim; ++i)
         for (int k = 0; k < dim; ++k) {
           auto g = Tensor<double, dim>::zero();
@@ -69,7 +69,7 @@ TEST_CASE("a uniform state leaves no force inside, and its stress on the outside
                 Approx(p(i, k)).margin(tolerance * static_cast<double>(mesh.nodes.size())));
         }
       CHECK(body.strain_energy() ==
-            Approx(energy_density(body.template law_of<F>(), h)).epsilon(0).margin(tolerance * n));
+            Approx(energy_density(law_at_a_point<F>(body), h)).epsilon(0).margin(tolerance * n));
     }
   });
 }

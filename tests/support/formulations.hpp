@@ -58,8 +58,27 @@ using FewSpecialFormulations =
     List<Formulation<Wedge6, Gauss<2>, Hooke>, Formulation<Quad4, OnePoint, NeoHookean>,
          Formulation<Quad4, FBar<Gauss<2>>, NeoHookean>>;
 
+/// λ = 3 Pa, μ = 2 Pa, ρ = 1.5 kg/m³.
+inline constexpr Elastic soft{5.2, 0.3, 1.5};
+
+/// The parameters in the suites of a law that does not take them from `soft`: `law`, and the `values` of
+/// each element.
+template <class L>
+struct Sample {};
+
+}  // namespace pliant::test
+
+#if defined(LAW_FORMULATIONS)
+#include "support/law_formulations.hpp"
+#endif
+
+namespace pliant::test {
+
 // The build compiles a suite once for each list; see tests/CMakeLists.txt.
-#if defined(QUADRATIC_FORMULATIONS)
+#if defined(LAW_FORMULATIONS)
+using AllFormulations = LawFormulations;
+using FewFormulations = FewLawFormulations;
+#elif defined(QUADRATIC_FORMULATIONS)
 using AllFormulations = QuadraticFormulations;
 using FewFormulations = FewQuadraticFormulations;
 #elif defined(SPECIAL_FORMULATIONS)
@@ -74,14 +93,20 @@ template <class B>
 using formulations_on =
     std::conditional_t<std::same_as<B, MainBackend>, AllFormulations, FewFormulations>;
 
+/// The name of a type, as the compiler has it, without namespaces.
+template <class U>
+std::string type_name() {
+  std::string const all = __PRETTY_FUNCTION__;
+  auto const first = all.find("U = ") + 4;
+  std::string name = all.substr(first, all.find_first_of(";]", first) - first);
+  for (std::string const part : {"pliant::", "<double>"})
+    for (auto at = name.find(part); at != name.npos; at = name.find(part))
+      name.erase(at, part.size());
+  return name;
+}
 template <class F>
 std::string law_name() {
-  if constexpr (std::same_as<typename F::template law<double>, Hooke<double>>) return "Hooke";
-  if constexpr (std::same_as<typename F::template law<double>, SaintVenantKirchhoff<double>>)
-    return "SaintVenantKirchhoff";
-  if constexpr (std::same_as<typename F::template law<double>, NeoHookean<double>>)
-    return "NeoHookean";
-  return "a law";
+  return type_name<typename F::template law<double>>();
 }
 template <class B>
 std::string backend_name() {
@@ -129,14 +154,37 @@ void on_few_formulations(Visit const& visit) {
   }(static_cast<Bs const*>(nullptr));
 }
 
-/// λ = 3 Pa, μ = 2 Pa, ρ = 1.5 kg/m³.
-inline constexpr Elastic soft{5.2, 0.3, 1.5};
-
 /// A body of one formulation.
 template <class F, Backend B, class M>
 auto body_of(B const& backend, M const& mesh, Elastic const& material = soft) {
-  return Body{backend, mesh, material, Group<F>{}};
+  using S = Sample<typename F::template law<double>>;
+  Group<F> group;
+  if constexpr (requires { S::law; }) group.law = S::law;
+  if constexpr (requires { S::values; }) group.values = {S::values};
+  return Body{backend, mesh, material, group};
 }
+
+/// The law of a body of one formulation at a point of any element, at rest so far.
+template <class F, class TheBody>
+auto law_at_a_point(TheBody const& body) {
+  auto const law = body.template law_of<F>();
+  if constexpr (element_values<F> > 0) {
+    Vector<double, element_values<F>> values;
+    for (int k = 0; k < element_values<F>; ++k)
+      values[k] = Sample<typename F::template law<double>>::values[static_cast<std::size_t>(k)];
+    return law.at(values);
+  } else if constexpr (history_size<F> > 0) {
+    return law.over(0).after(Vector<double, history_size<F> / F::points>::zero());
+  } else {
+    return law;
+  }
+}
+
+/// Whether a law takes rotations for strains.
+template <class F>
+inline constexpr bool small_strain =
+    std::same_as<typename F::template law<double>, Hooke<double>> ||
+    std::same_as<typename F::template law<double>, PlaneStress<Hooke>::law<double>>;
 
 /// The forces of a body at given displacements.
 template <class TheBody>
