@@ -32,10 +32,9 @@ std::size_t node_at(M const& mesh, Point<M::dim> const& place) {
 template <class F>
 using LawOf = typename F::template law<double>;
 
-/// A body of one formulation.
+/// A body of one formulation. Of a material, the law takes the moduli.
 template <class F, class M>
 auto body_of(M const& mesh, LawOf<F> const& law, double density = 1) {
-  // The group's law counts; of the material only the density does.
   return Body{Reference<double>{}, mesh, Elastic{1, 0, density}, Group<F>{law}};
 }
 template <class F, class M>
