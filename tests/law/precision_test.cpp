@@ -16,7 +16,7 @@ template <int Dim, class Make>
 void check_precision(Make const& make) {
   auto const single = any_law<Ask::energy_and_stress, Dim, float>(make(1.0f), {});
   auto const exact = any_law<Ask::energy_and_stress, Dim, double>(make(1.0), {});
-  for (double strain : {1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.25}) {
+  for (double strain : {1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.25, 1.0}) {
     Random random(13);
     for (int state = 0; state < 50; ++state) {
       auto const drawn = random_state<Dim>(random, strain);
@@ -27,8 +27,11 @@ void check_precision(Make const& make) {
       auto const p = in_double(stress(single, h)), exact_p = stress(exact, in_double(h));
       double const w = double{energy_density(single, h)},
                    exact_w = energy_density(exact, in_double(h));
-      CHECK(largest<Dim>(p - exact_p) < 2e-6 * largest<Dim>(exact_p));
-      CHECK(w == Approx(exact_w).epsilon(2e-6));
+      // Far out conditions are worse, and there are limits that no state may come near.
+      if (strain > 0.5 && !(largest<Dim>(exact_p) < 100)) continue;
+      double const tolerance = strain > 0.5 ? 2e-5 : 2e-6;
+      CHECK(largest<Dim>(p - exact_p) < tolerance * largest<Dim>(exact_p));
+      CHECK(w == Approx(exact_w).epsilon(tolerance));
     }
   }
 }
