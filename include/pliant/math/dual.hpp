@@ -148,7 +148,7 @@ PLIANT_HOST_DEVICE constexpr auto operator<(Dual<T, N> const& x, C const& c) {
 }
 template <class Condition, class T, int N>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> select(Condition const& condition, Dual<T, N> const& x,
-                                     Dual<T, N> const& y) {
+                                               Dual<T, N> const& y) {
   Dual<T, N> z;
   z.value = select(condition, x.value, y.value);
   for (int k = 0; k < N; ++k) z.derivative[k] = select(condition, x.derivative[k], y.derivative[k]);
