@@ -18,7 +18,7 @@ double direct_intensity(TheBody& body, PointWeights weights) {
     Vector<double, E::dim> xi;
     for (int k = 0; k < E::dim; ++k) xi[k] = rule.points[q][k];
     auto const n = E::shape(xi);
-    auto const g = E::gradient(xi);
+    auto const g = shape_gradient<E>(xi);
     Eigen::Matrix<double, E::dim, E::dim> j = j.Zero();
     double pull = 0;
     for (int a = 0; a < E::nodes; ++a) {

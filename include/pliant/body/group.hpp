@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <pliant/body/group_laws.hpp>
 
