@@ -127,7 +127,7 @@ TEST_CASE("a facet has the nodes of its side: corners, then those between them",
   CHECK(mesh::nodes_on_side<Tri6>(1) == Facet<2>{1, 2, 4});
   CHECK(mesh::nodes_on_side<Quad9>(3) == Facet<2>{3, 0, 7});
   CHECK(mesh::nodes_on_side<Tet4>(2) == Facet<3>{1, 2, 3});
-  CHECK(mesh::nodes_on_side<Tet10>(0) == Facet<3>{0, 2, 1, 4, 5, 6});
+  CHECK(mesh::nodes_on_side<Tet10>(0) == Facet<3>{0, 2, 1, 6, 5, 4});
   CHECK(mesh::nodes_on_side<Hex20>(5) == Facet<3>{4, 5, 6, 7, 12, 13, 14, 15});
   CHECK(mesh::nodes_on_side<Hex27>(5) == Facet<3>{4, 5, 6, 7, 12, 13, 14, 15, 25});
   CHECK(mesh::nodes_on_side<Wedge6>(0) == Facet<3>{0, 2, 1});

@@ -34,6 +34,7 @@ Hierarchy tree_of(TheBody const& body) {
   };
   for (auto const& [name, facets] : mesh.boundaries) add(facets);
   for (auto const& condition : body.conditions()) add(condition.facets);
+  for (auto const& pressure : body.pressures()) add(pressure.facets);
   return tree;
 }
 
@@ -276,6 +277,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     condition.nodes = std::move(nodes);
   }
+  auto pressures = body.pressures();
+  for (auto& pressure : pressures) pressure.facets = detail::facets_of(*after, mark++);
   auto loads = body.loads();
   if (!loads.empty()) loads.resize(mesh.nodes.size(), Point<2>{});
 
@@ -313,8 +316,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
       layout.tables);
   layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.u.data()});
   layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.v.data()});
-  body.replace(std::move(layout), std::move(conditions), std::move(loads), after,
-               detail::closed_totals(body));
+  body.replace(std::move(layout), std::move(conditions), std::move(pressures), std::move(loads),
+               after, detail::closed_totals(body));
   body.add_refinement({body.time(), "refine", static_cast<double>(done.parents.size()),
                        body.strain_energy() - strain_before, body.kinetic_energy() - kinetic_before,
                        taken});

@@ -6,6 +6,7 @@
 
 #include <pliant/body/history.hpp>
 #include <pliant/body/layout.hpp>
+#include <pliant/body/pressure.hpp>
 #include <pliant/mesh/check.hpp>
 
 namespace pliant {
@@ -68,6 +69,10 @@ class Body {
   void drive(std::vector<Index> const& nodes, Motion<dim> motion) {
     add_condition({{}, nodes, all_directions<dim>, std::move(motion)});
   }
+  /// A pressure on facets that follows the surface, Pa, positive against the outward normal. Pressing the
+  /// same facets again replaces it; 0 ends it. The stable step does not know its stiffness.
+  void press(std::vector<Facet<dim>> const& facets, double pascals);
+  std::vector<Pressure<dim>> const& pressures() const { return pressures_; }
   void set_gravity(Point<dim> const& g);                  // m/s²
   void set_damping(double per_mass);                      // 1/s
   void set_load(Index node, Point<dim> const& force);     // N, constant in direction
@@ -82,7 +87,8 @@ class Body {
   std::vector<Point<dim>> velocities();
   void set_displacements(std::vector<Point<dim>> const& u);
   void set_velocities(std::vector<Point<dim>> const& v);
-  /// Internal forces −∂W/∂u of the present displacements, N; those of slaves are with their masters.
+  /// Internal forces −∂W/∂u of the present displacements and those of pressures, N; those of slaves are
+  /// with their masters.
   std::vector<Point<dim>> forces();
   double strain_energy() const { return energy_at(layout_.u); }  // J
   double kinetic_energy();                                       // J
@@ -169,7 +175,8 @@ class Body {
   }
   /// Swaps in another mesh; used by refinement.
   void replace(layout_type layout, std::vector<Condition<dim>> conditions,
-               std::vector<Point<dim>> loads, std::shared_ptr<Hierarchy const> tree,
+               std::vector<Pressure<dim>> pressures, std::vector<Point<dim>> loads,
+               std::shared_ptr<Hierarchy const> tree,
                std::vector<typename History<dim>::Totals> totals);
   /// Changes whenever kernels recorded for this body would no longer be right.
   long revision() const { return revision_; }
@@ -198,6 +205,7 @@ class Body {
   template <Element E>
   ElementStart first_elements_of(std::size_t count) const;
   void add_condition(Condition<dim> condition);
+  void upload_pressures();
   void upload_conditions();
   void upload_loads();
   void stop_held();
@@ -228,6 +236,9 @@ class Body {
   std::tuple<Group<Fs>...> groups_;
   layout_type layout_;
   std::vector<Condition<dim>> conditions_;
+  std::vector<Pressure<dim>> pressures_;
+  SurfaceForces<B, M> surface_forces_;
+  void (*press_again_)(Body&) = nullptr;  // set once there is a pressure: others do not compile it
   struct ListedCondition {
     typename B::template Array<Index> nodes;
     std::size_t condition;

@@ -15,6 +15,7 @@ void Body<B, M, Fs...>::accumulate_forces(ConstField u, Field f) const {
           rest_field(), u);
     });
   });
+  surface_forces_.add(backend_, rest_field(), u, f);
   layout_.slaves.hand_to_masters(backend_, f);
 }
 
@@ -91,7 +92,7 @@ void Body<B, M, Fs...>::synchronize_velocities() {
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> conditions,
-                                std::vector<Point<dim>> loads,
+                                std::vector<Pressure<dim>> pressures, std::vector<Point<dim>> loads,
                                 std::shared_ptr<Hierarchy const> tree,
                                 std::vector<typename History<dim>::Totals> totals) {
   layout_ = std::move(layout);
@@ -99,9 +100,11 @@ void Body<B, M, Fs...>::replace(layout_type layout, std::vector<Condition<dim>> 
   history_.totals = std::move(totals);
   history_.born = steps_;
   conditions_ = std::move(conditions);
+  pressures_ = std::move(pressures);
   loads_ = std::move(loads);
   if (!loads_.empty()) upload_loads();
   upload_conditions();
+  if (press_again_) press_again_(*this);
   scratch_.reset();
   checkpoint_.reset();
   recorded_.reset();

@@ -10,6 +10,22 @@
 // from outside; behind a triangle's three stands −1.
 namespace pliant {
 
+/// [−1, 1]: the side of a plane cell.
+struct Segment {
+  static constexpr int dim = 1, corners = 2;
+  static constexpr double volume = 2;
+
+  PLIANT_HOST_DEVICE static constexpr Vector<double, 1> corner(int a) {
+    return {{{a == 1 ? 1.0 : -1.0}}};
+  }
+  template <class S>
+  PLIANT_HOST_DEVICE static constexpr Vector<S, 2> linear(Vector<S, 1> const& xi) {
+    return {{{(1 - xi[0]) / 2}, {(1 + xi[0]) / 2}}};
+  }
+  static constexpr std::array<std::array<int, 1>, 2> sides() { return {{{0}, {1}}}; }
+  static constexpr std::array<std::array<int, 2>, 1> edges() { return {{{0, 1}}}; }
+};
+
 /// Corners (0, 0), (1, 0), (0, 1).
 struct Triangle {
   static constexpr int dim = 2, corners = 3;
@@ -161,6 +177,7 @@ template <class C>
 concept SimplexCell = std::same_as<C, Triangle> || std::same_as<C, Tetrahedron>;
 /// [−1, 1]ᵈ.
 template <class C>
-concept TensorCell = std::same_as<C, Quadrilateral> || std::same_as<C, Hexahedron>;
+concept TensorCell =
+    std::same_as<C, Segment> || std::same_as<C, Quadrilateral> || std::same_as<C, Hexahedron>;
 
 }  // namespace pliant

@@ -22,6 +22,9 @@ template <class E>
 concept Multilinear = Element<E> && TensorCell<typename E::cell> &&
                       std::derived_from<E, LinearElement<typename E::cell>>;
 
+struct Line2 : LinearElement<Segment> {
+  static constexpr char const* name() { return "Line2"; }
+};
 struct Tri3 : LinearElement<Triangle> {
   static constexpr char const* name() { return "Tri3"; }
 };

@@ -6,7 +6,11 @@ namespace pliant {
 
 /// Nodes at −1, 0, 1 in each direction: products of the Lagrange polynomials of degree two.
 template <TensorCell Cell>
-struct QuadraticLagrange : ElementOn<Cell, Cell::dim == 2 ? 9 : 27, 2, Lumping::nodal> {
+struct QuadraticLagrange : ElementOn<Cell,
+                                     Cell::dim == 1   ? 3
+                                     : Cell::dim == 2 ? 9
+                                                      : 27,
+                                     2, Lumping::nodal> {
   using QuadraticLagrange::ElementOn::nodes;
 
   template <class S>
@@ -48,6 +52,9 @@ struct Serendipity : ElementOn<Cell, Cell::corners + static_cast<int>(Cell::edge
   }
 };
 
+struct Line3 : QuadraticLagrange<Segment> {
+  static constexpr char const* name() { return "Line3"; }
+};
 struct Quad9 : QuadraticLagrange<Quadrilateral> {
   static constexpr char const* name() { return "Quad9"; }
 };

@@ -15,8 +15,8 @@ namespace pliant {
 template <int Dim>
 using Point = std::array<double, Dim>;
 
-/// One side of an element on the boundary: the numbers of its nodes, corners first, then those on its
-/// edges, then one in its middle; counter-clockwise seen from outside, the body on the left in 2D.
+/// One side of an element on the boundary: the numbers of its nodes, corners first, then those in
+/// the middle of its edges, beginning behind corner 0, then one in its own middle; counter-clockwise seen from outside, the body on the left in 2D.
 template <int Dim>
 class Facet {
  public:

@@ -7,7 +7,8 @@
 // From elements to the boundary, and from corners to the nodes between them.
 namespace pliant::mesh {
 
-/// The nodes of an element type on one side of its cell, in the order of a facet.
+/// The nodes of an element type on one side of its cell, in the order of a facet: corners, middles of its
+/// edges beginning behind corner 0, its own middle.
 template <Element E>
 constexpr auto nodes_on_side(int side) {
   constexpr auto sides = E::cell::sides();
@@ -15,13 +16,20 @@ constexpr auto nodes_on_side(int side) {
   auto const& corners = sides[static_cast<std::size_t>(side)];
   for (int corner : corners)
     if (corner >= 0) local.push_back(corner);
-  for (int a = E::cell::corners; a < E::nodes; ++a) {
-    auto const share = E::cell::linear(E::place(a));  // adds up to one over the corners of the side
-    double on_side = 0;
-    for (int corner : corners)
-      if (corner >= 0) on_side += share[corner];
-    if (on_side > 1 - 1e-9) local.push_back(a);
+  std::size_t const count = local.size();
+  auto const take = [&](Vector<double, E::dim> const& place) {
+    for (int a = E::cell::corners; a < E::nodes; ++a) {
+      auto const apart = E::place(a) - place;
+      if (dot(apart, apart) < 1e-9) local.push_back(a);
+    }
+  };
+  auto middle = Vector<double, E::dim>::zero();
+  for (std::size_t c = 0; c < count; ++c) {
+    auto const here = E::cell::corner(local[c]), next = E::cell::corner(local[(c + 1) % count]);
+    middle = middle + 1.0 / static_cast<double>(count) * here;
+    if (E::dim == 3) take(0.5 * (here + next));
   }
+  take(middle);
   return local;
 }
 

@@ -86,7 +86,7 @@ PLIANT_HOST_DEVICE constexpr QuadratureRule<1, N> gauss_lobatto() {
 /// The same rule in each direction of [−1, 1]ᵈ; direction 0 runs fastest.
 template <int Dim, int N>
 PLIANT_HOST_DEVICE constexpr auto tensor_product(QuadratureRule<1, N> const& line) {
-  constexpr int count = Dim == 2 ? N * N : N * N * N;
+  constexpr int count = Dim == 1 ? N : Dim == 2 ? N * N : N * N * N;
   QuadratureRule<Dim, count> rule{};
   for (int q = 0; q < count; ++q) {
     rule.weights[q] = 1;

@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-/// What a body's elements make of a displacement, assembled on the host in double precision,
+/// What a body's elements and pressures make of a displacement, assembled on the host in double precision,
 /// whatever the body's own; rows run over (node, direction) in the user's order.
 struct Assembled {
   double energy = 0;                      // W, J
-  Eigen::VectorXd force;                  // −∂W/∂u, N
-  Eigen::SparseMatrix<double> stiffness;  // ∂²W/∂u², N/m; empty when not asked for
+  Eigen::VectorXd force;                  // −∂W/∂u, and of pressures, N
+  Eigen::SparseMatrix<double> stiffness;  // −∂force/∂u, N/m; empty when not asked for
 };
 
 namespace detail {
@@ -33,7 +33,7 @@ enum class Assemble { energy_and_force, stiffness_too };
 /// slaves their interpolated displacement (see `interpolate_slaves`).
 template <class TheBody>
 Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
-                   Assemble what = Assemble::stiffness_too) {
+                   Assemble what = Assemble::stiffness_too, double pressure_share = 1) {
   constexpr int dim = TheBody::dim;
   auto const& layout = body.layout();
   Eigen::Index const size = Eigen::Index{dim} * layout.nodes;
@@ -98,6 +98,42 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
       }
     }(std::make_integer_sequence<int, Table::groups>());
   });
+  auto const press = [&]<class Face>(Face, auto const& faces, double pascals) {
+    for (auto const& nodes : faces) {
+      Matrix<double, Face::nodes, dim> x;
+      for (int a = 0; a < Face::nodes; ++a)
+        for (int k = 0; k < dim; ++k) {
+          Index const node = nodes[static_cast<std::size_t>(a)];
+          x(a, k) = body.mesh().nodes[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)] +
+                    u[Eigen::Index{dim} * node + k];
+        }
+      auto const add = [&](auto const& values, auto const& to) {
+        for (int a = 0; a < Face::nodes; ++a)
+          for (auto const& [i, weight] :
+               row_of[static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)])])
+            for (int k = 0; k < dim; ++k) to(dim * i + k, weight * values(a, k));
+      };
+      add(detail::pressure_force<dim, Face>(pascals, x),
+          [&](Index row, double value) { sum.force[row] += value; });
+      if (what == Assemble::energy_and_force) continue;
+      for (int b = 0; b < Face::nodes; ++b)
+        for (int k = 0; k < dim; ++k) {
+          auto dx = Matrix<double, Face::nodes, dim>::zero();
+          dx(b, k) = 1;
+          auto const df = detail::pressure_force_change<dim, Face>(pascals, x, dx);
+          for (auto const& [j, weight] :
+               row_of[static_cast<std::size_t>(nodes[static_cast<std::size_t>(b)])])
+            add(df, [&, j = j, weight = weight](Index row, double value) {
+              entries.emplace_back(row, dim * j + k, -weight * value);
+            });
+        }
+    }
+  };
+  for (auto const& pressure : body.pressures())
+    detail::for_each_face_type<typename TheBody::mesh_type>(
+        pressure.facets, [&](auto face, auto const& faces) {
+          press(face, faces, pressure_share * pressure.pascals);
+        });
   if (what == Assemble::stiffness_too) {
     sum.stiffness.resize(size, size);
     sum.stiffness.setFromTriplets(entries.begin(), entries.end());

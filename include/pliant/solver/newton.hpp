@@ -10,7 +10,7 @@
 namespace pliant {
 
 struct NewtonOptions {
-  int load_steps = 1;        // gravity, loads and motions grow in so many equal steps
+  int load_steps = 1;        // gravity, loads, pressures and motions grow in so many equal steps
   int max_iterations = 50;   // per load step
   double tolerance = 1e-11;  // of the residual, relative to the external forces and reactions
 };
@@ -110,12 +110,13 @@ class StaticProblem {
   Index unknowns_ = 0;
 };
 
-inline Eigen::VectorXd solve(Eigen::SparseMatrix<double> const& k, Eigen::VectorXd const& r) {
+inline Eigen::VectorXd solve(Eigen::SparseMatrix<double> const& k, Eigen::VectorXd const& r,
+                             bool is_symmetric) {
   Error const singular(
       "solve_static: the stiffness matrix is singular; hold the body against rigid motion, or look "
       "for a collapsed element");
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric(k);
-  if (symmetric.info() == Eigen::Success) {
+  if (Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric;
+      is_symmetric && (symmetric.compute(k), symmetric.info() == Eigen::Success)) {
     Eigen::VectorXd const pivots = symmetric.vectorD().cwiseAbs();
     // Rounding makes a pivot that should be zero some 1e-16 of the others.
     if (pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) throw singular;
@@ -147,7 +148,7 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
     problem.prescribe(u, share);
     problem.add(u, Eigen::VectorXd::Zero(problem.unknowns()), 0);
     Eigen::VectorXd const load = share * problem.external;
-    auto state = assemble(body, u);
+    auto state = assemble(body, u, Assemble::stiffness_too, share);
     for (int iteration = 0;; ++iteration) {
       Eigen::VectorXd const residual = problem.restrict(Eigen::VectorXd(state.force + load));
       double const scale = std::max(load.norm(), state.force.norm());
@@ -160,7 +161,8 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
                     std::to_string(options.load_steps) + " after " + std::to_string(iteration) +
                     " iterations, residual " + std::to_string(report.residual) +
                     " N; use more load_steps, or a law that does not soften");
-      Eigen::VectorXd const du = detail::solve(problem.restrict(state.stiffness), residual);
+      Eigen::VectorXd const du =
+          detail::solve(problem.restrict(state.stiffness), residual, body.pressures().empty());
       // Halve until the potential energy, or else the residual, gets smaller.
       double factor = 1;
       Eigen::VectorXd trial;
@@ -168,14 +170,14 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
       for (int halving = 0;; ++halving, factor /= 2) {
         trial = u;
         problem.add(trial, du, factor);
-        auto const next = assemble(body, trial, Assemble::energy_and_force);
+        auto const next = assemble(body, trial, Assemble::energy_and_force, share);
         double const r = problem.restrict(Eigen::VectorXd(next.force + load)).norm();
-        if (halving == 20 || (std::isfinite(r) &&
+        if (halving == 20 || (std::isfinite(r) && std::isfinite(next.energy) &&
                               (next.energy - load.dot(trial) <= potential || r < report.residual)))
           break;
       }
       u = trial;
-      state = assemble(body, u);
+      state = assemble(body, u, Assemble::stiffness_too, share);
       ++report.iterations;
     }
   }

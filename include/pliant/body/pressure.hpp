@@ -1,0 +1,204 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/element/quadratic_tensor.hpp>
+#include <pliant/formulation/physics.hpp>
+#include <pliant/mesh/sides.hpp>
+
+namespace pliant {
+
+/// A pressure on facets that follows the surface.
+template <int Dim>
+struct Pressure {
+  std::vector<Facet<Dim>> facets;
+  double pascals;  // positive: against the outward normal
+};
+
+namespace detail {
+
+template <int Dim, int Nodes>
+struct FaceWith;
+template <>
+struct FaceWith<2, 2> {
+  using type = Line2;
+};
+template <>
+struct FaceWith<2, 3> {
+  using type = Line3;
+};
+template <>
+struct FaceWith<3, 3> {
+  using type = Tri3;
+};
+template <>
+struct FaceWith<3, 6> {
+  using type = Tri6;
+};
+template <>
+struct FaceWith<3, 4> {
+  using type = Quad4;
+};
+template <>
+struct FaceWith<3, 8> {
+  using type = Quad8;
+};
+template <>
+struct FaceWith<3, 9> {
+  using type = Quad9;
+};
+
+/// The area vector that the tangents of a surface span.
+template <class S>
+PLIANT_HOST_DEVICE Vector<S, 2> area_of(Matrix<S, 2, 1> const& t) {
+  return {{{t(1, 0)}, {-t(0, 0)}}};
+}
+template <class S>
+PLIANT_HOST_DEVICE Vector<S, 3> area_of(Matrix<S, 3, 2> const& t) {
+  return cross(Vector<S, 3>{{{t(0, 0)}, {t(1, 0)}, {t(2, 0)}}},
+               Vector<S, 3>{{{t(0, 1)}, {t(1, 1)}, {t(2, 1)}}});
+}
+
+/// F_a = −p ∫ N_a n da over the deformed facet, N.
+template <int Dim, class Face, class S>
+PLIANT_HOST_DEVICE Matrix<S, Face::nodes, Dim> pressure_force(
+    builtin_scalar<S> p, Matrix<S, Face::nodes, Dim> const& x) {
+  using T = builtin_scalar<S>;
+  using Q = Gauss<SimplexCell<typename Face::cell> ? 2 * Face::degree : Face::degree + 1>;
+  static constexpr auto table = tabulate<Face, Q, T>();
+  auto f = Matrix<S, Face::nodes, Dim>::zero();
+  for (int q = 0; q < table.count; ++q) {
+    auto tangents = Matrix<S, Dim, Dim - 1>::zero();
+    for (int a = 1; a < Face::nodes; ++a)  // of differences: the place in space is not rounded in
+      for (int i = 0; i < Dim; ++i)
+        for (int k = 0; k < Dim - 1; ++k)
+          tangents(i, k) = tangents(i, k) + T(table.gradient[q][a][k]) * (x(a, i) - x(0, i));
+    auto const area = area_of(tangents);
+    for (int a = 0; a < Face::nodes; ++a)
+      for (int i = 0; i < Dim; ++i)
+        f(a, i) = f(a, i) - (p * T(table.weight[q] * table.shape[q][a])) * area[i];
+  }
+  return f;
+}
+
+/// Its change, by a dual number through it.
+template <int Dim, class Face, class S>
+PLIANT_HOST_DEVICE Matrix<S, Face::nodes, Dim> pressure_force_change(
+    builtin_scalar<S> p, Matrix<S, Face::nodes, Dim> const& x,
+    Matrix<S, Face::nodes, Dim> const& dx) {
+  Matrix<Dual<S, 1>, Face::nodes, Dim> moving;
+  for (int a = 0; a < Face::nodes; ++a)
+    for (int i = 0; i < Dim; ++i) {
+      moving(a, i).value = x(a, i);
+      moving(a, i).derivative[0] = dx(a, i);
+    }
+  auto const f = pressure_force<Dim, Face>(p, moving);
+  Matrix<S, Face::nodes, Dim> df;
+  for (int a = 0; a < Face::nodes; ++a)
+    for (int i = 0; i < Dim; ++i) df(a, i) = f(a, i).derivative[0];
+  return df;
+}
+
+template <class T, int Dim, class Face>
+struct PressureKernel {
+  T p;
+  template <class V>
+  PLIANT_HOST_DEVICE V operator()(GroupNumber<0>, V const& rest, V const& u) const {
+    return pressure_force<Dim, Face>(p, rest + u);
+  }
+};
+template <class T, int Dim, class Face>
+struct PressureTangentKernel {
+  T p;  // times a factor
+  template <class V>
+  PLIANT_HOST_DEVICE V operator()(GroupNumber<0>, V const& rest, V const& u, V const& du) const {
+    return pressure_force_change<Dim, Face>(p, rest + u, du);
+  }
+};
+
+/// Whether some element of a mesh has sides of so many nodes.
+template <class M, int Nodes>
+inline constexpr bool has_sides_with = false;
+template <Element... Es, int Nodes>
+inline constexpr bool has_sides_with<Mesh<Es...>, Nodes> = ([]<class E>(E*) {
+  for (int s = 0; s < static_cast<int>(E::cell::sides().size()); ++s)
+    if (mesh::nodes_on_side<E>(s).size() == Nodes) return true;
+  return false;
+}(static_cast<Es*>(nullptr)) || ...);
+
+/// Calls visit(Face{}, facets) for each kind of face among some facets of a mesh.
+template <class M, class Visit>
+void for_each_face_type(std::vector<Facet<M::dim>> const& facets, Visit const& visit) {
+  constexpr int Dim = M::dim;
+  auto const of_size = [&]<int Nodes>(std::integral_constant<int, Nodes>) {
+    if constexpr (has_sides_with<M, Nodes>) {
+      std::vector<std::array<Index, Nodes>> same;
+      for (auto const& facet : facets)
+        if (facet.size() == Nodes) std::copy_n(facet.begin(), Nodes, same.emplace_back().begin());
+      if (!same.empty()) visit(typename FaceWith<Dim, Nodes>::type{}, same);
+    }
+  };
+  if constexpr (Dim == 2) {
+    of_size(std::integral_constant<int, 2>{});
+    of_size(std::integral_constant<int, 3>{});
+  } else {
+    of_size(std::integral_constant<int, 3>{});
+    of_size(std::integral_constant<int, 4>{});
+    of_size(std::integral_constant<int, 6>{});
+    of_size(std::integral_constant<int, 8>{});
+    of_size(std::integral_constant<int, 9>{});
+  }
+}
+
+}  // namespace detail
+
+/// The pressures of a body in the backend's memory. Functions stand for the kernels, so that bodies that
+/// are never pressed do not compile them.
+template <Backend B, class M>
+class SurfaceForces {
+  static constexpr int Dim = M::dim;
+  using T = typename B::scalar;
+  using Field = NodeField<T, Dim>;
+  using ConstField = NodeField<T const, Dim>;
+
+ public:
+  bool empty() const { return add_.empty(); }
+  /// Rows that a field to accumulate into needs behind its nodes.
+  Index scratch_nodes() const { return scratch_; }
+
+  /// `facets`: internal numbers of nodes.
+  void press(B const& backend, std::vector<Facet<Dim>> const& facets, double pascals, Index nodes) {
+    detail::for_each_face_type<M>(facets, [&]<class Face>(Face, auto const& connectivity) {
+      auto const elements = std::make_shared<typename B::template Elements<Face::nodes>>(
+          backend, connectivity, 1, std::vector<Tag>(connectivity.size(), 0), nodes);
+      scratch_ = std::max(scratch_, elements->scratch_nodes());
+      T const p = static_cast<T>(pascals);
+      add_.push_back([=](B const& b, ConstField rest, ConstField u, Field f) {
+        b.template accumulate<1>(*elements, detail::PressureKernel<T, Dim, Face>{p}, f, rest, u);
+      });
+      add_change_.push_back(
+          [=](B const& b, T factor, ConstField rest, ConstField u, ConstField du, Field f) {
+            b.template accumulate<1>(
+                *elements, detail::PressureTangentKernel<T, Dim, Face>{factor * p}, f, rest, u, du);
+          });
+    });
+  }
+  void add(B const& backend, ConstField rest, ConstField u, Field f) const {
+    for (auto const& one : add_) one(backend, rest, u, f);
+  }
+  void add_change(B const& backend, T factor, ConstField rest, ConstField u, ConstField du,
+                  Field f) const {
+    for (auto const& one : add_change_) one(backend, factor, rest, u, du, f);
+  }
+
+ private:
+  std::vector<std::function<void(B const&, ConstField, ConstField, Field)>> add_;
+  std::vector<std::function<void(B const&, T, ConstField, ConstField, ConstField, Field)>>
+      add_change_;
+  Index scratch_ = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,1 @@
+#include "body/pressure_suite.hpp"
