@@ -42,6 +42,9 @@ auto body_of(M const& mesh, Elastic const& material) {
   return body_of<F>(mesh, LawOf<F>::from(material), material.density);
 }
 
+/// To the digits that are left where elements are much smaller than the body, whose large forces cancel.
+inline constexpr NewtonOptions to_rounding{.tolerance = 1e-7};
+
 template <class M>
 void add(std::vector<M>& sum, std::vector<M> const& more) {
   for (std::size_t i = 0; i < sum.size(); ++i)

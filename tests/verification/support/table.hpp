@@ -78,14 +78,22 @@ class Table {
     compare(labels, {{0, {value}}}, 0, reference);
   }
 
-  /// An error that has to fall with at least an order (less a fifteenth) on the last two meshes.
-  void converge(Labels const& labels, Runs const& runs, std::size_t component, double expected) {
+  /// A value whose distance from a reference has to fall with at least an order (less a fifteenth) on the
+  /// last two meshes, where digits would ask for finer ones.
+  void approach(Labels const& labels, Runs const& runs, std::size_t component,
+                Printed const& reference, double expected) {
     std::vector<double> errors;
-    for (auto const& run : runs) errors.push_back(run.values[component]);
+    for (auto const& run : runs)
+      errors.push_back(std::abs(run.values[component] - reference.value));
     double const order = order_of(runs, errors);
     plot(labels, runs, errors);
-    print(labels, runs, number(errors.back(), "%.4e"), "0", errors.back(),
-          "order " + number(expected), order, order >= expected - expected / 15);
+    print(labels, runs, number(runs.back().values[component]), reference.text,
+          runs.back().values[component] - reference.value, "order " + number(expected), order,
+          order >= expected - expected / 15);
+  }
+  /// The same of an error.
+  void converge(Labels const& labels, Runs const& runs, std::size_t component, double expected) {
+    approach(labels, runs, component, {0, 0, "0"}, expected);
   }
 
   /// 0 when no row was missed.
