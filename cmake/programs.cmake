@@ -32,7 +32,7 @@ if(PLIANT_SANITIZE)
   target_compile_options(
     pliant_program
     INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${PLIANT_SANITIZE};-fno-sanitize-recover=all>"
-              "$<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer;-O1>")
+              "$<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer;-O0;-g1>")
   target_link_options(pliant_program INTERFACE "-fsanitize=${PLIANT_SANITIZE}")
 endif()
 
