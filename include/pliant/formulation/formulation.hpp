@@ -2,7 +2,7 @@
 
 #include <pliant/element/element.hpp>
 #include <pliant/law/law.hpp>
-#include <pliant/quadrature/quadrature.hpp>
+#include <pliant/quadrature/f_bar.hpp>
 
 namespace pliant {
 
@@ -12,9 +12,14 @@ namespace detail {
 template <Element E, class Q>
 constexpr bool enough_points() {
   constexpr int strains = E::dim == 2 ? 3 : 6, rigid_motions = strains;
-  constexpr bool controlled = requires { Q::controls_hourglasses; };
-  return controlled ||
-         Tabulation<E, Q, double>::count * strains >= E::nodes * E::dim - rigid_motions;
+  constexpr int points = Tabulation<E, Q, double>::count,
+                needed = E::nodes * E::dim - rigid_motions;
+  if constexpr (requires { Q::controls_hourglasses; })
+    return true;
+  else if constexpr (has_mean_dilatation<Q> && E::dim == 3)  // deviators, and one dilatation
+    return points * (strains - 1) + 1 >= needed;
+  else
+    return points * strains >= needed;
 }
 }  // namespace detail
 

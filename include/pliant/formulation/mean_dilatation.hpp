@@ -7,20 +7,18 @@ namespace pliant {
 
 namespace detail {
 
-/// (1 + x)^(1/2) − 1 and (1 + x)^(1/3) − 1, without cancellation.
-template <int Dim, class S>
-PLIANT_HOST_DEVICE S root_less_one(S const& x) {
-  if constexpr (Dim == 2) {
-    return x / (S(1) + sqrt(S(1) + x));
-  } else {
-    S const r = exp(log1p(x) / S(3));
-    return x / (r * r + r + S(1));
-  }
+/// (1 + x)^(1/3) − 1, without cancellation.
+template <class S>
+PLIANT_HOST_DEVICE S cube_root_less_one(S const& x) {
+  S const r = exp(log1p(x) / S(3));
+  return x / (r * r + r + S(1));
 }
 
 }  // namespace detail
 
-/// Each point sees the mean dilatation of the element: W_E = Σ_q w_q det J W(H̄_q); see FBar.
+/// Each point sees the mean dilatation of the element: W_E = Σ_q w_q det J W(H̄_q); see FBar. In plane
+/// strain too F̄ is that of space, with F̄₃₃ = (J̄/J)^(1/3): deviators of the plane alone would leave all
+/// conformal maps free.
 template <class F, Geometry G>
 struct MeanDilatation {
   using E = typename F::element;
@@ -29,9 +27,10 @@ struct MeanDilatation {
   /// A point's deformation and what replaces it.
   template <class S, bool Linear>
   struct Point {
-    Tensor<S, dim> h, h_bar;
+    Tensor<S, dim> h;
+    Tensor<S, 3> h_bar;
     S dilatation;   // J − 1, or tr H
-    S root = S(1);  // (J̄/J)^(1/d)
+    S root = S(1);  // (J̄/J)^(1/3)
 
     PLIANT_HOST_DEVICE static S dilatation_of(Tensor<S, dim> const& h) {
       if constexpr (Linear)
@@ -40,15 +39,16 @@ struct MeanDilatation {
         return determinant_less_one(h);
     }
     PLIANT_HOST_DEVICE Point(Tensor<S, dim> const& h_here, S const& mean)
-        : h(h_here), h_bar(h_here), dilatation(dilatation_of(h_here)) {
+        : h(h_here), h_bar(in_space(h_here)), dilatation(dilatation_of(h_here)) {
+      S more = S(0);  // on the diagonal
       if constexpr (Linear) {
-        for (int i = 0; i < dim; ++i) h_bar(i, i) = h_bar(i, i) + (mean - dilatation) / S(dim);
+        more = (mean - dilatation) / S(3);
       } else {
-        S const root_1 = detail::root_less_one<dim>((mean - dilatation) / (S(1) + dilatation));
-        root = S(1) + root_1;
-        h_bar = root * h;
-        for (int i = 0; i < dim; ++i) h_bar(i, i) = h_bar(i, i) + root_1;
+        more = detail::cube_root_less_one((mean - dilatation) / (S(1) + dilatation));
+        root = S(1) + more;
+        h_bar = root * h_bar;
       }
+      for (int i = 0; i < 3; ++i) h_bar(i, i) = h_bar(i, i) + more;
     }
     /// ∂(dilatation)/∂F: cof F, or I.
     PLIANT_HOST_DEVICE Tensor<S, dim> slope() const {
@@ -56,10 +56,19 @@ struct MeanDilatation {
       for (int i = 0; i < dim; ++i) c(i, i) = c(i, i) + S(1);
       return c;
     }
-    /// What the stress p̄ at H̄ does when the dilatation alone changes, over d (1 + dilatation).
-    PLIANT_HOST_DEVICE S work(Tensor<S, dim> const& p) const {
-      if constexpr (Linear) return trace(p);
-      return root * (dot(p, h) + trace(p));
+    /// What the stress p̄ at H̄ does when the dilatation alone changes, over 1 + dilatation.
+    PLIANT_HOST_DEVICE S work(Tensor<S, 3> const& p) const {
+      if constexpr (Linear)
+        return trace(p) / S(3);
+      else
+        return root * (dot(p, in_space(h)) + trace(p)) / S(3);
+    }
+    /// r P̄, as far as it acts in the body's dimensions.
+    PLIANT_HOST_DEVICE Tensor<S, dim> pull(Tensor<S, 3> const& p) const {
+      Tensor<S, dim> part;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) part(i, j) = root * p(i, j);
+      return part;
     }
   };
   template <class L>
@@ -97,7 +106,7 @@ struct MeanDilatation {
     return sum;
   }
 
-  /// P = r P̄ + (p̄ − r P̄:F/(d J)) cof F with r = (J̄/J)^(1/d) and p̄ the mean of r P̄:F/(d J̄).
+  /// P = r P̄ + (p̄ − r P̄:F/(3 J)) cof F with r = (J̄/J)^(1/3) and p̄ the mean of r P̄:F/(3 J̄).
   template <class L, class S>
   PLIANT_HOST_DEVICE static Nodal<E, S> force(L const& law, Nodal<E, S> const& rest,
                                               Nodal<E, S> const& u) {
@@ -113,10 +122,10 @@ struct MeanDilatation {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       Point<S, linear<L>> const point(map.gradient(v, table, q), mean_dilatation);
       auto const p = stress(at_point(law, q), point.h_bar);
-      S const work = point.work(p) / S(dim);
+      S const work = point.work(p);
       auto const slope = point.slope();
       S const here = linear<L> ? work : work / (S(1) + point.dilatation);
-      f.add_divergence(T(-table.weight[q]) * ((point.root * p - here * slope) * map.cofactors),
+      f.add_divergence(T(-table.weight[q]) * ((point.pull(p) - here * slope) * map.cofactors),
                        table, q);
       slopes.add_divergence(T(-table.weight[q]) * (slope * map.cofactors), table, q);
       pressure = pressure + map.volume * T(table.weight[q]) * work;
