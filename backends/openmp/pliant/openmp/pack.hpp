@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <Eigen/Core>
-
 #include <pliant/math/functions.hpp>
 
 // Vectors passed by value are always inlined; their calling convention does not matter.
@@ -66,50 +64,11 @@ PLIANT_HOST_DEVICE Pack<T, L> select(typename Pack<T, L>::Mask mask, Pack<T, L> 
   return {mask ? a.v : b.v};
 }
 
-namespace detail {
-// Eigen holds vectorised elementary functions; it sees the lanes as an array.
-template <class T, int L, class F>
-PLIANT_HOST_DEVICE Pack<T, L> lanewise(Pack<T, L> const& x, F const& f) {
-  Eigen::Array<T, L, 1> in, out;
-  __builtin_memcpy(in.data(), &x.v, sizeof(x.v));
-  out = f(in);
-  Pack<T, L> y;
-  __builtin_memcpy(&y.v, out.data(), sizeof(y.v));
-  return y;
-}
-}  // namespace detail
-
-template <class T, int L>
-PLIANT_HOST_DEVICE Pack<T, L> sqrt(Pack<T, L> const& x) {
-  return detail::lanewise(x, [](auto const& a) { return a.sqrt(); });
-}
-template <class T, int L>
-PLIANT_HOST_DEVICE Pack<T, L> log(Pack<T, L> const& x) {
-  return detail::lanewise(x, [](auto const& a) { return a.log(); });
-}
-template <class T, int L>
-PLIANT_HOST_DEVICE Pack<T, L> log1p(Pack<T, L> const& x) {
-  return detail::lanewise(x, [](auto const& a) { return a.log1p(); });
-}
-template <class T, int L>
-PLIANT_HOST_DEVICE Pack<T, L> exp(Pack<T, L> const& x) {
-  return detail::lanewise(x, [](auto const& a) { return a.exp(); });
-}
-template <class T, int L>
-PLIANT_HOST_DEVICE Pack<T, L> expm1(Pack<T, L> const& x) {
-  return detail::lanewise(x, [](auto const& a) { return a.expm1(); });
-}
 template <class T, int L>
 PLIANT_HOST_DEVICE Pack<T, L> abs(Pack<T, L> const& x) {
   return select(x < Pack<T, L>(0), -x, x);
 }
-template <class T, int L>
-PLIANT_HOST_DEVICE Pack<T, L> cbrt(Pack<T, L> const& x) {
-  // A step of Newton's method takes away what the logarithm and the exponential round.
-  using P = Pack<T, L>;
-  P const size = abs(x), root = exp(log(size) / P(3));
-  P const better = root - (root - size / (root * root)) / P(3);
-  return select(P(0) < size, select(x < P(0), -better, better), x);
-}
 
 }  // namespace pliant
+
+#include <pliant/openmp/pack_functions.hpp>
