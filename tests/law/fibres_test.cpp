@@ -111,4 +111,40 @@ TEST_CASE("a law whose values are all per element has no parameters", "[law]") {
   CHECK(law_cast<float>(HolzapfelGasserOgden<double>{2, 1, 0.5, 0.1, 5}).k2 == 0.5f);
 }
 
+/// Guccione's law of muscle, its fibres along the first axis, in the components of the strain.
+template <class T>
+struct AlignedMuscle {
+  T c, fibre, transverse, shearing, bulk;
+
+  template <class S, int Dim>
+  PLIANT_HOST_DEVICE S energy(GreenStrain<S, Dim> const& E) const {
+    S across = square(E(1, 1)), shear = square(E(0, 1));
+    if constexpr (Dim == 3) {
+      across = across + square(E(2, 2)) + 2 * square(E(1, 2));
+      shear = shear + square(E(0, 2));
+    }
+    return c / 2 * expm1(fibre * square(E(0, 0)) + transverse * across + 2 * shearing * shear);
+  }
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(CauchyGreenInvariants<S> const& i) const {
+    return bulk / 2 * square(i.J_1);
+  }
+};
+
+TEST_CASE("an energy in components of the strain is that in invariants of the fibre", "[law]") {
+  AlignedMuscle<double> const aligned{2, 4, 1, 3, 5};
+  auto const fibrous = Guccione<double>{2, 4, 1, 3, 5}.at(Direction{{{1}, {0}, {0}}});
+  auto const check = [&]<int Dim>(std::integral_constant<int, Dim>) {
+    Random random(26);
+    for (int state = 0; state < 20; ++state) {
+      auto const h = random_state<Dim>(random), dh = random.tensor<Dim>(1);
+      CHECK(energy_density(aligned, h) == Approx(energy_density(fibrous, h)).epsilon(1e-12));
+      CHECK(largest<Dim>(stress(aligned, h) - stress(fibrous, h)) < 1e-12);
+      CHECK(largest<Dim>(stress_change(aligned, h, dh) - stress_change(fibrous, h, dh)) < 1e-11);
+    }
+  };
+  check(std::integral_constant<int, 2>{});
+  check(std::integral_constant<int, 3>{});
+}
+
 }  // namespace pliant::test

@@ -23,10 +23,10 @@ struct AnySheet {
 template <Ask ask, class L>
 AnySheet any_sheet(L solid, Kind kind) {
   // Fibres that leave the plane would shear the sheet across its thickness.
-  if constexpr (requires { solid.f; }) solid.f = {{{0.6}, {0.8}, {0}}};
-  if constexpr (requires { solid.a1; }) {
-    solid.a1 = {{{0.6}, {0.8}, {0}}};
-    solid.a2 = {{{0.96}, {-0.28}, {0}}};
+  if constexpr (requires { solid.fibres; }) {
+    solid.fibres[0] = {{{0.6}, {0.8}, {0}}};
+    if constexpr (std::extent_v<decltype(solid.fibres)> > 1)
+      solid.fibres[1] = {{{0.96}, {-0.28}, {0}}};
   }
   detail::Sheet<L> const sheet{solid};
   AnySheet any{any_law<ask, 2, double>(sheet, kind), {}, {}};

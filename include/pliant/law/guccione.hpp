@@ -18,19 +18,16 @@ struct Guccione {
 
   static constexpr int element_values = 3;
 
-  /// The law of an element with fibres along f.
+  /// The law of an element with its direction.
   template <class S>
   struct Along {
     Guccione law;
-    Vector<S, 3> f;
+    Vector<S, 3> fibres[1];
 
-    template <class V, int Dim>
-    PLIANT_HOST_DEVICE V energy(GreenStrain<V, Dim> const& E) const {
-      auto const Ef = E.times(f);
-      // In no frame: E_fs² + E_fn² = |E f|² − E_ff², and E:E has the rest.
-      V const ff = square(E.along(f, Ef)), shear = dot(Ef, Ef) - ff;
-      V const across = E.squares() - ff - 2 * shear;
-      V const Q = law.fibre * ff + law.transverse * across + 2 * law.shearing * shear;
+    template <class V>
+    PLIANT_HOST_DEVICE V energy(FibreStrain<V> const& E) const {
+      V const Q =
+          law.fibre * square(E.along) + law.transverse * E.across + 2 * law.shearing * E.shear;
       return law.c / 2 * expm1(Q);
     }
     template <class V>
@@ -40,7 +37,7 @@ struct Guccione {
   };
   template <class S>
   PLIANT_HOST_DEVICE Along<S> at(Vector<S, 3> const& f) const {
-    return {*this, detail::normalised(f)};
+    return {*this, {detail::normalised(f)}};
   }
 };
 

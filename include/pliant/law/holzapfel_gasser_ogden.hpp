@@ -22,33 +22,27 @@ struct HolzapfelGasserOgden {
 
   static constexpr int element_values = 6;
 
-  /// The law of an element with fibres along a₁ and a₂.
+  /// The law of an element with its directions.
   template <class S>
   struct Along {
     HolzapfelGasserOgden law;
-    Vector<S, 3> a1, a2;
+    Vector<S, 3> fibres[2];
 
     template <class V>
     PLIANT_HOST_DEVICE V energy(IsochoricInvariants<V> const& i) const {
       return law.mu / 2 * i.I1_3 + law.bulk / 2 * square(i.J_1);
     }
-    template <class V, int Dim>
-    PLIANT_HOST_DEVICE V energy(GreenStrain<V, Dim> const& E) const {
-      return family(a1, E) + family(a2, E);
-    }
-
-   private:
-    template <class V, int Dim>
-    PLIANT_HOST_DEVICE V family(Vector<S, 3> const& a, GreenStrain<V, Dim> const& E) const {
-      V const I1_3 = 2 * dot(a, a) * E.trace(), I4_1 = 2 * E.along(a, E.times(a));
-      V const strain = law.dispersion * I1_3 + (1 - 3 * law.dispersion) * I4_1;
+    template <class V>
+    PLIANT_HOST_DEVICE V energy(FibreStretch<V> const& i) const {
+      V const strain = law.dispersion * i.I1_3 + (1 - 3 * law.dispersion) * i.I4_1;
       return law.k1 / (2 * law.k2) * expm1(law.k2 * square(max(strain, V(0))));
     }
   };
   template <class S>
   PLIANT_HOST_DEVICE Along<S> at(Vector<S, 6> const& a) const {
-    return {*this, detail::normalised(Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
-            detail::normalised(Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})};
+    return {*this,
+            {detail::normalised(Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
+             detail::normalised(Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})}};
   }
 };
 

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include <pliant/law/elastic.hpp>
+#include <pliant/law/fibre_invariants.hpp>
 #include <pliant/law/green_strain.hpp>
 #include <pliant/law/invariants.hpp>
 #include <pliant/law/isochoric_invariants.hpp>
@@ -65,11 +66,10 @@ struct ChooseSets<L, SetList<Set, Sets...>, Chosen...>
 
 /// The sets of invariants in which a law writes its energy, or the parts of it.
 template <class L, int Dim, class V = Dual<double, 1>>
-using sets_of =
-    typename ChooseSets<L,
-                        SetList<StrainInvariants<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
-                                PrincipalInvariants<V>, IsochoricInvariants<V>, MooneyInvariants<V>,
-                                GreenStrain<V, Dim>, PrincipalStretches<V>>>::type;
+using sets_of = typename ChooseSets<
+    L, SetList<StrainInvariants<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
+               PrincipalInvariants<V>, IsochoricInvariants<V>, MooneyInvariants<V>,
+               GreenStrain<V, Dim>, FibreStretch<V>, FibreStrain<V>, PrincipalStretches<V>>>::type;
 
 }  // namespace detail
 
@@ -128,7 +128,11 @@ namespace detail {
 
 template <class Set, class L, class S, int Dim>
 PLIANT_HOST_DEVICE S energy_in(L const& law, Tensor<S, Dim> const& h) {
-  return law.energy(Set::template rebind<S>::of(h));
+  using Family = typename Set::template rebind<S>;
+  if constexpr (requires { Family::energy_of(law, h); })
+    return Family::energy_of(law, h);
+  else
+    return law.energy(Family::of(h));
 }
 template <class Set, class L, class S, int Dim>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress_in(L const& law, Tensor<S, Dim> const& h) {

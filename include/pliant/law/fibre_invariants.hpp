@@ -1,0 +1,153 @@
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include <pliant/law/invariants.hpp>
+
+// Sets of invariants in which a law with fibres may write its energy. Its point has `fibres`, an array
+// of directions, unit vectors or 0; the energies along all of them add up. Made from the Green strain
+// E = (FᵀF − I)/2 and the direction a; in 2D the strain is plane.
+namespace pliant {
+
+namespace detail {
+
+/// E a, its components in the 2 or 3 dimensions.
+template <class S, int Dim, class C>
+PLIANT_HOST_DEVICE Vector<S, Dim> strain_along(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
+  Vector<S, Dim> product;
+  for (int i = 0; i < Dim; ++i) {
+    product[i] = e(i, 0) * a[0];
+    for (int j = 1; j < Dim; ++j) product[i] = product[i] + e(i, j) * a[j];
+  }
+  return product;
+}
+/// a·E a, by the products of a's components, which are the same at all points of an element.
+template <class S, int Dim, class C>
+PLIANT_HOST_DEVICE S strain_of_line(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
+  S sum = e(0, 0) * (a[0] * a[0]);
+  for (int i = 1; i < Dim; ++i) {
+    sum = sum + e(i, i) * (a[i] * a[i]);
+    for (int j = 0; j < i; ++j) sum = sum + e(i, j) * (2 * a[i] * a[j]);
+  }
+  return sum;
+}
+
+/// ∂W/∂E of the energy along one fibre.
+template <class Family, class L, class S, int Dim, class C>
+PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress_along(L const& law, Vector<C, 3> const& a,
+                                                      Tensor<S, Dim> const& e) {
+  using Variable = Dual<S, Family::count>;
+  Family const i = Family::of(e, a);
+  typename Family::template rebind<Variable> variables;
+  for (int k = 0; k < Family::count; ++k) variables[k] = Variable::variable(i[k], k);
+  Variable const w = law.energy(variables);
+  Family slopes;
+  for (int k = 0; k < Family::count; ++k) slopes[k] = w.derivative[k];
+  return slopes.second_stress(e, a);
+}
+
+template <class L>
+using FibresOf = std::make_index_sequence<std::extent_v<decltype(L::fibres)>>;
+
+template <class Family, class L, class S, int Dim, std::size_t... K>
+PLIANT_HOST_DEVICE S energy_along_fibres(L const& law, Tensor<S, Dim> const& h,
+                                         std::index_sequence<K...>) {
+  auto const e = GreenInvariants<S>::strain(h);
+  return (law.energy(Family::of(e, law.fibres[K])) + ...);
+}
+/// P = F S with the second Piola-Kirchhoff stress S = Σ ∂W/∂E.
+template <class Family, class L, class S, int Dim, std::size_t... K>
+PLIANT_HOST_DEVICE Tensor<S, Dim> stress_along_fibres(L const& law, Tensor<S, Dim> const& h,
+                                                      std::index_sequence<K...>) {
+  auto const e = GreenInvariants<S>::strain(h);
+  auto const second = (second_stress_along<Family>(law, law.fibres[K], e) + ...);
+  return second + h * second;
+}
+
+}  // namespace detail
+
+/// How a family of fibres is stretched: I₁ − 3 and I₄ − 1 with I₄ = a·C a. Both are 0 where a is.
+template <class S>
+struct FibreStretch {
+  static constexpr int count = 2;
+  S I1_3;  // I₁ − 3
+  S I4_1;  // I₄ − 1
+
+  template <class T>
+  using rebind = FibreStretch<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? I1_3 : I4_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? I1_3 : I4_1; }
+
+  template <class C, int Dim>
+  PLIANT_HOST_DEVICE static FibreStretch of(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
+    return {2 * dot(a, a) * trace(e), 2 * detail::strain_of_line(e, a)};
+  }
+  /// ∂W/∂E, where these are the derivatives of W by the invariants.
+  template <class C, int Dim>
+  PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress(Tensor<S, Dim> const&,
+                                                  Vector<C, 3> const& a) const {
+    Tensor<S, Dim> second;
+    S const line = I4_1 + I4_1;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = i; j < Dim; ++j) second(i, j) = second(j, i) = line * (a[i] * a[j]);
+    S const round = 2 * dot(a, a) * I1_3;
+    for (int i = 0; i < Dim; ++i) second(i, i) = second(i, i) + round;
+    return second;
+  }
+  template <class L, int Dim>
+  PLIANT_HOST_DEVICE static S energy_of(L const& law, Tensor<S, Dim> const& h) {
+    return detail::energy_along_fibres<FibreStretch>(law, h, detail::FibresOf<L>{});
+  }
+  template <class L, int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress_of(L const& law, Tensor<S, Dim> const& h) {
+    return detail::stress_along_fibres<FibreStretch>(law, h, detail::FibresOf<L>{});
+  }
+};
+
+/// The strain along a fibre a, about it, and between both, in any frame with s and n across a: E_aa;
+/// E_ss² + E_nn² + 2 E_sn²; E_as² + E_an². Where a is 0 the second is E:E and the others are 0.
+template <class S>
+struct FibreStrain {
+  static constexpr int count = 3;
+  S along, across, shear;
+
+  template <class T>
+  using rebind = FibreStrain<T>;
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? along : k == 1 ? across : shear; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const {
+    return k == 0 ? along : k == 1 ? across : shear;
+  }
+
+  /// In no frame: E_as² + E_an² = |E a|² − E_aa², and E:E has the rest.
+  template <class C, int Dim>
+  PLIANT_HOST_DEVICE static FibreStrain of(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
+    auto const line = detail::strain_along(e, a);
+    S const aa = detail::strain_of_line(e, a), shear = dot(line, line) - square(aa);
+    return {aa, dot(e, e) - square(aa) - (shear + shear), shear};
+  }
+  /// ∂W/∂E, where these are the derivatives of W by the invariants.
+  template <class C, int Dim>
+  PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress(Tensor<S, Dim> const& e,
+                                                  Vector<C, 3> const& a) const {
+    auto side = detail::strain_along(e, a);
+    S const round = across + across, mixed = shear - round;
+    S const half = along / 2 + (across - shear) * detail::strain_of_line(e, a);
+    for (int i = 0; i < Dim; ++i) side[i] = mixed * side[i] + half * a[i];
+    Tensor<S, Dim> second;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = i; j < Dim; ++j)
+        second(i, j) = second(j, i) = round * e(i, j) + (side[i] * a[j] + side[j] * a[i]);
+    return second;
+  }
+  template <class L, int Dim>
+  PLIANT_HOST_DEVICE static S energy_of(L const& law, Tensor<S, Dim> const& h) {
+    return detail::energy_along_fibres<FibreStrain>(law, h, detail::FibresOf<L>{});
+  }
+  template <class L, int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress_of(L const& law, Tensor<S, Dim> const& h) {
+    return detail::stress_along_fibres<FibreStrain>(law, h, detail::FibresOf<L>{});
+  }
+};
+
+}  // namespace pliant
