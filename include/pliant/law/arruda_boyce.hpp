@@ -17,16 +17,14 @@ struct ArrudaBoyce {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
-    T const per_square = 1 / square(locking);
-    S const I1 = 3 + i.I1_3;
-    // Ī₁ᵏ − 3ᵏ = (Ī₁ − 3) (Ī₁ᵏ⁻¹ + 3 Ī₁ᵏ⁻² + ... + 3ᵏ⁻¹)
-    S quotient = S(1), sum = S(T(coefficient(1)));
-    T power = T(1), threes = T(1);
-    for (int k = 2; k <= 5; ++k) {
-      threes = 3 * threes;
-      power = power * per_square;
-      quotient = I1 * quotient + threes;
-      sum = sum + T(coefficient(k)) * power * quotient;
+    // Σ aₖ (uᵏ − u₀ᵏ) = (u − u₀) Σ eₘ uᵐ with eₘ = aₘ₊₁ + u₀ eₘ₊₁, which is 0 for m = 5
+    T const per_square = 1 / square(locking), rest = 3 * per_square;
+    S const u = (3 + i.I1_3) * per_square;
+    T factor = T(coefficient(5));
+    S sum = S(factor);
+    for (int k = 4; k >= 1; --k) {
+      factor = T(coefficient(k)) + rest * factor;
+      sum = u * sum + factor;
     }
     return mu * i.I1_3 * sum + bulk / 2 * square(i.J_1);
   }

@@ -47,25 +47,31 @@ struct Corotated {
     }
   };
   /// By Laguerre's method from √(3 I₁), which lies above all roots: 3 steps are exact to 12 digits
-  /// at stretches of 0.3 to 3. Two steps of Newton's then bring derivatives of both orders.
+  /// at stretches of 0.3 to 3. A step of Newton's method brings the last digits.
   template <class S>
   PLIANT_HOST_DEVICE static S trace_beyond_volume(PrincipalInvariants<S> const& i) {
-    using V = std::remove_cvref_t<decltype(plain_value(i.D1))>;
-    V const flattest =
-        V(builtin_scalar<S>(1e-3));  // the slope is 0 where two stretches add up to 0
-    Quartic<V> const q(
-        PrincipalInvariants<V>{plain_value(i.D1), plain_value(i.D2), plain_value(i.J_1)});
-    V root = 3 * q.x / (sqrt(9 + 3 * q.x) + 3) - q.J_1;
+    Quartic<S> const q(i);
+    S root = 3 * q.x / (sqrt(9 + 3 * q.x) + 3) - q.J_1;
     for (int step = 0; step < 5; ++step) {
-      V const p = q.value(root), slope = q.slope(root);
-      V const reach = sqrt(max(9 * square(slope) - 12 * p * q.curvature(root), V(0)));
-      root = root - 4 * p / max(slope + reach, flattest);
+      S const p = q.value(root), slope = q.slope(root);
+      S const reach = sqrt(max(9 * square(slope) - 12 * p * q.curvature(root), S(0)));
+      root = root - 4 * p / max(slope + reach, flattest<S>());
     }
-    Quartic<S> const polynomial(i);
-    S s = S(root);
-    for (int step = 0; step < 2; ++step)
-      s = s - polynomial.value(s) / max(polynomial.slope(s), S(flattest));
-    return s;
+    return root - q.value(root) / max(q.slope(root), flattest<S>());
+  }
+  /// On dual numbers, the derivative of the root: that of the quartic over its slope.
+  template <class S, int N>
+  PLIANT_HOST_DEVICE static Dual<S, N> trace_beyond_volume(
+      PrincipalInvariants<Dual<S, N>> const& i) {
+    PrincipalInvariants<S> const values{i.D1.value, i.D2.value, i.J_1.value};
+    S const root = trace_beyond_volume(values);
+    S const slope = max(Quartic<S>(values).slope(root), flattest<S>());
+    return root - Quartic<Dual<S, N>>(i).value(Dual<S, N>(root)) * (1 / slope);
+  }
+  /// The slope is 0 where two stretches add up to 0.
+  template <class S>
+  PLIANT_HOST_DEVICE static S flattest() {
+    return S(builtin_scalar<S>(1e-3));
   }
 };
 

@@ -28,10 +28,10 @@ struct PrincipalInvariants {
     if constexpr (Dim == 2) {
       return {first.D, first.D + square(first.J_1), first.J_1};
     } else {
-      // I₂ = |cof F|² and, with C = cof F − I, tr C = 2 tr H + tr cof H.
-      Tensor<S, 3> const c = cofactor_less_identity(h);
-      S const beyond = determinant_beyond_trace(h), minors = pliant::trace(cofactor(h));
-      return {first.D, dot(c, c) + 2 * minors - 4 * beyond, first.J_1};
+      // I₂ − 3 = 4 tr E + 2 ((tr E)² − E:E), and 2 tr E = I₁ − 3.
+      Tensor<S, 3> const e = GreenInvariants<S>::strain(h);
+      S const beyond = square(pliant::trace(e)) - dot(e, e);
+      return {first.D, 2 * (first.D + beyond), first.J_1};
     }
   }
   /// With ∂I₂/∂F = 2 (I₁ F − F C) = 4 F (I + tr E I − E).
@@ -51,6 +51,21 @@ struct PrincipalInvariants {
   }
 };
 
+namespace detail {
+
+/// Powers of J, all with one division beside that of the cube root.
+template <class S>
+struct PowersOfJ {
+  S x, inverse_square, inverse;  // J^(1/3), J^(−2/3), 1/J
+
+  PLIANT_HOST_DEVICE explicit PowersOfJ(S const& J_1)
+      : x(cbrt(1 + J_1)), inverse_square(1 / square(x)), inverse(square(inverse_square) * x) {}
+  /// J^(1/3) − 1
+  PLIANT_HOST_DEVICE S less_one(S const& J_1) const { return J_1 / (square(x) + x + 1); }
+};
+
+}  // namespace detail
+
 /// Of the isochoric part of a deformation, Ī₁ − 3 with Ī₁ = J^(−2/3) I₁, and J − 1. For J > 0.
 template <class S>
 struct IsochoricInvariants {
@@ -65,22 +80,23 @@ struct IsochoricInvariants {
 
   /// Ī₁ − 3 = (D + 3 + 2(J − 1) − 3 x²)/x² with x = J^(1/3), whose terms but D make (x − 1)² (2x +
   /// 1).
-  PLIANT_HOST_DEVICE static S first(S const& D, S const& x, S const& x_1) {
-    return (D + square(x_1) * (2 * x + 1)) / square(x);
+  PLIANT_HOST_DEVICE static S first(S const& D, S const& x, S const& x_1, S const& inverse_square) {
+    return (D + square(x_1) * (2 * x + 1)) * inverse_square;
   }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static IsochoricInvariants of(Tensor<S, Dim> const& h) {
     auto const i = CauchyGreenInvariants<S>::of(h);
-    S const x = cbrt(1 + i.J_1), x_1 = i.J_1 / (square(x) + x + 1);
-    return {first(i.D, x, x_1), i.J_1};
+    detail::PowersOfJ<S> const J(i.J_1);
+    return {first(i.D, J.x, J.less_one(i.J_1), J.inverse_square), i.J_1};
   }
   template <int Dim>
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(IsochoricInvariants const& w,
                                                   Tensor<S, Dim> const& h) {
     auto const i = CauchyGreenInvariants<S>::of(h);
-    S const x = cbrt(1 + i.J_1), by_D = w.I1_3 / square(x);
-    S const by_J = 2 * by_D * (i.J_1 - i.D) / (3 * (1 + i.J_1));
+    detail::PowersOfJ<S> const J(i.J_1);
+    S const by_D = w.I1_3 * J.inverse_square;
+    S const by_J = builtin_scalar<S>(2.0 / 3) * by_D * (i.J_1 - i.D) * J.inverse;
     return CauchyGreenInvariants<S>::stress({by_D, w.J_1 + by_J}, h);
   }
 };
@@ -105,18 +121,22 @@ struct MooneyInvariants {
   template <int Dim>
   PLIANT_HOST_DEVICE static MooneyInvariants of(Tensor<S, Dim> const& h) {
     auto const i = PrincipalInvariants<S>::of(h);
-    S const x = cbrt(1 + i.J_1), x_1 = i.J_1 / (square(x) + x + 1);
+    detail::PowersOfJ<S> const J(i.J_1);
+    S const x_1 = J.less_one(i.J_1);
     S const cofactors_D = i.D2 - 2 * square(i.J_1);  // I₂ − 3 − 2(J² − 1)
-    return {IsochoricInvariants<S>::first(i.D1, x, x_1),
-            IsochoricInvariants<S>::first(cofactors_D, square(x), x_1 * (x + 1)), i.J_1};
+    return {IsochoricInvariants<S>::first(i.D1, J.x, x_1, J.inverse_square),
+            IsochoricInvariants<S>::first(cofactors_D, square(J.x), x_1 * (J.x + 1),
+                                          square(J.inverse_square)),
+            i.J_1};
   }
   template <int Dim>
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(MooneyInvariants const& w,
                                                   Tensor<S, Dim> const& h) {
     auto const i = PrincipalInvariants<S>::of(h);
-    S const J = 1 + i.J_1, x = cbrt(J);
-    S const by_D1 = w.I1_3 / square(x), by_D2 = w.I2_3 / (x * J);
-    S const by_J = 2 * (by_D1 * (i.J_1 - i.D1) - 2 * by_D2 * (i.J_1 + i.D2)) / (3 * J);
+    detail::PowersOfJ<S> const J(i.J_1);
+    S const by_D1 = w.I1_3 * J.inverse_square, by_D2 = w.I2_3 * square(J.inverse_square);
+    S const by_J = builtin_scalar<S>(2.0 / 3) * J.inverse *
+                   (by_D1 * (i.J_1 - i.D1) - 2 * by_D2 * (i.J_1 + i.D2));
     return PrincipalInvariants<S>::stress({by_D1, by_D2, w.J_1 + by_J}, h);
   }
 };

@@ -37,16 +37,6 @@ struct Dual {
 template <class T, int N>
 struct BuiltinScalar<Dual<T, N>> : BuiltinScalar<T> {};
 
-/// The number itself, without its derivatives, those of first and of second order.
-template <class T>
-PLIANT_HOST_DEVICE constexpr T const& plain_value(T const& x) {
-  return x;
-}
-template <class T, int N>
-PLIANT_HOST_DEVICE constexpr auto const& plain_value(Dual<T, N> const& x) {
-  return plain_value(x.value);
-}
-
 /// What takes part in an expression with duals as a constant.
 template <class C, class T>
 concept ConstantFor = std::constructible_from<T, C const&>;
@@ -115,8 +105,10 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N> operator*(C const& c, Dual<T, N> const& 
 }
 template <class T, int N, ConstantFor<T> C>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> operator/(Dual<T, N> const& x, C const& c) {
-  T const inverse = T(1) / T(c);
-  return x.chain(x.value * inverse, inverse);
+  if constexpr (Arithmetic<C>)  // one division for all lanes of a pack, none for a literal
+    return x * (1 / static_cast<builtin_scalar<T>>(c));
+  else
+    return x * (T(1) / T(c));
 }
 template <class T, int N, ConstantFor<T> C>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> operator/(C const& c, Dual<T, N> const& x) {
@@ -156,6 +148,10 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N> select(Condition const& condition, Dual<
 }
 
 template <class T, int N>
+PLIANT_HOST_DEVICE constexpr Dual<T, N> square(Dual<T, N> const& x) {
+  return x.chain(x.value * x.value, x.value + x.value);
+}
+template <class T, int N>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> sqrt(Dual<T, N> const& x) {
   T const root = sqrt(x.value);
   return x.chain(root, T(1) / (T(2) * root));
@@ -175,8 +171,7 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N> exp(Dual<T, N> const& x) {
 }
 template <class T, int N>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> expm1(Dual<T, N> const& x) {
-  T const less_one = expm1(x.value);
-  return x.chain(less_one, T(1) + less_one);
+  return x.chain(expm1(x.value), exp(x.value));  // where only the slope counts, exp alone is left
 }
 template <class T, int N>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> cbrt(Dual<T, N> const& x) {
