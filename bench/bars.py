@@ -1,4 +1,5 @@
 """The bars that the benchmarks are held against, by backend."""
+import re
 from dataclasses import dataclass
 from typing import Callable
 
@@ -42,6 +43,34 @@ def faster(over, under, element, precision, what="force"):
     return lambda r: r.items(*at, over, CPU) / r.items(*at, under, CPU)
 
 
+def law_times(r):
+    """(force or tangent, element, law, precision): seconds as derived, and by hand."""
+    times = {}
+    for name in r.runs:
+        found = re.fullmatch(r"(force|tangent) (derived|by hand)/(\w+)/(\w+)/(\w+)/[^/]+/\d+", name)
+        if found:
+            what, how, *rest = found.groups()
+            times.setdefault((what, *rest), {})[how] = r.seconds(name)
+    return {at: both for at, both in times.items() if len(both) == 2}
+
+
+def dearest_law(what):
+    """The worst ratio over laws, elements and precisions, derived over by hand."""
+
+    def measure(r):
+        ratios = [t["derived"] / t["by hand"] for at, t in law_times(r).items() if at[0] == what]
+        if not ratios:
+            raise KeyError(f"{what} derived")
+        return max(ratios)
+
+    return measure
+
+
+LAWS = [
+    Bar(f"{what} of the dearest law, derived over by hand", dearest_law(what), 1.1, at_most=True)
+    for what in ("force", "tangent")
+]
+
 OPENMP = [
     Bar("Tet4 float force, of FMA peak", share_of_peak("Tet4"), 0.20, "%"),
     Bar("Hex8 float force, of FMA peak", share_of_peak("Hex8"), 0.38, "%"),
@@ -64,6 +93,7 @@ OPENMP = [
         for precision in ("float", "double")
     ),
     Bar("Tet4 criteria every 8 steps, of the run", checks_cost("OpenMP-1", CPU), 0.02, "%", True),
+    *LAWS,
 ]
 
 
@@ -158,6 +188,7 @@ CUDA = [
         )
         for precision, size, peer in ASSEMBLED
     ),
+    *LAWS,
 ]
 
 BARS = {"openmp": OPENMP, "cuda": CUDA}

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from bars import BARS  # noqa: E402
+from bars import BARS, law_times  # noqa: E402
 
 
 class Results:
@@ -121,6 +121,18 @@ def run_rows(results):
         ]  # fmt: skip
 
 
+def law_rows(results):
+    """A row per law: the time as the library derives it over that by hand."""
+    times = law_times(results)
+    for what, law in dict.fromkeys((at[0], at[2]) for at in times):
+        row = [what, law]
+        for element in ("Tet4", "Hex8"):
+            for precision in ("float", "double"):
+                both = times.get((what, element, law, precision))
+                row.append(f"{both['derived'] / both['by hand']:.2f}" if both else "")
+        yield row
+
+
 def main():
     data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     results = Results(data)
@@ -135,6 +147,10 @@ def main():
     if len(sys.argv) < 3:
         return
     ceilings = markdown(["ceiling", "measured", "variation"], ceiling_rows(results))
+    laws = markdown(
+        ["what", "law", "Tet4 float", "Tet4 double", "Hex8 float", "Hex8 double"],
+        sorted(law_rows(results)),
+    )
     runs = markdown(
         ["what", "element", "law", "precision", "backend", "elements", "time", "elements/s",
          "of copy", "of FMA", "variation"],
@@ -157,6 +173,13 @@ Ratios of rates measured in this run, unless a row quotes a peer.
 A node add adds three values to a node at random. Copies count bytes read and bytes written.
 
 {ceilings}
+
+## Laws
+
+The time of forces and tangent products as the library derives them from the energy, over that of
+the same law with its stress, or its tangent too, written by hand (bench/law/by_hand.hpp).
+
+{laws}
 
 ## Everything
 
