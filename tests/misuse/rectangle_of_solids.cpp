@@ -1,4 +1,4 @@
-// expect: mesh::rectangle makes Quad4 or Tri3 elements
+// expect: mesh::rectangle makes plane elements
 #include <pliant/pliant.hpp>
 
 using namespace pliant;
