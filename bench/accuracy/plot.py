@@ -18,10 +18,12 @@ elements = list(dict.fromkeys(row["element"] for row in rows))
 laws = list(dict.fromkeys(row["law"] for row in rows))
 
 quantities = ["force error over largest force", "relative energy error"]
-figure, axes = plt.subplots(len(quantities), len(elements), figsize=(14, 6), sharex=True, sharey="row")
+colours = dict(zip(laws, matplotlib.colormaps["tab20"].colors))
+figure, axes = plt.subplots(len(quantities), len(elements), figsize=(16, 8.5), sharex=True, sharey="row",
+                            layout="constrained")
 for line, quantity in zip(axes, quantities):
     for axis, element in zip(line, elements):
-        for law, colour in zip(laws, ["tab:blue", "tab:orange", "tab:green"]):
+        for law, colour in colours.items():
             for backend, style in zip(backends, ["-", "--"]):
                 points = [(float(r["strain"]), float(r[quantity])) for r in rows
                           if (r["backend"], r["element"], r["law"]) == (backend, element, law)]
@@ -33,7 +35,11 @@ for line, quantity in zip(axes, quantities):
     line[0].set_ylabel(quantity)
 for axis in axes[-1]:
     axis.set_xlabel("strain")
-axes[0][-1].legend(fontsize=7)
+# Every line once, whichever element has it.
+lines = {}
+for axis in axes[0]:
+    lines |= {label: line for line, label in zip(*axis.get_legend_handles_labels())}
+lines = dict(sorted(lines.items()))
+figure.legend(lines.values(), lines.keys(), loc="outside lower center", ncols=5, fontsize=8)
 figure.suptitle("float against Reference<double>; the black line is half a unit in the last place of 1")
-figure.tight_layout()
 figure.savefig(output, dpi=110)
