@@ -28,6 +28,15 @@ template <class T, int L>
 PLIANT_HOST_DEVICE typename Pack<T, L>::Mask bits_of(Pack<T, L> const& x) {
   return std::bit_cast<typename Pack<T, L>::Mask>(x.v);
 }
+/// a − b, which may wrap around.
+template <class T, int L>
+PLIANT_HOST_DEVICE typename Pack<T, L>::Mask wrapped_difference(
+    typename Pack<T, L>::Mask const& a, typename Pack<T, L>::Mask const& b) {
+  using Integer = std::make_unsigned_t<typename Pack<T, L>::Integer>;
+  typedef Integer Unsigned __attribute__((vector_size(sizeof(T) * L)));
+  return std::bit_cast<typename Pack<T, L>::Mask>(std::bit_cast<Unsigned>(a) -
+                                                  std::bit_cast<Unsigned>(b));
+}
 template <class T, int L>
 PLIANT_HOST_DEVICE Pack<T, L> with_bits(typename Pack<T, L>::Mask const& bits) {
   return {std::bit_cast<typename Pack<T, L>::Register>(bits)};
@@ -87,9 +96,9 @@ struct SplitNumber {
 
   PLIANT_HOST_DEVICE explicit SplitNumber(P const& x) {
     constexpr auto root_half = std::bit_cast<typename P::Integer>(T(0.70710678118654752));
-    auto const above = bits_of(x) - root_half;
+    auto const above = wrapped_difference<T, L>(bits_of(x), root_half - typename P::Mask{});
     e = above >> Bits<T>::mantissa;
-    f = with_bits<T, L>(bits_of(x) - (e << Bits<T>::mantissa)) - P(1);
+    f = with_bits<T, L>(wrapped_difference<T, L>(bits_of(x), e << Bits<T>::mantissa)) - P(1);
   }
   /// ln x. With s = f/(2 + f), ln(1 + f) = 2 artanh s = f − f²/2 + s (f²/2 + R), R = Σ 2 s²ᵏ/(2k + 1).
   PLIANT_HOST_DEVICE P log() const {
