@@ -43,26 +43,30 @@ using Vector = Matrix<T, N, 1>;
 template <class T, int N>
 using Tensor = Matrix<T, N, N>;
 
+// Each entry is written once: a copy that is then changed would often stay one, in memory.
 template <class T, int R, int C>
-PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator+(Matrix<T, R, C> a,
+PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator+(Matrix<T, R, C> const& a,
                                                        Matrix<T, R, C> const& b) {
+  Matrix<T, R, C> sum;
   for (int i = 0; i < R; ++i)
-    for (int j = 0; j < C; ++j) a(i, j) = a(i, j) + b(i, j);
-  return a;
+    for (int j = 0; j < C; ++j) sum(i, j) = a(i, j) + b(i, j);
+  return sum;
 }
 template <class T, int R, int C>
-PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator-(Matrix<T, R, C> a,
+PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator-(Matrix<T, R, C> const& a,
                                                        Matrix<T, R, C> const& b) {
+  Matrix<T, R, C> difference;
   for (int i = 0; i < R; ++i)
-    for (int j = 0; j < C; ++j) a(i, j) = a(i, j) - b(i, j);
-  return a;
+    for (int j = 0; j < C; ++j) difference(i, j) = a(i, j) - b(i, j);
+  return difference;
 }
 template <class S, class T, int R, int C>
   requires std::constructible_from<T, S const&>
-PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator*(S const& s, Matrix<T, R, C> a) {
+PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator*(S const& s, Matrix<T, R, C> const& a) {
+  Matrix<T, R, C> product;
   for (int i = 0; i < R; ++i)
-    for (int j = 0; j < C; ++j) a(i, j) = s * a(i, j);
-  return a;
+    for (int j = 0; j < C; ++j) product(i, j) = s * a(i, j);
+  return product;
 }
 template <class T, int R, int K, int C>
 PLIANT_HOST_DEVICE constexpr Matrix<T, R, C> operator*(Matrix<T, R, K> const& a,
