@@ -37,14 +37,7 @@ PLIANT_HOST_DEVICE S strain_of_line(Tensor<S, Dim> const& e, Vector<C, 3> const&
 template <class Family, class L, class S, int Dim, class C>
 PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress_along(L const& law, Vector<C, 3> const& a,
                                                       Tensor<S, Dim> const& e) {
-  using Variable = Dual<S, Family::count>;
-  Family const i = Family::of(e, a);
-  typename Family::template rebind<Variable> variables;
-  for (int k = 0; k < Family::count; ++k) variables[k] = Variable::variable(i[k], k);
-  Variable const w = law.energy(variables);
-  Family slopes;
-  for (int k = 0; k < Family::count; ++k) slopes[k] = w.derivative[k];
-  return slopes.second_stress(e, a);
+  return slopes_of<S>(law, Family::of(e, a)).second_stress(e, a);
 }
 
 template <class L>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include <pliant/math/dual.hpp>
 #include <pliant/math/matrix.hpp>
 
@@ -8,6 +10,25 @@
 // small strain), and knows how its derivatives make up the first Piola-Kirchhoff stress
 // P = Σ ∂W/∂i · ∂i/∂F. In 2D, plane strain: F₃₃ = 1.
 namespace pliant {
+
+namespace detail {
+
+// Made at once: to assign entry by entry would be copies, which compilers do not see through.
+template <class S, class L, class Family, int... K>
+PLIANT_HOST_DEVICE Family slopes_of(L const& law, Family const& i,
+                                    std::integer_sequence<int, K...>) {
+  using Variable = Dual<S, Family::count>;
+  Variable const w =
+      law.energy(typename Family::template rebind<Variable>{Variable::variable(i[K], K)...});
+  return Family{w.derivative[K]...};
+}
+/// The derivatives of an energy by each of its invariants of type S.
+template <class S, class L, class Family>
+PLIANT_HOST_DEVICE Family slopes_of(L const& law, Family const& i) {
+  return slopes_of<S>(law, i, std::make_integer_sequence<int, Family::count>());
+}
+
+}  // namespace detail
 
 /// Of the small strain e = sym H: tr e and e:e.
 template <class S>

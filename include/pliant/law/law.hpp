@@ -140,14 +140,7 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> stress_in(L const& law, Tensor<S, Dim> const& 
   if constexpr (requires { Family::stress_of(law, h); }) {
     return Family::stress_of(law, h);
   } else {
-    Family const i = Family::of(h);
-    typename Family::template rebind<Dual<S, Family::count>> variables;
-    for (int k = 0; k < Family::count; ++k)
-      variables[k] = Dual<S, Family::count>::variable(i[k], k);
-    Dual<S, Family::count> const w = law.energy(variables);
-    Family slopes;
-    for (int k = 0; k < Family::count; ++k) slopes[k] = w.derivative[k];
-    return Family::stress(slopes, h);
+    return Family::stress(slopes_of<S>(law, Family::of(h)), h);
   }
 }
 
