@@ -50,20 +50,24 @@ void check_twins(std::string const& name, A const& derived, B const& by_hand) {
 
 /// The values per element of a law with fibres: the same for all.
 template <class L>
-inline constexpr std::array<double, 0> fibres{};
-template <LawPerElement L>
-  requires(L::element_values == 3)
-inline constexpr std::array<double, 3> fibres<L>{3, 4, 1};
-template <LawPerElement L>
-  requires(L::element_values == 6)
-inline constexpr std::array<double, 6> fibres<L>{2, 1, 1, -1, 2, 0.5};
+constexpr auto fibres() {
+  if constexpr (!LawPerElement<L>) {
+    return std::array<double, 0>{};
+  } else if constexpr (L::element_values == 3) {
+    return std::array<double, 3>{3, 4, 1};
+  } else {
+    static_assert(L::element_values == 6);
+    return std::array<double, 6>{2, 1, 1, -1, 2, 0.5};
+  }
+}
 
 /// The law at a point of any element.
 template <class L>
 auto at_any_element(L const& law) {
   if constexpr (LawPerElement<L>) {
     Vector<double, L::element_values> values;
-    for (int k = 0; k < L::element_values; ++k) values[k] = fibres<L>[static_cast<std::size_t>(k)];
+    constexpr auto all = fibres<L>();
+    for (int k = 0; k < L::element_values; ++k) values[k] = all[static_cast<std::size_t>(k)];
     return law.at(values);
   } else {
     return law;
@@ -84,7 +88,7 @@ struct TimedLaw {
  private:
   static std::vector<T> rows(Index elements) {
     std::vector<T> all;
-    for (double x : fibres<L>) all.insert(all.end(), static_cast<std::size_t>(elements), T(x));
+    for (double x : fibres<L>()) all.insert(all.end(), static_cast<std::size_t>(elements), T(x));
     return all;
   }
 };
