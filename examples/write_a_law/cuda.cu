@@ -1,5 +1,5 @@
 #include <pliant/cuda.hpp>
 
-#include "write_a_law/write_a_law.hpp"
+#include "write_a_law.hpp"
 
 int main() { write_a_law::run(pliant::Cuda<double>{}); }

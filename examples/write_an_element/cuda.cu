@@ -1,5 +1,5 @@
 #include <pliant/cuda.hpp>
 
-#include "write_an_element/write_an_element.hpp"
+#include "write_an_element.hpp"
 
 int main() { write_an_element::run(pliant::Cuda<double>{}); }
