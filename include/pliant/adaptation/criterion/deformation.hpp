@@ -33,7 +33,8 @@ struct AreaRatio {
     using T = builtin_scalar<S>;
     // One point integrates the area of a bilinear quadrilateral, two per direction the volume of a
     // trilinear hexahedron.
-    using Q = std::conditional_t<State::dim == 2 || LinearSimplex<E>, Gauss<1>, Gauss<2>>;
+    constexpr bool one_point = E::degree == 1 && (State::dim == 2 || LinearSimplex<E>);
+    using Q = std::conditional_t<one_point, Gauss<1>, Gauss<E::degree + 1>>;
     constexpr auto table = tabulate<E, Q, T>();
     auto const x = Coefficients<E, S>::of(e.rest), v = Coefficients<E, S>::of(e.u);
     S change(0), volume(0);

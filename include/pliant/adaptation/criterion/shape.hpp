@@ -7,8 +7,8 @@
 namespace pliant {
 
 /// 1 for the regular cell, growing as it degenerates (Verdict's `aspect_ratio`): triangle
-/// l_max Σl/(4√3 A), quadrilateral l_max Σl/(4 A), tetrahedron l_max ΣA_f/(6√6 V); hexahedron: the
-/// longest over the shortest of all twelve edges.
+/// l_max Σl/(4√3 A), quadrilateral l_max Σl/(4 A), tetrahedron l_max ΣA_f/(6√6 V); other
+/// solids: the longest over the shortest of all edges.
 struct AspectRatio {
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
@@ -22,7 +22,7 @@ struct AspectRatio {
       longest = max(longest, length);
       shortest = min(shortest, length);
     }
-    if constexpr (std::same_as<typename E::cell, Hexahedron>) {
+    if constexpr (State::dim == 3 && !std::same_as<typename E::cell, Tetrahedron>) {
       return longest / shortest;
     } else {
       auto const x = e.current();

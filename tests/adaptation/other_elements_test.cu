@@ -1,0 +1,1 @@
+#include "adaptation/other_elements_suite.hpp"
