@@ -65,7 +65,7 @@ void small_strain(Table& table) {
 /// is constant in each of them, and errors fall as h².
 template <Element E>
 void almost_incompressible(Table& table, std::vector<int> const& sizes) {
-  using F = Formulation<E, FBar<Full<E>>, Hooke>;
+  using F = Formulation<E, FBar<Gauss<E::degree + 1>>, Hooke>;
   auto const runs =
       bent<F>(Hooke<double>::from({240.565, .4999, 1}), 100, sizes, 3, {.tolerance = 1e-5});
   table.approach(labels<F>("nu = .4999", "uy(A)"), runs, 0, printed("7.695"), 2);
@@ -133,6 +133,7 @@ void slabs(Table& table) {
 
 }  // namespace pliant::verification
 
+#if !defined(ROWS_OF_MUTANTS)
 int main(int argc, char** argv) {
   using namespace pliant::verification;
   Table table("Cook's membrane (3)", argc, argv);
@@ -140,3 +141,4 @@ int main(int argc, char** argv) {
   slabs(table);
   return table.finish();
 }
+#endif
