@@ -22,7 +22,7 @@ function(pliant_test)
   # Most tests take longer to optimise than to run. What the optimiser makes of kernels is looked at by
   # those that compare backends.
   if(NOT arg_NAME MATCHES "^(backend|openmp)/")
-    target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
+    target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O0>)
   endif()
 
   set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")
