@@ -36,4 +36,4 @@ for panel, axis in zip(panels, axes.flat):
     axis.grid(True, which="major", alpha=0.3)
     axis.legend(fontsize=4.5, loc="best")
 figure.tight_layout()
-figure.savefig(output, dpi=110)
+figure.savefig(output, dpi=60)
