@@ -111,8 +111,9 @@ class Table {
   void plot(Labels const& labels, Runs const& runs, std::vector<double> const& errors) {
     if (!csv_.is_open() || runs.size() < 2) return;
     for (std::size_t i = 0; i < runs.size(); ++i)
-      csv_ << '"' << title_ << "\",\"" << labels.problem << "\",\"" << labels.composition << "\","
-           << runs[i].n << ',' << errors[i] << '\n';
+      csv_ << '"' << title_ << "\",\"" << labels.problem << (labels.meshes.empty() ? "" : ", ")
+           << labels.meshes << "\",\"" << labels.composition << "\"," << runs[i].n << ','
+           << errors[i] << '\n';
   }
   void print(Labels const& labels, Runs const& runs, std::string const& value,
              std::string const& reference, double error, std::string const& allowed,
