@@ -2,7 +2,8 @@
 
 #include <map>
 
-#include <pliant/backend/dispatch.hpp>
+#include <pliant/adaptation/family_momentum.hpp>
+#include <pliant/adaptation/inheritance.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/mesh/hierarchy.hpp>
@@ -64,104 +65,6 @@ inline std::vector<Facet<2>> facets_of(Hierarchy const& tree, int mark) {
   std::vector<Facet<2>> facets;
   for (auto const& facet : tree.facets_of(mark)) facets.push_back({facet.nodes[0], facet.nodes[1]});
   return facets;
-}
-
-/// Where a point of a child lies on its parent's cell; the fourth child of a triangle is turned by half a
-/// turn.
-template <class Cell>
-Vector<double, 2> on_parent(Vector<double, 2> const& xi, int child) {
-  if (child < Cell::corners) return 0.5 * (Cell::corner(child) + xi);
-  Vector<double, 2> const middle{{{0.5}, {0.5}}};
-  return middle - 0.5 * xi;
-}
-
-/// Appends what the points of an element remember: what the nearest point of its ancestor does.
-template <class Table>
-void inherit_history(Table const&, std::vector<double> const& rows, std::size_t ancestor, Tag tag,
-                     std::vector<int> const& children, std::vector<double>& history) {
-  constexpr int width = Table::Laws::history_count;
-  if constexpr (width > 0) {
-    std::size_t const first = history.size();
-    history.resize(first + std::size_t{width}, 0.0);
-    auto const fill = [&]<int G>(GroupNumber<G>) {
-      using F = typename Table::template formulation<G>;
-      if constexpr (history_size<F> > 0) {
-        using Cell = typename F::element::cell;
-        constexpr auto rule = F::quadrature::template rule<Cell>();
-        constexpr int size = history_size<F> / F::points;
-        for (int q = 0; q < F::points; ++q) {
-          Vector<double, 2> at{{{rule.points[q][0]}, {rule.points[q][1]}}};
-          for (auto child = children.rbegin(); child != children.rend(); ++child)
-            at = on_parent<Cell>(at, *child);
-          int nearest = 0;
-          double least = std::numeric_limits<double>::infinity();
-          for (int p = 0; p < F::points; ++p) {
-            double const apart = std::hypot(rule.points[p][0] - at[0], rule.points[p][1] - at[1]);
-            if (apart < least) {
-              least = apart;
-              nearest = p;
-            }
-          }
-          for (int k = 0; k < size; ++k)
-            history[first + static_cast<std::size_t>(size * q + k)] =
-                rows[std::size_t{width} * ancestor + static_cast<std::size_t>(size * nearest + k)];
-        }
-      }
-    };
-    dispatch<Table::groups>(tag, fill);
-  }
-}
-
-/// The area that each node of a cell carries.
-inline std::array<double, 4> nodal_areas(Hierarchy const& tree, HierarchyCell const& cell) {
-  std::array<double, 4> areas{};
-  auto const fill = [&]<Element E>(E) {
-    Nodal<E, double> rest;
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      for (std::size_t k = 0; k < 2; ++k)
-        rest(static_cast<int>(a), static_cast<int>(k)) =
-            tree.points()[static_cast<std::size_t>(cell.nodes[a])][k];
-    auto const share = nodal_volumes<E>(rest);
-    for (std::size_t a = 0; a < E::nodes; ++a) areas[a] = share[static_cast<int>(a)];
-  };
-  if (cell.sides == 3)
-    fill(Tri3{});
-  else
-    fill(Quad4{});
-  return areas;
-}
-
-/// The momentum that a cell carries, kg m/s, from velocities at nodes, less that of its mass moving
-/// as one at the velocity `base`: where all do, what rounding left is no momentum.
-inline Point<2> momentum(Hierarchy const& tree, HierarchyCell const& cell, double density,
-                         std::vector<Point<2>> const& v, Point<2> const& base) {
-  auto const areas = nodal_areas(tree, cell);
-  Point<2> p{};
-  for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
-    for (std::size_t k = 0; k < 2; ++k)
-      p[k] += density * areas[a] * (v[static_cast<std::size_t>(cell.nodes[a])][k] - base[k]);
-  return p;
-}
-
-/// What each node must be given so that the family of a refined cell keeps its momentum: the
-/// difference that lumping made, shared in proportion to the family's nodal masses.
-inline void add_family_impulse(Hierarchy const& tree, Index parent, double density,
-                               std::vector<Point<2>> const& v, std::vector<Point<2>>& impulse) {
-  HierarchyCell const& cell = tree.cell(parent);
-  Point<2> const base = v[static_cast<std::size_t>(cell.nodes[0])];
-  Point<2> lost = momentum(tree, cell, density, v, base);
-  double area = 0;
-  for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
-    Point<2> const p = momentum(tree, tree.cell(c), density, v, base);
-    for (std::size_t k = 0; k < 2; ++k) lost[k] -= p[k];
-    for (double a : nodal_areas(tree, tree.cell(c))) area += a;
-  }
-  for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
-    auto const areas = nodal_areas(tree, tree.cell(c));
-    for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
-      for (std::size_t k = 0; k < 2; ++k)
-        impulse[static_cast<std::size_t>(tree.cell(c).nodes[a])][k] += lost[k] * areas[a] / area;
-  }
 }
 
 }  // namespace detail

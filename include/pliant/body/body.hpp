@@ -7,6 +7,7 @@
 #include <pliant/body/history.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/body/pressure.hpp>
+#include <pliant/body/watches.hpp>
 #include <pliant/mesh/check.hpp>
 
 namespace pliant {
@@ -146,20 +147,8 @@ class Body {
     time_ += dt;
     steps_ += steps;
   }
-  /// Where the time of adaptation goes: evaluating criteria and deciding; moving elements. Stopwatches
-  /// stand still unless measure_adaptation() was called.
-  struct Watches {
-    struct Watch {
-      std::optional<typename B::Stopwatch> watch;
-      void start() {
-        if (watch) watch->start();
-      }
-      void stop() {
-        if (watch) watch->stop();
-      }
-      double seconds() { return watch ? watch->seconds() : 0.0; }
-    } criteria, migration;
-  };
+  /// Where the time of adaptation goes; stopwatches stand still unless measure_adaptation() was called.
+  using Watches = AdaptationWatches<B>;
   Watches& watches() { return watches_; }
   void measure_adaptation() {
     watches_.criteria.watch.emplace(backend_.stopwatch());
@@ -264,5 +253,7 @@ Body(B, M, Elastic, Gs...) -> Body<B, M, typename Gs::formulation...>;
 
 #include <pliant/body/conditions_of_body.hpp>
 #include <pliant/body/embedding_of_body.hpp>
+#include <pliant/body/groups_of_body.hpp>
 #include <pliant/body/motion_of_body.hpp>
+#include <pliant/body/pressures_of_body.hpp>
 #include <pliant/body/state_of_body.hpp>

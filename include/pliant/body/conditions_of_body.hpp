@@ -3,84 +3,8 @@
 #include <pliant/body/body.hpp>
 #include <pliant/body/state_of_body.hpp>
 
-// Members of Body: its groups, and what holds and pulls it.
+// Members of Body: what holds and pulls it.
 namespace pliant {
-
-template <Backend B, class M, class... Fs>
-template <Element E>
-std::vector<Tag> Body<B, M, Fs...>::groups_of() const {
-  auto const& table = layout_.template table<E>();
-  auto const internal = download<Tag>(table.elements.tags());
-  std::vector<Tag> tags(internal.size());
-  for (std::size_t e = 0; e < tags.size(); ++e)
-    tags[static_cast<std::size_t>(table.user_element[e])] = internal[e];
-  return tags;
-}
-
-template <Backend B, class M, class... Fs>
-template <Element E>
-ElementStart Body<B, M, Fs...>::first_elements_of(std::size_t count) const {
-  ElementStart start{std::vector<Tag>(count, 0), {}};
-  std::vector<std::vector<double>> columns;  // by value
-  auto const take = [&]<class F>(Group<F> const& group) {
-    if constexpr (std::same_as<typename F::element, E> && element_values<F> > 0) {
-      if (group.values.size() != count && group.values.size() != 1)
-        throw Error("body: a group's law reads " + std::to_string(element_values<F>) +
-                    " values per element; give values for 1 or for all " + std::to_string(count) +
-                    " " + E::name() + " elements, not for " + std::to_string(group.values.size()));
-      for (std::size_t k = 0; k < element_values<F>; ++k) {
-        columns.emplace_back(count);
-        for (std::size_t e = 0; e < count; ++e) {
-          double const x = group.values[group.values.size() == 1 ? 0 : e][k];
-          if (!std::isfinite(x))
-            throw Error("body: value " + std::to_string(k) + " of " + E::name() + " element " +
-                        std::to_string(e) + " is not finite; mend the group's values");
-          columns.back()[e] = x;
-        }
-      }
-    }
-  };
-  std::apply([&](auto const&... group) { (take(group), ...); }, groups_);
-  for (std::size_t e = 0; e < count; ++e)
-    for (auto const& column : columns) start.values.push_back(column[e]);
-  return start;
-}
-
-template <Backend B, class M, class... Fs>
-template <class F>
-void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
-  using E = typename F::element;
-  auto& table = layout_.template table<E>();
-  constexpr int group = std::remove_reference_t<decltype(table)>::template group_of<F>;
-  static_assert(group < std::remove_reference_t<decltype(table)>::groups,
-                "assign<F>: this body has no Group<F>");
-  std::vector<Tag> user = groups_of<E>();
-  for (Index e : elements) {
-    if (e < 0 || e >= table.count())
-      throw Error("body.assign: there is no " + std::string(E::name()) + " element " +
-                  std::to_string(e) + "; they are numbered 0 to " +
-                  std::to_string(table.count() - 1));
-    user[static_cast<std::size_t>(e)] = static_cast<Tag>(group);
-  }
-  synchronize_velocities();
-  std::vector<Tag> internal(user.size());
-  for (std::size_t e = 0; e < user.size(); ++e)
-    internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
-  if (auto& books = table.books; books.open || steps_ > history_.born) {
-    if (!books.open) books.start(backend_, table.count(), history_.born);
-    books.enter(download<Tag>(table.elements.tags()), internal, steps_);
-  }
-  using Table = std::remove_reference_t<decltype(table)>;
-  auto const before = upload(backend_, download<Tag>(table.elements.tags()));
-  table.elements.tags().upload(internal);
-  table.elements.regroup();
-  if constexpr (Table::Laws::history_count > 0)
-    backend_.template visit<Table::groups>(
-        table.elements, ForgetVisitor<T, typename Table::Laws>{table.laws, before.data()},
-        table.no_counters, rest_field(), std::as_const(*this).displacement_field());
-  checkpoint_.reset();
-  forget_forces();
-}
 
 namespace detail {
 template <int Dim>
@@ -118,49 +42,6 @@ void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
   prescribe(time_, 0);
   checkpoint_.reset();
   forget_forces();
-}
-
-template <Backend B, class M, class... Fs>
-void Body<B, M, Fs...>::press(std::vector<Facet<dim>> const& facets, double pascals) {
-  if (!std::isfinite(pascals)) throw Error("body.press: the pressure is not finite");
-  for (auto const& facet : facets)
-    for (Index node : facet)
-      if (node < 0 || node >= nodes())
-        throw Error("body.press: a facet names node " + std::to_string(node) +
-                    ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
-  auto const same = std::ranges::find(pressures_, facets, &Pressure<dim>::facets);
-  if (same == pressures_.end() && history_.tree)
-    throw Error(
-        "body.press: these facets are pressed for the first time after a refinement, and would not "
-        "be inherited; press facets before the first refinement, with 0 Pa if need be");
-  synchronize_velocities();
-  if (same == pressures_.end())
-    pressures_.push_back({facets, pascals});
-  else
-    same->pascals = pascals;
-  press_again_ = [](Body& body) { body.upload_pressures(); };
-  press_again_(*this);
-  checkpoint_.reset();
-}
-
-template <Backend B, class M, class... Fs>
-void Body<B, M, Fs...>::upload_pressures() {
-  surface_forces_ = {};
-  for (auto const& pressure : pressures_) {
-    if (pressure.pascals == 0) continue;
-    auto internal = pressure.facets;
-    for (auto& facet : internal)
-      for (Index& node : facet) node = layout_.internal_of(node);
-    surface_forces_.press(backend_, internal, pressure.pascals, nodes());
-  }
-  std::size_t const rows = static_cast<std::size_t>(nodes() + surface_forces_.scratch_nodes());
-  forces_current_ = false;
-  if (layout_.f.size() < node_stride * rows)
-    layout_.f = typename B::template Array<T>(node_stride * rows);
-  else
-    clear(Field{layout_.f.data()}, nodes());
-  scratch_.reset();
-  ++revision_;
 }
 
 template <Backend B, class M, class... Fs>
