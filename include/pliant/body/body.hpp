@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include <pliant/body/check_field.hpp>
 #include <pliant/body/history.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/body/pressure.hpp>

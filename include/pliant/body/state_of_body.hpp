@@ -5,21 +5,6 @@
 // Members of Body: displacements, velocities and energies.
 namespace pliant {
 
-namespace detail {
-template <std::size_t Dim>
-void check_field(char const* what, std::vector<std::array<double, Dim>> const& values,
-                 Index nodes) {
-  if (values.size() != static_cast<std::size_t>(nodes))
-    throw Error(std::string(what) + ": got values for " + std::to_string(values.size()) +
-                " nodes, but the body has " + std::to_string(nodes));
-  for (std::size_t i = 0; i < values.size(); ++i)
-    for (double x : values[i])
-      if (!std::isfinite(x))
-        throw Error(std::string(what) + ": the value at node " + std::to_string(i) +
-                    " is not finite");
-}
-}  // namespace detail
-
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_displacements(std::vector<Point<dim>> const& u) {
   detail::check_field("body.set_displacements", u, nodes());

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/error.hpp>
+
+namespace pliant::detail {
+
+/// Throws Error where a field that was handed in has not the body's size, or is not finite.
+template <std::size_t Dim>
+void check_field(char const* what, std::vector<std::array<double, Dim>> const& values,
+                 Index nodes) {
+  if (values.size() != static_cast<std::size_t>(nodes))
+    throw Error(std::string(what) + ": got values for " + std::to_string(values.size()) +
+                " nodes, but the body has " + std::to_string(nodes));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (double x : values[i])
+      if (!std::isfinite(x))
+        throw Error(std::string(what) + ": the value at node " + std::to_string(i) +
+                    " is not finite");
+}
+
+}  // namespace pliant::detail
