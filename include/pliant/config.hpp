@@ -2,11 +2,15 @@
 
 #include <cstdint>
 
+/// Stands between the parameters and the body of a lambda in a kernel: out of line it would take packs
+/// of elements through memory.
+#define PLIANT_INLINE __attribute__((always_inline))
+
 /// Marks functions that run on the host and, when compiled as CUDA, on the device too.
 #if defined(__CUDACC__)
 #define PLIANT_HOST_DEVICE __host__ __device__ __forceinline__
 #else
-#define PLIANT_HOST_DEVICE inline __attribute__((always_inline))
+#define PLIANT_HOST_DEVICE inline PLIANT_INLINE
 #endif
 
 namespace pliant {

@@ -189,8 +189,9 @@ class OpenMP {
   }
 
   template <int Nodes, int C, class U>
-  static Matrix<Scalar, Nodes, C> gather_pack(Elements<Nodes> const& elements, PackMembers const& m,
-                                              NodeField<U, C> const& field) {
+  PLIANT_INLINE static Matrix<Scalar, Nodes, C> gather_pack(Elements<Nodes> const& elements,
+                                                            PackMembers const& m,
+                                                            NodeField<U, C> const& field) {
     Matrix<Scalar, Nodes, C> values;
     for (int a = 0; a < Nodes; ++a) {
       Index nodes[Scalar::lanes];

@@ -18,7 +18,7 @@ struct EvaluateVisitor {
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
     return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u) {
+        [this](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>{
               {{criterion(state_of<typename Table::template formulation<G>>(law, rest, u))}}};
         },

@@ -32,7 +32,7 @@ struct RankVisitor {
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
     return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u) {
+        [this](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1> value{};
           if constexpr (looks_at<G>)
             value[0] = rule.criterion(state_of<typename Rule::from>(law, rest, u));
@@ -76,7 +76,7 @@ struct SwitchVisitor {
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
     return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u, auto const&) {
+        [this](auto const& law, auto const& rest, auto const& u, auto const&) PLIANT_INLINE {
           Vector<std::remove_cvref_t<decltype(rest(0, 0))>, rule_count> values{};
           evaluate_rules<G, 0>(law, rest, u, values);
           return values;

@@ -14,7 +14,7 @@ struct ForceKernel {
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
     return groups.template apply<G>(
-        [](auto const& law, auto const& rest, auto const& u) {
+        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           return force<typename Laws::template formulation<G>, How>(law, rest, u);
         },
         v...);
@@ -30,7 +30,7 @@ struct TangentKernel {
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
     return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u, auto const& du) {
+        [this](auto const& law, auto const& rest, auto const& u, auto const& du) PLIANT_INLINE {
           return factor *
                  force_change<typename Laws::template formulation<G>, How>(law, rest, u, du);
         },
@@ -45,7 +45,7 @@ struct EnergyKernel {
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
     return groups.template apply<G>(
-        [](auto const& law, auto const& rest, auto const& u) {
+        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           return energy<typename Laws::template formulation<G>, How>(law, rest, u);
         },
         v...);
@@ -78,7 +78,7 @@ struct HistoryVisitor {
     if constexpr (history_size<F> > 0) {
       constexpr int size = history_size<F> / F::points;
       ElementField<T const, 0> const all{groups.data.history, groups.data.elements};
-      for_each_point<F>(rest, u, [&](int q, auto const& h) {
+      for_each_point<F>(rest, u, [&](int q, auto const& h) PLIANT_INLINE {
         auto const past = own(all.template part<size>(size * q));
         auto const next = groups.template law<G>().advanced(past, h);
         for (int k = 0; k < size; ++k) now[size * q + k] = next[k];
@@ -101,7 +101,7 @@ PLIANT_HOST_DEVICE void forget_past(Laws const& groups, Index e, V const& rest, 
   using F = typename Laws::template formulation<G>;
   using T = std::remove_cvref_t<decltype(rest(0, 0))>;
   constexpr int size = history_size<F> / F::points;
-  for_each_point<F>(rest, u, [&](int q, auto const& h) {
+  for_each_point<F>(rest, u, [&](int q, auto const& h) PLIANT_INLINE {
     auto const past = groups.template law<G>().relaxed(h);
     ElementField<T, Laws::history_count> const all{groups.data.history, groups.data.elements};
     for (int k = 0; k < size; ++k) all(e, size * q + k) = past[k];

@@ -119,11 +119,11 @@ struct Coefficients<E, S> {
   PLIANT_HOST_DEVICE static Coefficients of(Nodal<E, S> const& v) {
     using T = builtin_scalar<S>;
     Coefficients m;
-    unroll<E::nodes>([&](auto a) {
+    unroll<E::nodes>([&](auto a) PLIANT_INLINE {
       for (int i = 0; i < E::dim; ++i)
         m.c[corner(a)][i] = a == 0 ? S(0) : T(1.0 / E::nodes) * (v(a, i) - v(0, i));
     });
-    m.for_each_pair([](S& low, S& high) {
+    m.for_each_pair([](S& low, S& high) PLIANT_INLINE {
       S const sum = high + low;
       high = high - low;
       low = sum;
@@ -139,9 +139,9 @@ struct Coefficients<E, S> {
   template <class Table>
   PLIANT_HOST_DEVICE Tensor<S, E::dim> gradient(Table const& table, int q) const {
     Tensor<S, E::dim> g;
-    unroll<E::dim>([&](auto k) {
+    unroll<E::dim>([&](auto k) PLIANT_INLINE {
       for (int i = 0; i < E::dim; ++i) g(i, k) = c[1 << k][i];
-      unroll<E::nodes>([&](auto b) {
+      unroll<E::nodes>([&](auto b) PLIANT_INLINE {
         if constexpr ((b >> k & 1) && b != 1 << k)
           for (int i = 0; i < E::dim; ++i)
             g(i, k) = g(i, k) + table.monomial[q][b & ~(1 << k)] * c[b][i];
@@ -151,9 +151,9 @@ struct Coefficients<E, S> {
   }
   template <class Table>
   PLIANT_HOST_DEVICE void add_divergence(Tensor<S, E::dim> const& t, Table const& table, int q) {
-    unroll<E::dim>([&](auto k) {
+    unroll<E::dim>([&](auto k) PLIANT_INLINE {
       for (int i = 0; i < E::dim; ++i) c[1 << k][i] = c[1 << k][i] + t(i, k);
-      unroll<E::nodes>([&](auto b) {
+      unroll<E::nodes>([&](auto b) PLIANT_INLINE {
         if constexpr ((b >> k & 1) && b != 1 << k)
           for (int i = 0; i < E::dim; ++i)
             c[b][i] = c[b][i] + table.monomial[q][b & ~(1 << k)] * t(i, k);
@@ -164,13 +164,13 @@ struct Coefficients<E, S> {
     using T = builtin_scalar<S>;
     Coefficients m = *this;
     for (S& x : m.c[0]) x = S(0);
-    m.for_each_pair([](S& even, S& odd) {
+    m.for_each_pair([](S& even, S& odd) PLIANT_INLINE {
       S const sum = even + odd;
       even = even - odd;
       odd = sum;
     });
     Nodal<E, S> f;
-    unroll<E::nodes>([&](auto a) {
+    unroll<E::nodes>([&](auto a) PLIANT_INLINE {
       for (int i = 0; i < E::dim; ++i) f(a, i) = T(1.0 / E::nodes) * m.c[corner(a)][i];
     });
     return f;
@@ -186,8 +186,8 @@ struct Coefficients<E, S> {
   /// f(without direction k, with it) for all sets of directions, k after k: a butterfly.
   template <class F>
   PLIANT_HOST_DEVICE void for_each_pair(F const& f) {
-    unroll<E::dim>([&](auto k) {
-      unroll<E::nodes>([&](auto b) {
+    unroll<E::dim>([&](auto k) PLIANT_INLINE {
+      unroll<E::nodes>([&](auto b) PLIANT_INLINE {
         if constexpr (!(b >> k & 1))
           for (int i = 0; i < E::dim; ++i) f(c[b][i], c[b | 1 << k][i]);
       });

@@ -33,7 +33,7 @@ struct MeanGradient {
       mean.slope[2] = {{{-c[1][1]}, {c[1][0]}}};
     } else {
       T const third = T(1) / T(3);
-      unroll<3>([&](auto k) {  // directions p, q, r in turn
+      unroll<3>([&](auto k) PLIANT_INLINE {  // directions p, q, r in turn
         constexpr int p = 1 << k, q = 1 << (k + 1) % 3, r = 1 << (k + 2) % 3;
         mean.slope[p] = cross(c[q], c[r]) + third * cross(c[p | q], c[p | r]);
         mean.slope[p | q] = third * (cross(c[q], c[q | r]) + cross(c[p | r], c[p]) +
@@ -122,7 +122,7 @@ struct HourglassControl {
     S const scale = (modulus * R(2.5 * OnePoint::share)) * mean.volume;
     auto f = Coefficients<E, S>::zero();
     auto shared = Tensor<S, dim>::zero();  // what H hands back
-    unroll<E::nodes>([&](auto b) {
+    unroll<E::nodes>([&](auto b) PLIANT_INLINE {
       constexpr int order = std::popcount(static_cast<unsigned>(int{b}));
       if constexpr (order >= 2) {
         S flat = S(0);

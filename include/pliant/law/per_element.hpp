@@ -15,7 +15,7 @@ struct PerElement {
 
     template <class S>
     PLIANT_HOST_DEVICE auto at(Vector<S, element_values> const& values) const {
-      return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return [&]<int... I>(std::integer_sequence<int, I...>) PLIANT_INLINE {
         return L<S>{values[I]...};
       }(std::make_integer_sequence<int, element_values>());
     }

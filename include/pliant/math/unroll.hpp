@@ -11,10 +11,9 @@ namespace pliant {
 /// an index that is only known at run time would send an array from registers to memory.
 template <int N, class F>
 PLIANT_HOST_DEVICE constexpr void unroll(F const& f) {
-  [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+  [&]<int... I>(std::integer_sequence<int, I...>) PLIANT_INLINE {
     (f(std::integral_constant<int, I>()), ...);
-  }
-  (std::make_integer_sequence<int, N>());
+  }(std::make_integer_sequence<int, N>());
 }
 
 }  // namespace pliant

@@ -91,7 +91,7 @@ template <class T, int L>
 PLIANT_HOST_DEVICE void scatter_add_nodes(T* data, Index const (&index)[L], int count,
                                           typename Pack<T, L>::Register (&r)[4]) {
   transpose_blocks<T, L>(r);
-  auto const add = [&]<int Block>(std::integral_constant<int, Block>) {
+  auto const add = [&]<int Block>(std::integral_constant<int, Block>) PLIANT_INLINE {
     for (int k = 0; k < 4; ++k) {
       if (4 * Block + k >= count) return;
       T* const address = data + std::ptrdiff_t{node_stride} * index[4 * Block + k];
@@ -101,7 +101,7 @@ PLIANT_HOST_DEVICE void scatter_add_nodes(T* data, Index const (&index)[L], int 
       __builtin_memcpy(address, &node, sizeof(node));
     }
   };
-  [&]<int... B>(std::integer_sequence<int, B...>) {
+  [&]<int... B>(std::integer_sequence<int, B...>) PLIANT_INLINE {
     (add(std::integral_constant<int, B>()), ...);
   }(std::make_integer_sequence<int, L / 4>());
 }

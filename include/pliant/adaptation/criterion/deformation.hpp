@@ -18,7 +18,8 @@ struct EdgeLengthRatio {
       longest = max(longest, s);
       shortest = min(shortest, s);
     }
-    auto const ratio = [](S const& s) { return s / (S(1) + sqrt(max(S(0), S(1) + s))); };
+    auto const ratio = [](S const& s)
+                           PLIANT_INLINE { return s / (S(1) + sqrt(max(S(0), S(1) + s))); };
     return max(ratio(longest), -ratio(shortest));
   }
 };
