@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -10,5 +11,14 @@ namespace pliant {
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+namespace detail {
+/// A number as messages show it, however small.
+inline std::string text(double x) {
+  char characters[32];
+  std::snprintf(characters, sizeof characters, "%g", x);
+  return characters;
+}
+}  // namespace detail
 
 }  // namespace pliant

@@ -103,7 +103,7 @@ class When {
   }
   static double checked(double share) {
     if (!(share >= 0 && share <= 1))
-      throw Error("strategy: " + std::to_string(share) + " is no share; give a number in [0, 1]");
+      throw Error("strategy: " + detail::text(share) + " is no share; give a number in [0, 1]");
     return share;
   }
   Criterion criterion_;

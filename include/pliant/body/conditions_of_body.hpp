@@ -14,7 +14,7 @@ Point<Dim> position_at(Condition<Dim> const& condition, double time) {
     if (!std::isfinite(x))
       throw Error("body.drive: the motion of node " +
                   (condition.nodes.empty() ? "(none)" : std::to_string(condition.nodes[0])) +
-                  " is " + text<Dim>(u) + " at time " + std::to_string(time) +
+                  " is " + text<Dim>(u) + " at time " + detail::text(time) +
                   " s; it must be finite");
   return u;
 }
@@ -124,7 +124,7 @@ void Body<B, M, Fs...>::set_gravity(Point<dim> const& g) {
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_damping(double per_mass) {
   if (!(per_mass >= 0 && std::isfinite(per_mass)))
-    throw Error("body.set_damping: " + std::to_string(per_mass) +
+    throw Error("body.set_damping: " + detail::text(per_mass) +
                 " 1/s; give a finite number that is not negative");
   synchronize_velocities();
   damping_ = per_mass;

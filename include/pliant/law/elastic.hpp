@@ -21,7 +21,7 @@ struct Elastic {
   /// Throws Error when a value is impossible.
   Elastic const& checked() const {
     auto const refuse = [](std::string what, double value, std::string must) {
-      throw Error("material: " + what + " is " + std::to_string(value) + "; it must be " + must);
+      throw Error("material: " + what + " is " + detail::text(value) + "; it must be " + must);
     };
     if (!(young > 0 && std::isfinite(young)))
       refuse("Young's modulus", young, "positive and finite (in Pa)");

@@ -15,7 +15,7 @@ namespace detail {
 template <int Dim>
 std::string text(Point<Dim> const& p) {
   std::string s = "(";
-  for (std::size_t k = 0; k < Dim; ++k) s += (k ? ", " : "") + std::to_string(p[k]);
+  for (std::size_t k = 0; k < Dim; ++k) s += (k ? ", " : "") + text(p[k]);
   return s + ")";
 }
 
@@ -54,7 +54,7 @@ void check_elements(M const& mesh) {
         if (!(det > smallest))
           throw Error("mesh: " + describe<E>(mesh, e) + " is " +
                       (det < -smallest ? "inverted" : "degenerate") + " (Jacobian determinant " +
-                      std::to_string(det) + " near " +
+                      text(det) + " near " +
                       text<E::dim>(mesh.nodes[static_cast<std::size_t>(elements[e][0])]) +
                       "); number its nodes counter-clockwise, or repair the mesh there");
       }

@@ -95,8 +95,8 @@ class CentralDifference {
     if (!body.restore())
       throw Error(what + ", and there is no earlier state of this mesh; start from a finite state");
     if (slower_ >= 8)
-      throw Error(what + ", with an eighth of the step too (" + std::to_string(step_) +
-                  " s); it is now at time " + std::to_string(body.time()) +
+      throw Error(what + ", with an eighth of the step too (" + detail::text(step_) +
+                  " s); it is now at time " + detail::text(body.time()) +
                   " s, before that: look at its loads, and at laws that soften or cannot invert");
     energy_ = energy_of(body);  // loads may have changed since the checkpoint
     slower_ *= 2;

@@ -119,8 +119,8 @@ class Newmark {
       if (std::isfinite(size) && (size <= options_.tolerance * scale || settled)) return then;
       if (iteration == options_.max_iterations || !std::isfinite(size))
         throw Error("Newmark: no convergence in the step to time " +
-                    std::to_string(system.body.time()) + " s after " + std::to_string(iteration) +
-                    " iterations, residual " + std::to_string(size) +
+                    detail::text(system.body.time()) + " s after " + std::to_string(iteration) +
+                    " iterations, residual " + detail::text(size) +
                     " N; take smaller steps, or a law that does not soften");
       Eigen::SparseMatrix<double> const matrix = system.problem.restrict(state.stiffness) + inertia;
       Eigen::VectorXd const du = detail::solve(matrix, residual, system.body.pressures().empty());

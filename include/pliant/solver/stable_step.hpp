@@ -18,7 +18,7 @@ struct StiffnessRows {
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
     using F = typename Laws::template formulation<G>;
     return groups.template apply<G>(
-        [](auto const& law, auto const& rest, auto const& u) {
+        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           auto const k = stiffness<F>(law, rest, u);
           auto rows = std::remove_cvref_t<decltype(u)>::zero();
           for (int i = 0; i < F::nodes * F::dim; ++i)
@@ -70,7 +70,7 @@ struct ElementSpectra {
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
     using F = typename Laws::template formulation<G>;
     return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u) {
+        [this](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           using S = std::remove_cvref_t<decltype(rest(0, 0))>;
           auto k = stiffness<F>(law, rest, u);
           auto const volumes = nodal_volumes<typename F::element>(rest);
@@ -158,8 +158,7 @@ double squared_frequency_bound(TheBody& body) {
   if (!std::isfinite(eigenvalue) || !(eigenvalue > 0))
     throw Error("stable_step: the stiffness of the body is " +
                 std::string(eigenvalue > 0 ? "not finite" : "zero") + " at time " +
-                std::to_string(body.time()) +
-                " s; an element has collapsed, or every node is held");
+                detail::text(body.time()) + " s; an element has collapsed, or every node is held");
   return eigenvalue;
 }
 
