@@ -72,7 +72,10 @@ TEST_CASE("no deformation goes without resistance: mean dilatation", "[formulati
   only_rigid_motions_are_free<Quad4, FBar<Gauss<2>>>();
   only_rigid_motions_are_free<Hex8, FBar<Gauss<2>>>();
   only_rigid_motions_are_free<Tri6, FBar<Gauss<2>>>();
+  only_rigid_motions_are_free<Quad8, FBar<Gauss<3>>>();
   only_rigid_motions_are_free<Quad9, FBar<Gauss<3>>>();
+  only_rigid_motions_are_free<Hex20, FBar<Gauss<3>>>();
+  only_rigid_motions_are_free<Hex27, FBar<Gauss<3>>>();
   // One quadratic tetrahedron is free to move conformally, b ↦ 2 (b·x) x − |x|² b; several are not.
   using F = Formulation<Tet10, FBar<Gauss<3>>, Hooke>;
   auto const alone = spectrum<F>();

@@ -53,6 +53,7 @@ using SpecialFormulations =
          Formulation<Hex8, OnePoint, SaintVenantKirchhoff>,
          Formulation<Quad4, FBar<Gauss<2>>, NeoHookean>, Formulation<Quad4, FBar<Gauss<2>>, Hooke>,
          Formulation<Hex8, FBar<Gauss<2>>, NeoHookean>,
+         Formulation<Quad9, FBar<Gauss<3>>, NeoHookean>,
          Formulation<Tet10, FBar<Gauss<3>>, SaintVenantKirchhoff>>;
 using FewSpecialFormulations =
     List<Formulation<Wedge6, Gauss<2>, Hooke>, Formulation<Quad4, OnePoint, NeoHookean>,

@@ -16,6 +16,62 @@ PLIANT_HOST_DEVICE S cube_root_less_one(S const& x) {
 
 }  // namespace detail
 
+/// Fields on an element as the polynomials nearest to them: constant, but linear in ξ where the shape
+/// functions of a tensor-product element are quadratic. A constant dilatation would leave maps free
+/// there that are conformal inside the element, x ↦ 2 (b·x) x − |x|² b, and beams would bend too easily.
+template <Element E, class S>
+class Projection {
+ public:
+  static constexpr int size = E::degree == 2 && !CurvedSimplex<E> ? E::dim + 1 : 1;
+  using Polynomial = Vector<S, size>;  // coefficients of φ = 1, ξ_1, ... ξ_d
+
+  /// φ_m at point q.
+  template <class Table>
+  PLIANT_HOST_DEVICE static auto basis(int m, Table const& table, int q) {
+    return table.monomial[q][m == 0 ? 0 : 1 << (m - 1)];
+  }
+  template <class Table>
+  PLIANT_HOST_DEVICE static S value(Polynomial const& p, Table const& table, int q) {
+    S sum = p[0];
+    for (int m = 1; m < size; ++m) sum = sum + p[m] * basis(m, table, q);
+    return sum;
+  }
+  /// Adds what point q has of the integrals of a field with each φ_m.
+  template <class Table>
+  PLIANT_HOST_DEVICE static void add(Polynomial& integrals, S const& x, Table const& table, int q) {
+    for (int m = 0; m < size; ++m) integrals[m] = integrals[m] + x * basis(m, table, q);
+  }
+  template <class Table>
+  PLIANT_HOST_DEVICE void add_weight(S const& weight, Table const& table, int q) {
+    for (int m = 0; m < size; ++m)
+      for (int n = 0; n <= m; ++n)
+        moments_(m, n) = moments_(m, n) + weight * (basis(m, table, q) * basis(n, table, q));
+  }
+  /// Once all weights are in: moments = L D Lᵀ, with L below the diagonal.
+  PLIANT_HOST_DEVICE void factorise() {
+    for (int k = 0; k < size; ++k)
+      for (int m = k + 1; m < size; ++m) {
+        S const factor = moments_(m, k) / moments_(k, k);
+        for (int n = k + 1; n <= m; ++n) moments_(m, n) = moments_(m, n) - factor * moments_(n, k);
+      }
+    for (int k = 0; k < size; ++k)
+      for (int m = k + 1; m < size; ++m) moments_(m, k) = moments_(m, k) / moments_(k, k);
+  }
+  /// The polynomial that has these integrals.
+  PLIANT_HOST_DEVICE Polynomial nearest(Polynomial p) const {
+    for (int k = 0; k < size; ++k)
+      for (int m = k + 1; m < size; ++m) p[m] = p[m] - moments_(m, k) * p[k];
+    for (int k = size - 1; k >= 0; --k) {
+      p[k] = p[k] / moments_(k, k);
+      for (int m = k + 1; m < size; ++m) p[k] = p[k] - moments_(m, k) * p[m];
+    }
+    return p;
+  }
+
+ private:
+  Tensor<S, size> moments_ = Tensor<S, size>::zero();  // ∫ φ_m φ_n, the lower half
+};
+
 /// Each point sees the mean dilatation of the element: W_E = Σ_q w_q det J W(H̄_q); see FBar. In plane
 /// strain too F̄ is that of space, with F̄₃₃ = (J̄/J)^(1/3): deviators of the plane alone would leave all
 /// conformal maps free.
@@ -76,19 +132,27 @@ struct MeanDilatation {
       EnergyIn<std::remove_cvref_t<decltype(at_point(std::declval<L const&>(), 0))>,
                StrainInvariants>;
 
+  template <class S>
+  struct Mean {
+    Projection<E, S> onto;
+    typename Projection<E, S>::Polynomial dilatation;
+  };
   template <class L, class S, class Table>
-  PLIANT_HOST_DEVICE static S mean(Coefficients<E, S> const& x, Coefficients<E, S> const& v,
-                                   Table const& table, S& volume) {
+  PLIANT_HOST_DEVICE static Mean<S> mean(Coefficients<E, S> const& x, Coefficients<E, S> const& v,
+                                         Table const& table) {
     using T = builtin_scalar<S>;
-    S sum = S(0);
-    volume = S(0);
+    Mean<S> mean;
+    auto integrals = Projection<E, S>::Polynomial::zero();
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       S const share = map.volume * T(table.weight[q]);
-      sum = sum + share * Point<S, linear<L>>::dilatation_of(map.gradient(v, table, q));
-      volume = volume + share;
+      S const here = Point<S, linear<L>>::dilatation_of(map.gradient(v, table, q));
+      mean.onto.add_weight(share, table, q);
+      mean.onto.add(integrals, share * here, table, q);
     }
-    return sum / volume;
+    mean.onto.factorise();
+    mean.dilatation = mean.onto.nearest(integrals);
+    return mean;
   }
 
   template <class L, class S>
@@ -96,41 +160,49 @@ struct MeanDilatation {
     using T = builtin_scalar<S>;
     static constexpr auto table = tabulate<E, typename F::quadrature, T>();
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
-    S volume, sum = S(0);
-    S const mean_dilatation = mean<L>(x, v, table, volume);
+    auto const mean_of = mean<L>(x, v, table);
+    S sum = S(0);
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
-      Point<S, linear<L>> const point(map.gradient(v, table, q), mean_dilatation);
+      Point<S, linear<L>> const point(map.gradient(v, table, q),
+                                      mean_of.onto.value(mean_of.dilatation, table, q));
       sum = sum + map.volume * T(table.weight[q]) * energy_density(at_point(law, q), point.h_bar);
     }
     return sum;
   }
 
-  /// P = r P̄ + (p̄ − r P̄:F/(3 J)) cof F with r = (J̄/J)^(1/3) and p̄ the mean of r P̄:F/(3 J̄).
+  /// P = r P̄ + (p̄ − r P̄:F/(3 J)) cof F with r = (J̄/J)^(1/3) and p̄ the projection of r P̄:F/(3 J̄).
   template <class L, class S>
   PLIANT_HOST_DEVICE static Nodal<E, S> force(L const& law, Nodal<E, S> const& rest,
                                               Nodal<E, S> const& u) {
     using T = builtin_scalar<S>;
+    using Onto = Projection<E, S>;
     static constexpr auto table = tabulate<E, typename F::quadrature, T>();
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
-    S volume;
-    S const mean_dilatation = mean<L>(x, v, table, volume);
-    S const scale = linear<L> ? S(1) : S(1) + mean_dilatation;
-    auto f = Coefficients<E, S>::zero(), slopes = Coefficients<E, S>::zero();
-    S pressure = S(0);
+    auto const mean_of = mean<L>(x, v, table);
+    auto f = Coefficients<E, S>::zero();
+    Coefficients<E, S> slopes[Onto::size];
+    for (auto& slope : slopes) slope = Coefficients<E, S>::zero();
+    auto pressures = Onto::Polynomial::zero();
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
-      Point<S, linear<L>> const point(map.gradient(v, table, q), mean_dilatation);
+      S const dilatation = Onto::value(mean_of.dilatation, table, q);
+      Point<S, linear<L>> const point(map.gradient(v, table, q), dilatation);
       auto const p = stress(at_point(law, q), point.h_bar);
       S const work = point.work(p);
-      auto const slope = point.slope();
       S const here = linear<L> ? work : work / (S(1) + point.dilatation);
-      f.add_divergence(T(-table.weight[q]) * ((point.pull(p) - here * slope) * map.cofactors),
-                       table, q);
-      slopes.add_divergence(T(-table.weight[q]) * (slope * map.cofactors), table, q);
-      pressure = pressure + map.volume * T(table.weight[q]) * work;
+      S const on_mean = linear<L> ? work : work / (S(1) + dilatation);
+      auto const slope = T(-table.weight[q]) * (point.slope() * map.cofactors);
+      f.add_divergence(T(-table.weight[q]) * (point.pull(p) * map.cofactors) - here * slope, table,
+                       q);
+      for (int m = 0; m < Onto::size; ++m)
+        slopes[m].add_divergence(Onto::basis(m, table, q) * slope, table, q);
+      Onto::add(pressures, map.volume * T(table.weight[q]) * on_mean, table, q);
     }
-    return f.per_node() + (pressure / (volume * scale)) * slopes.per_node();
+    pressures = mean_of.onto.nearest(pressures);
+    auto sum = f.per_node();
+    for (int m = 0; m < Onto::size; ++m) sum = sum + pressures[m] * slopes[m].per_node();
+    return sum;
   }
 
   /// By a dual number through the force.
