@@ -20,10 +20,15 @@ function(pliant_test)
 
   target_compile_definitions(${target} PRIVATE ${arg_DEFINE})
   # Most tests take longer to optimise than to run. What the optimiser makes of kernels is looked at by
-  # those that compare backends.
-  if(NOT arg_NAME MATCHES "^(backend|openmp)/")
-    target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O0>)
+  # those that compare backends, thoroughly for the linear elements.
+  set(level -O0)
+  if(arg_NAME MATCHES "^backend/agreement_|^adaptation/(marking|endurance)$")
+    set(level -O1)
+  elseif(arg_NAME MATCHES "^(backend|openmp)/")
+    set(level -O3)
   endif()
+  target_compile_options(${target}
+                         PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:${level}>)
 
   set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")
   add_test(NAME ${arg_NAME} COMMAND ${target})
