@@ -150,6 +150,29 @@ TEST_CASE("nodes may be held between refinements, facets only before the first",
   });
 }
 
+TEST_CASE("pressures stay on their facets when nodes are held between refinements",
+          "[adaptation]") {
+  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+    auto body = plane_body(backend, mesh);
+    body.clamp(mesh.boundary("left"));
+    body.press(mesh.boundary("top"), 1);
+    body.press(mesh.boundary("bottom"), 2);
+    Random random(5);
+    refine(body, random_marks(body, random, 3));
+    body.clamp(nodes_of(body.mesh().boundary("right")));
+
+    refine(body, random_marks(body, random, 3));
+
+    M const& now = body.mesh();
+    REQUIRE(body.pressures().size() == 2);
+    CHECK(body.pressures()[0].facets == now.boundary("top"));
+    CHECK(body.pressures()[0].pascals == 1);
+    CHECK(body.pressures()[1].facets == now.boundary("bottom"));
+    CHECK(body.pressures()[1].pascals == 2);
+    CHECK(body.conditions()[0].nodes == nodes_of(now.boundary("left")));
+  });
+}
+
 TEST_CASE("element-steps go on counting over refinements", "[adaptation]") {
   on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);

@@ -21,7 +21,8 @@ std::vector<Connectivity<E>> elements_or_none(Mesh<Es...> const& mesh) {
 }
 
 /// The refinement tree of a plane body: the one it has, or a new one. Named boundaries and the
-/// facets of conditions are marked, in this order, so that children inherit them.
+/// facets of pressures and of conditions are marked, in this order, so that children inherit them.
+/// Conditions come last, for more of them, on nodes, may follow.
 template <class TheBody>
 Hierarchy tree_of(TheBody const& body) {
   if (body.history().tree) return *body.history().tree;
@@ -34,8 +35,8 @@ Hierarchy tree_of(TheBody const& body) {
     tree.add_boundary(mark++, edges);
   };
   for (auto const& [name, facets] : mesh.boundaries) add(facets);
-  for (auto const& condition : body.conditions()) add(condition.facets);
   for (auto const& pressure : body.pressures()) add(pressure.facets);
+  for (auto const& condition : body.conditions()) add(condition.facets);
   return tree;
 }
 
@@ -169,6 +170,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   });
   int mark = 0;
   for (auto& [name, facets] : mesh.boundaries) facets = detail::facets_of(*after, mark++);
+  auto pressures = body.pressures();
+  for (auto& pressure : pressures) pressure.facets = detail::facets_of(*after, mark++);
   auto conditions = body.conditions();
   for (auto& condition : conditions) {
     int const own = mark++;
@@ -180,8 +183,6 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     condition.nodes = std::move(nodes);
   }
-  auto pressures = body.pressures();
-  for (auto& pressure : pressures) pressure.facets = detail::facets_of(*after, mark++);
   auto loads = body.loads();
   if (!loads.empty()) loads.resize(mesh.nodes.size(), Point<2>{});
 
