@@ -141,28 +141,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     }(std::make_integer_sequence<int, TableType::groups>());
   }
 
-  /// Whether the nodes between corners lie in the middle, as far as T tells.
-  template <Element E>
-  static bool is_straight(Mesh<Es...> const& mesh) {
-    if constexpr (CurvedSimplex<E>) {
-      double largest = 0, furthest = 0;
-      for (auto const& p : mesh.nodes)
-        for (double x : p) largest = std::max(largest, std::abs(x));
-      constexpr auto edges = E::edges();
-      for (auto const& element : mesh.template elements<E>()) {
-        auto const x = nodal(mesh, element);
-        for (std::size_t e = 0; e < edges.size(); ++e)
-          for (int k = 0; k < dim; ++k)
-            furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
-                                                   (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
-      }
-      return furthest <= 8 * double{std::numeric_limits<T>::epsilon()} * largest;
-    }
-    return false;
-  }
-
-  /// Positions relative to the middle of the body: single precision keeps its digits.
-  void upload_rest() {
+  /// The box around the body: its middle, and how far it reaches from there.
+  struct Extent {
+    Point<dim> middle;
+    double reach = 0;
+  };
+  static Extent extent(Mesh<Es...> const& mesh) {
     Point<dim> low, high;
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
@@ -171,9 +155,42 @@ struct Layout<B, Mesh<Es...>, Fs...> {
         low[k] = std::min(low[k], p[k]);
         high[k] = std::max(high[k], p[k]);
       }
+    Extent box;
+    for (std::size_t k = 0; k < dim; ++k) {
+      box.middle[k] = (low[k] + high[k]) / 2;
+      box.reach = std::max(box.reach, (high[k] - low[k]) / 2);
+    }
+    return box;
+  }
+
+  /// Whether the nodes between corners lie in the middle, as far as T tells.
+  template <Element E>
+  static bool is_straight(Mesh<Es...> const& mesh) {
+    if constexpr (CurvedSimplex<E>) {
+      double furthest = 0;
+      constexpr auto edges = E::edges();
+      for (auto const& element : mesh.template elements<E>()) {
+        auto const x = nodal(mesh, element);
+        for (std::size_t e = 0; e < edges.size(); ++e)
+          for (int k = 0; k < dim; ++k)
+            furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
+                                                   (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
+      }
+      auto const box = extent(mesh);
+      double distance = 0;  // of the body from the origin: its mesh is rounded there
+      for (double x : box.middle) distance = std::max(distance, std::abs(x));
+      return furthest <= 8 * (double{std::numeric_limits<T>::epsilon()} * box.reach +
+                              std::numeric_limits<double>::epsilon() * distance);
+    }
+    return false;
+  }
+
+  /// Positions relative to the middle of the body: single precision keeps its digits.
+  void upload_rest() {
+    auto const box = extent(mesh);
     std::vector<Point<dim>> relative = mesh.nodes;
     for (auto& p : relative)
-      for (std::size_t k = 0; k < dim; ++k) p[k] -= (low[k] + high[k]) / 2;
+      for (std::size_t k = 0; k < dim; ++k) p[k] -= box.middle[k];
     std::vector<T> const values = padded(relative);
     rest = Array<T>(values.size());
     rest.upload(values);
