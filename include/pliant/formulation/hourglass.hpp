@@ -82,8 +82,11 @@ struct HourglassControl {
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
     auto const mean = MeanGradient<E, S>::of(x);
     auto const h = mean(v);
-    S const hourglasses = dot(control(law.modulus, mean, x, v, h).per_node(), u);
-    return mean.volume * energy_density(law.law, h) - hourglasses / S(2);  // linear in u
+    auto const f = control(law.modulus, mean, x, v, h);
+    S work(0);  // of the control, which is linear in u
+    for (int b = 1; b < E::nodes; ++b)
+      for (int i = 0; i < dim; ++i) work = work + f.c[b][i] * v.c[b][i];
+    return mean.volume * energy_density(law.law, h) - work / S(2);
   }
   template <class T, class L, class S>
   PLIANT_HOST_DEVICE static Nodal<E, S> force(WithModulus<L, T> const& law, Nodal<E, S> const& rest,
