@@ -36,7 +36,7 @@ struct AreaRatio {
     // trilinear hexahedron.
     constexpr bool one_point = E::degree == 1 && (State::dim == 2 || LinearSimplex<E>);
     using Q = std::conditional_t<one_point, Gauss<1>, Gauss<E::degree + 1>>;
-    constexpr auto table = tabulate<E, Q, T>();
+    static constexpr auto table = tabulate<E, Q, T>();
     auto const x = Coefficients<E, S>::of(e.rest), v = Coefficients<E, S>::of(e.u);
     S change(0), volume(0);
     for (int q = 0; q < table.count; ++q) {

@@ -27,7 +27,7 @@ struct ElementState {
 
   /// The displacement gradient H = F − I in the middle of the cell.
   PLIANT_HOST_DEVICE Tensor<S, dim> gradient() const {
-    constexpr auto table = tabulate<element, Gauss<1>, builtin_scalar<S>>();
+    static constexpr auto table = tabulate<element, Gauss<1>, builtin_scalar<S>>();
     return RestMap<element, S>::at(Coefficients<element, S>::of(rest), table, 0)
         .gradient(Coefficients<element, S>::of(u), table, 0);
   }

@@ -28,7 +28,7 @@ struct ForceIntensity {
       pull[a] = sqrt(squared);
     }
     auto const x = Coefficients<E, S>::of(e.current());
-    constexpr auto table = tabulate<E, typename F::quadrature, T>();
+    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
     S sum(0), size(0);
     for (int q = 0; q < F::points; ++q) {
       S intensity(0);

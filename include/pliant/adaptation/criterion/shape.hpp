@@ -26,7 +26,7 @@ struct AspectRatio {
       return longest / shortest;
     } else {
       auto const x = e.current();
-      constexpr auto table = tabulate<E, Gauss<1>, T>();
+      static constexpr auto table = tabulate<E, Gauss<1>, T>();
       S const size =
           abs(RestMap<E, S>::at(Coefficients<E, S>::of(x), table, 0).volume) * T(table.weight[0]);
       if constexpr (std::same_as<typename E::cell, Triangle>) {
