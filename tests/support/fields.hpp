@@ -16,7 +16,7 @@ template <std::size_t Dim>
 double largest(FieldOf<Dim> const& a) {
   double m = 0;
   for (auto const& v : a)
-    for (double x : v) m = std::isfinite(x) ? std::max(m, std::abs(x)) : x;
+    for (double x : v) m = std::isfinite(x) ? std::max(m, std::abs(x)) : INFINITY;
   return m;
 }
 template <std::size_t Dim>
