@@ -21,6 +21,9 @@ target_compile_options(
 # warns of overlaps in its own strings.
 target_compile_options(
   pliant_program INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized;-Wno-restrict>")
+# nvcc warns of calls in Eigen's SparseLU, which only the host makes.
+target_compile_options(
+  pliant_program INTERFACE "$<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:--diag-suppress=20014>")
 if(PLIANT_NATIVE)
   # The host side of .cu files too: Eigen aligns its types by the widest vectors, and all files of
   # a program have to agree on them.
