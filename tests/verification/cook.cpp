@@ -20,7 +20,7 @@ struct Results {
 
 template <class F>
 Runs bent(LawOf<F> const& law, double force, std::vector<int> const& sizes, double power,
-          NewtonOptions const& newton = to_rounding) {
+          NewtonOptions const& newton = where_forces_cancel) {
   using E = typename F::element;
   return on_meshes(sizes, 3, [&](int n) {
     auto mesh = graded<E>({n, n}, towards_ends(power), towards_ends(power));
@@ -110,7 +110,7 @@ void slab(Table& table, LawOf<F> const& law, std::vector<std::pair<int, char con
       auto body = body_of<F>(mesh, law);
       body.clamp(mesh.boundary("left"));
       body.set_loads(traction_loads(mesh, mesh.boundary("right"), Point<3>{0, 1.0 / 16, 0}));
-      solve_static(body, to_rounding);
+      solve_static(body, where_forces_cancel);
       return std::array{body.displacements()[node_at(mesh, {48, 60, 0})][1]};
     });
     table.compare({"3, slab of deal.II, uy(C)", name_of<F>(), "n x n x 1"}, runs, 0,

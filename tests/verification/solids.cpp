@@ -22,7 +22,7 @@ void cantilever(Table& table, Printed const& ux, Printed const& uy, std::vector<
     body.clamp(mesh.boundary("left"));
     body.hold(mesh.boundary("bottom"), 4);
     body.set_loads(body_loads(mesh, Point<3>{0, -1e4, 0}));
-    solve_static(body, to_rounding);
+    solve_static(body, where_forces_cancel);
     return body.displacements()[node_at(mesh, {4, 0, 0})];
   });
   table.compare({"8, cantilever, ux", name_of<F>(), "graded n x n/2 x n/4"}, runs, 0, ux);
@@ -60,7 +60,7 @@ void torsion(Table& table, std::vector<int> const& sizes) {
     body.set_displacements(u);
     body.clamp(mesh.boundary("left"));
     body.clamp(mesh.boundary("right"));
-    auto const report = solve_static(body, to_rounding);
+    auto const report = solve_static(body, where_forces_cancel);
     auto const end = reactions(body, nodes_of(mesh.boundary("right")));
     return std::array{end[3], end[0], report.energy,
                       body.displacements()[node_at(mesh, {2, 0.5, 0.5})][2]};
@@ -89,7 +89,7 @@ Runs block(std::vector<int> const& sizes, double power) {
     body.hold(mesh.boundary("front"), 2);
     body.hold(mesh.boundary("bottom"), 4);
     body.clamp(mesh.boundary("top"));
-    solve_static(body, to_rounding);
+    solve_static(body, where_forces_cancel);
     return std::array{4 * reactions(body, nodes_of(mesh.boundary("top")))[2],
                       body.displacements()[node_at(mesh, {0.5, 0, 0})][0]};
   });

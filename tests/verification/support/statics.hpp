@@ -42,8 +42,8 @@ auto body_of(M const& mesh, Elastic const& material) {
   return body_of<F>(mesh, LawOf<F>::from(material), material.density);
 }
 
-/// To the digits that are left where elements are much smaller than the body, whose large forces cancel.
-inline constexpr NewtonOptions to_rounding{.tolerance = 1e-7};
+/// For elements much smaller than their body: their large forces cancel, and leave fewer digits.
+inline constexpr NewtonOptions where_forces_cancel{.tolerance = 1e-7};
 
 template <class M>
 void add(std::vector<M>& sum, std::vector<M> const& more) {
