@@ -28,12 +28,8 @@ void on_each_side_type(Visit const& visit) {
     SECTION("Tri6") { visit(backend, Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>{}); }
     SECTION("Quad4") { visit(backend, Formulation<Hex8, Gauss<2>, SaintVenantKirchhoff>{}); }
     SECTION("Quad8") { visit(backend, Formulation<Hex20, Gauss<3>, SaintVenantKirchhoff>{}); }
+    SECTION("Quad9") { visit(backend, Formulation<Hex27, Gauss<3>, SaintVenantKirchhoff>{}); }
   });
-}
-
-template <class M>
-auto all_outside(M const& mesh) {
-  return mesh::outer_sides(mesh);
 }
 
 TEST_CASE("a pressure on part of the surface is that of consistent loads at this moment",
@@ -135,16 +131,46 @@ TEST_CASE("a pressure in dynamics lifts a plate, step for step on every backend"
   });
 }
 
+TEST_CASE("facets to press may be told by their corners alone, from either side", "[body]") {
+  on_each_side_type<DoubleBackends>([]<class B, class F>(B const& backend, F) {
+    auto const mesh = distorted_mesh<typename F::element>(3);
+    auto const side = mesh.boundary("right");
+    std::vector<Facet<F::dim>> corners;
+    for (auto const& facet : side) {
+      auto& reversed = corners.emplace_back();
+      for (std::size_t a = facet.corners(); a-- > 0;) reversed.push_back(facet[a]);
+    }
+    auto body = body_of<F>(backend, mesh);
+
+    body.press(corners, 2.5);
+    CHECK(body.pressures().at(0).facets == side);
+    body.press(corners, 1.5);
+    body.press(side, 0.5);
+
+    REQUIRE(body.pressures().size() == 1);
+    CHECK(body.pressures()[0].pascals == 0.5);
+  });
+}
+
 TEST_CASE("pressures that are not finite or nowhere are refused", "[body][errors]") {
   using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
   auto const mesh = mesh::rectangle<Tri3>({.size = {1, 1}, .cells = {2, 2}});
   auto body = body_of<F>(MainBackend{}, mesh);
   CHECK_THROWS_WITH(body.press(mesh.boundary("left"), NAN), says("not finite"));
   CHECK_THROWS_WITH(body.press({Facet<2>{0, 99}}, 1), says("node 99") && says("0 to 8"));
+  CHECK_THROWS_WITH(body.press({Facet<2>{0, 1}, Facet<2>{1, 4}}, 1),
+                    says("nodes 1 and 4 is not on the boundary of the mesh"));
+  CHECK_THROWS_WITH(body.press({Facet<2>{1}}, 1), says("is not on the boundary"));
+  CHECK_THROWS_WITH(body.press({Facet<2>{0, 1}, Facet<2>{1, 0}}, 1), says("twice"));
   CHECK(body.pressures().empty());
-  refine(body, {{0}});
+  body.press({Facet<2>{6, 3}}, 1);
+  refine(body, {{5}});
   CHECK_THROWS_WITH(body.press(body.mesh().boundary("left"), 1),
-                    says("before the first refinement"));
+                    says("before the first refinement") && says("body.pressures()[k].facets"));
+  body.press(body.pressures()[0].facets, 2);
+  REQUIRE(body.pressures().size() == 1);
+  CHECK(body.pressures()[0].facets.size() == 2);
+  CHECK(body.pressures()[0].pascals == 2);
 }
 
 }  // namespace pliant::test

@@ -71,8 +71,9 @@ class Body {
   void drive(std::vector<Index> const& nodes, Motion<dim> motion) {
     add_condition({{}, nodes, all_directions<dim>, std::move(motion)});
   }
-  /// A pressure on facets that follows the surface, Pa, positive against the outward normal. Pressing the
-  /// same facets again replaces it; 0 ends it. The stable step does not know its stiffness.
+  /// A pressure that follows the surface, Pa, positive against the outward normal, on facets of the
+  /// boundary told by their corners, from either side. Pressing the same facets again replaces it; 0
+  /// ends it. The stable step does not know its stiffness. Throws Error for other facets.
   void press(std::vector<Facet<dim>> const& facets, double pascals);
   std::vector<Pressure<dim>> const& pressures() const { return pressures_; }
   void set_gravity(Point<dim> const& g);                  // m/s²
@@ -138,6 +139,8 @@ class Body {
   double step_size() const { return step_size_; }
   /// What quadrature points remember is brought up to the present displacements.
   void remember();
+  /// They forget their past: are as if they had always been where they are.
+  void relax();
   void owe(double half_kick) { owed_ = half_kick; }
   double owed() const { return owed_; }
   /// Pays the half kick that the last step left open, so that velocities belong to time().

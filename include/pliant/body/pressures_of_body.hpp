@@ -1,9 +1,34 @@
 #pragma once
 
+#include <map>
+
 #include <pliant/body/body.hpp>
 
 // Members of Body: pressures that follow the surface.
 namespace pliant {
+
+namespace detail {
+/// Facets told by their corners as the mesh has them: in its order, with all nodes, seen from outside.
+template <class M>
+std::vector<Facet<M::dim>> outer_facets(M const& mesh, std::vector<Facet<M::dim>> facets) {
+  std::map<std::array<Index, 4>, Facet<M::dim>> outer;
+  for (auto const& side : mesh::outer_sides(mesh)) outer.emplace(mesh::key_of(side), side);
+  for (auto& facet : facets) {
+    auto const refuse = [&](char const* why) {
+      std::string nodes;
+      for (std::size_t a = 0; a < facet.size(); ++a)
+        nodes += (a == 0 ? "" : a + 1 == facet.size() ? " and " : ", ") + std::to_string(facet[a]);
+      throw Error("body.press: the facet with the nodes " + nodes + why);
+    };
+    auto const found = outer.find(mesh::key_of(facet));
+    if (facet.size() < facet.corners() || found == outer.end())
+      refuse(" is not on the boundary of the mesh; give facets of its boundary");
+    if (found->second.size() == 0) refuse(" is there twice; give each facet once");
+    facet = std::exchange(found->second, {});
+  }
+  return facets;
+}
+}  // namespace detail
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::press(std::vector<Facet<dim>> const& facets, double pascals) {
@@ -13,14 +38,23 @@ void Body<B, M, Fs...>::press(std::vector<Facet<dim>> const& facets, double pasc
       if (node < 0 || node >= nodes())
         throw Error("body.press: a facet names node " + std::to_string(node) +
                     ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
-  auto const same = std::ranges::find(pressures_, facets, &Pressure<dim>::facets);
+  auto const pressed = [&](std::vector<Facet<dim>> const& as) {
+    return std::ranges::find(pressures_, as, &Pressure<dim>::facets);
+  };
+  auto same = pressed(facets);
+  std::vector<Facet<dim>> own;
+  if (same == pressures_.end()) {
+    own = detail::outer_facets(layout_.mesh, facets);
+    same = pressed(own);
+  }
   if (same == pressures_.end() && history_.tree)
     throw Error(
         "body.press: these facets are pressed for the first time after a refinement, and would not "
-        "be inherited; press facets before the first refinement, with 0 Pa if need be");
+        "be inherited; press facets before the first refinement, with 0 Pa if need be; after a "
+        "refinement the pressed facets are body.pressures()[k].facets");
   synchronize_velocities();
   if (same == pressures_.end())
-    pressures_.push_back({facets, pascals});
+    pressures_.push_back({std::move(own), pascals});
   else
     same->pascals = pascals;
   press_again_ = [](Body& body) { body.upload_pressures(); };

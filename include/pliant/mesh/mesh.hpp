@@ -16,7 +16,8 @@ template <int Dim>
 using Point = std::array<double, Dim>;
 
 /// One side of an element on the boundary: the numbers of its nodes, corners first, then those in
-/// the middle of its edges, beginning behind corner 0, then one in its own middle; counter-clockwise seen from outside, the body on the left in 2D.
+/// the middle of its edges, beginning behind corner 0, then one in its own middle; counter-clockwise
+/// seen from outside, in 2D with the body on the left.
 template <int Dim>
 class Facet {
  public:
