@@ -32,8 +32,11 @@ struct ScalarOf<L<T>> {
 template <class F, class L>
 auto prepared(L const& law, [[maybe_unused]] double step = 0) {
   if constexpr (LawWithHistory<L>) {
-    static_assert(!std::same_as<typename F::quadrature, OnePoint>,
-                  "laws with history take quadratures without hourglass control");
+    static_assert(
+        !std::same_as<typename F::quadrature, OnePoint> &&
+            !has_mean_dilatation<typename F::quadrature>,
+        "laws with history take quadratures whose points see their own deformation: neither "
+        "OnePoint nor FBar");
     return law.over(step);
   } else if constexpr (std::same_as<typename F::quadrature, OnePoint>) {
     static_assert(PointLaw<L>, "OnePoint takes laws that are the same for all elements");
