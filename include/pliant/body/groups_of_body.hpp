@@ -75,7 +75,7 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
   table.elements.regroup();
   if constexpr (Table::Laws::history_count > 0)
     backend_.template visit<Table::groups>(
-        table.elements, ForgetVisitor<T, typename Table::Laws>{table.laws, before.data()},
+        table.elements, CarryVisitor<T, typename Table::Laws>{table.laws, before.data()},
         table.no_counters, rest_field(), std::as_const(*this).displacement_field());
   checkpoint_.reset();
   forget_forces();

@@ -95,7 +95,7 @@ struct HistoryVisitor {
   }
 };
 
-/// An element comes to group G without a past: its points are as if they had always been where they are.
+/// An element is in group G without a past: its points are as if they had always been where they are.
 template <int G, class Laws, class V>
 PLIANT_HOST_DEVICE void forget_past(Laws const& groups, Index e, V const& rest, V const& u) {
   using F = typename Laws::template formulation<G>;
@@ -108,12 +108,32 @@ PLIANT_HOST_DEVICE void forget_past(Laws const& groups, Index e, V const& rest, 
   });
 }
 
-/// The same for all elements that were put into another group by hand.
+/// An element goes from one group to another. Where that keeps the past, what is kept is how it differs
+/// from a past at rest: another law's stress at the same place is no deformation.
+template <int From, int To, class Laws, class V>
+PLIANT_HOST_DEVICE void carry_past(Laws const& groups, Index e, V const& rest, V const& u) {
+  using F = typename Laws::template formulation<To>;
+  using T = std::remove_cvref_t<decltype(rest(0, 0))>;
+  if constexpr (!keeps_history<typename Laws::template formulation<From>, F>) {
+    forget_past<To>(groups, e, rest, u);
+  } else if constexpr (From != To && history_size<F> > 0) {
+    constexpr int size = history_size<F> / F::points;
+    for_each_point<F>(rest, u, [&](int q, auto const& h) PLIANT_INLINE {
+      auto const before = groups.template law<From>().relaxed(h);
+      auto const now = groups.template law<To>().relaxed(h);
+      ElementField<T, Laws::history_count> const all{groups.data.history, groups.data.elements};
+      for (int k = 0; k < size; ++k)
+        all(e, size * q + k) = all(e, size * q + k) + (now[k] - before[k]);
+    });
+  }
+}
+
+/// Carries the past of elements that were put into other groups by hand.
 template <class T, class Laws>
-struct ForgetVisitor {
+struct CarryVisitor {
   static constexpr int counters = 1;
   Laws groups;
-  Tag const* before;  // (elements)
+  Tag const* before;  // (elements): their groups; null: none, and all forget
 
   template <int G, class V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&) const {
@@ -123,22 +143,23 @@ struct ForgetVisitor {
   PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const&, Again const& again,
                                  Tally const&) const {
     if constexpr (history_size<typename Laws::template formulation<G>> > 0) {
-      if (keeps<G, 0>(before[e])) return;
       auto const [rest, u] = again();
-      forget_past<G>(groups, e, rest, u);
+      if (before == nullptr)
+        forget_past<G>(groups, e, rest, u);
+      else
+        carry<G, 0>(e, rest, u);
     }
   }
 
  private:
-  /// Whether an element of group `from` keeps its past in group G.
-  template <int G, int From>
-  PLIANT_HOST_DEVICE static bool keeps(Tag from) {
-    if constexpr (From == std::tuple_size_v<decltype(Laws::laws)>)
-      return false;
-    else
-      return from == From ? keeps_history<typename Laws::template formulation<From>,
-                                          typename Laws::template formulation<G>>
-                          : keeps<G, From + 1>(from);
+  template <int G, int From, class V>
+  PLIANT_HOST_DEVICE void carry(Index e, V const& rest, V const& u) const {
+    if constexpr (From < std::tuple_size_v<decltype(Laws::laws)>) {
+      if (before[e] == From)
+        carry_past<From, G>(groups, e, rest, u);
+      else
+        carry<G, From + 1>(e, rest, u);
+    }
   }
 };
 

@@ -83,6 +83,20 @@ void Body<B, M, Fs...>::remember() {
 }
 
 template <Backend B, class M, class... Fs>
+void Body<B, M, Fs...>::relax() {
+  synchronize_velocities();
+  for_each_table([&](auto& table) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    if constexpr (Table::Laws::history_count > 0)
+      backend_.template visit<Table::groups>(
+          table.elements, CarryVisitor<T, typename Table::Laws>{table.laws, nullptr},
+          table.no_counters, rest_field(), std::as_const(*this).displacement_field());
+  });
+  checkpoint_.reset();
+  forget_forces();
+}
+
+template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::synchronize_velocities() {
   if (owed_ == 0) return;
   evaluate_forces();

@@ -135,8 +135,8 @@ inline Eigen::VectorXd solve(Eigen::SparseMatrix<double> const& k, Eigen::Vector
 /// search: on the potential energy, or, as pressures that follow a surface have none, on the work of
 /// the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
 /// Engineering 14 (1979) 1613). Done within the tolerance, or when a step no longer moves anything but
-/// the last digits. Velocities are left alone. Throws Error, with the body as it was, where the matrix
-/// is singular or the iteration does not converge.
+/// the last digits. Laws that remember are relaxed, and remember that. Velocities are left alone. Throws
+/// Error, with the body as it was, where the matrix is singular or the iteration does not converge.
 template <class TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
   if (options.load_steps < 1 || options.max_iterations < 1 || !(options.tolerance > 0))
@@ -193,6 +193,7 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
     for (std::size_t k = 0; k < points[i].size(); ++k)
       points[i][k] = u[static_cast<Eigen::Index>(i * points[i].size() + k)];
   body.set_displacements(points);
+  if constexpr (TheBody::has_history) body.relax();
   return report;
 }
 
