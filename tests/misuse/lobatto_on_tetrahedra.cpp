@@ -1,4 +1,4 @@
-// expect: Lobatto<n> is a rule for quadrilaterals and hexahedra
+// expect: Lobatto<n> is a rule for quadrilaterals and hexahedra; take Gauss<n> or Exact
 #include <pliant/pliant.hpp>
 
 using namespace pliant;

@@ -12,7 +12,8 @@ struct Lobatto {
   PLIANT_HOST_DEVICE static constexpr auto rule() {
     static_assert(
         TensorCell<Cell>,
-        "Lobatto<n> is a rule for quadrilaterals and hexahedra; take Corners on other cells");
+        "Lobatto<n> is a rule for quadrilaterals and hexahedra; take Gauss<n> or Exact<degree> "
+        "on other cells");
     return detail::tensor_product<Cell::dim>(detail::gauss_lobatto<N>());
   }
 };
