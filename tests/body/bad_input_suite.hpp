@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pliant/law/viscosity.hpp>
+
 #include "support/formulations.hpp"
 
 // What the compiler cannot see is one exception, whose message says what was wrong, where, and what to
@@ -94,9 +96,37 @@ TEST_CASE("an impossible material is refused", "[body]") {
 
 TEST_CASE("a law's own parameters must be finite", "[body]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
-    CHECK_THROWS_WITH((Body{backend, sheet(), soft, Group<Rubber>{NeoHookean<double>{NAN, 1}}}),
-                      says("not finite"));
+    CHECK_THROWS_WITH((Body{backend, sheet(), soft, Group<Rubber>{NeoHookean<double>{3, NAN}}}),
+                      says("parameter 1 of the law given to the group on Quad4 is not finite"));
   });
+}
+
+TEST_CASE("a law's own parameters must be possible", "[body]") {
+  MainBackend const backend;
+  auto const with = [&]<template <class> class L>(L<double> const& law) {
+    Body{backend, sheet(), soft, Group<Formulation<Quad4, Gauss<2>, L>>{law}};
+  };
+  std::string const group = "body: the law given to the group on Quad4 is impossible: ";
+  CHECK_THROWS_WITH(with(Fung<double>{3, 2, 0}), group + "Fung's exponent is 0; it must not be 0");
+  CHECK_THROWS_WITH(with(Fung<double>{3, 0, 1}), says("Fung's mu is 0"));
+  CHECK_THROWS_WITH(with(Gent<double>{2, 0, 5}), says("Gent's limit is 0; it must be positive"));
+  CHECK_THROWS_WITH(with(ArrudaBoyce<double>{2, 0, 5}), says("locking stretch is 0"));
+  CHECK_THROWS_WITH(with(Ogden<double>{{2, 0, 0}, {2, 1, 0}, 5}), says("an alpha of Ogden is 0"));
+  CHECK_THROWS_WITH(with(Prony<NeoHookean, 2>::law<double>{{3, 2}, {1, 1}, {1, -2}}),
+                    says("a relaxation time of Prony is -2; it must be positive"));
+  CHECK_THROWS_WITH(with(Prony<Fung>::law<double>{{3, 2, 0}, {1}, {1}}), says("Fung's exponent"));
+  CHECK_THROWS_WITH(with(KelvinVoigt<Fung>::law<double>{{3, 2, 0}, 1}), says("Fung's exponent"));
+  CHECK_THROWS_WITH(with(PlaneStress<Fung>::law<double>{{{3, 2, 0}}}), says("Fung's exponent"));
+  CHECK_NOTHROW(with(Prony<Fung>::law<double>{{3, 2, 1}, {1}, {1}}));
+
+  using Artery = Formulation<Quad4, Gauss<2>, HolzapfelGasserOgden>;
+  HolzapfelGasserOgden<double> const artery{.mu = 2, .k1 = 1, .k2 = 0, .dispersion = 0, .bulk = 5};
+  CHECK_THROWS_WITH((Body{backend, sheet(), soft, Group<Artery>{artery, {{1, 0, 0, 0, 1, 0}}}}),
+                    says("Holzapfel-Gasser-Ogden's k2 is 0"));
+  using Graded = Formulation<Quad4, Gauss<2>, PerElement<Fung>::law>;
+  CHECK_THROWS_WITH((Body{backend, sheet(), soft,
+                          Group<Graded>{.values = {{3, 2, 1}, {3, 2, 1}, {3, 2, 0}, {3, 2, 1}}}}),
+                    says("body: the law of Quad4 element 2 is impossible: Fung's exponent is 0"));
 }
 
 /// Everything of a body that a refused call must leave alone.

@@ -10,6 +10,18 @@
 
 namespace pliant {
 
+namespace detail {
+/// Throws Error, and says where, when a law finds its parameters impossible.
+template <class L>
+void check_law(L const& law, std::string const& where) {
+  try {
+    check_parameters(law);
+  } catch (Error const& error) {
+    throw Error("body: " + where + " is impossible: " + error.what());
+  }
+}
+}  // namespace detail
+
 /// The elements that share a formulation at this moment. All elements of a type start in the first
 /// group given for that type.
 template <class F>
@@ -24,9 +36,13 @@ struct Group {
   typename F::template law<double> law_for(Elastic const& material) const {
     using L = typename F::template law<double>;
     if (law) {
-      for (double parameter : parameters(*law))
-        if (!std::isfinite(parameter))
-          throw Error("body: a law was given to a group with a parameter that is not finite");
+      std::string const where = "the law given to the group on " + std::string(F::element::name());
+      auto const values_of_law = parameters(*law);
+      for (std::size_t k = 0; k < values_of_law.size(); ++k)
+        if (!std::isfinite(values_of_law[k]))
+          throw Error("body: parameter " + std::to_string(k) + " of " + where +
+                      " is not finite; give finite parameters");
+      detail::check_law(*law, where);
       return *law;
     }
     if constexpr (LawFromElastic<L>)

@@ -37,6 +37,14 @@ ElementStart Body<B, M, Fs...>::first_elements_of(std::size_t count) const {
           columns.back()[e] = x;
         }
       }
+      auto const law = group.law_for(material_);
+      for (std::size_t e = 0; e < group.values.size(); ++e) {
+        Vector<double, element_values<F>> row;
+        for (int k = 0; k < element_values<F>; ++k)
+          row[k] = group.values[e][static_cast<std::size_t>(k)];
+        detail::check_law(law.at(row),
+                          "the law of " + std::string(E::name()) + " element " + std::to_string(e));
+      }
     }
   };
   std::apply([&](auto const&... group) { (take(group), ...); }, groups_);

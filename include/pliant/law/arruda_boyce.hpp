@@ -28,6 +28,9 @@ struct ArrudaBoyce {
     }
     return mu * i.I1_3 * sum + bulk / 2 * square(i.J_1);
   }
+  void check() const {
+    detail::demand(locking > 0, "Arruda-Boyce's locking stretch", locking, "be positive");
+  }
   /// Unless known, λₘ is 7.
   static ArrudaBoyce from(Elastic const& m, double locking = 7) {
     double stiffening = 0;  // μ/μ₀

@@ -7,6 +7,19 @@
 
 namespace pliant {
 
+namespace detail {
+/// Throws Error about a parameter unless the condition holds.
+template <class T>
+void demand(bool holds, std::string const& what, T value, std::string const& must) {
+  if (!holds) throw Error(what + " is " + text(static_cast<double>(value)) + "; it must " + must);
+}
+/// Throws Error where a law finds its parameters impossible.
+template <class L>
+void check_parameters(L const& law) {
+  if constexpr (requires { law.check(); }) law.check();
+}
+}  // namespace detail
+
 /// What an engineer knows of an isotropic material. Laws take their parameters from it such that
 /// all agree with Hooke's law at small strain.
 struct Elastic {
@@ -20,14 +33,12 @@ struct Elastic {
 
   /// Throws Error when a value is impossible.
   Elastic const& checked() const {
-    auto const refuse = [](std::string what, double value, std::string must) {
-      throw Error("material: " + what + " is " + detail::text(value) + "; it must be " + must);
-    };
-    if (!(young > 0 && std::isfinite(young)))
-      refuse("Young's modulus", young, "positive and finite (in Pa)");
-    if (!(poisson > -1 && poisson < 0.5)) refuse("Poisson's ratio", poisson, "in (-1, 0.5)");
-    if (!(density > 0 && std::isfinite(density)))
-      refuse("density", density, "positive and finite (in kg/m^3)");
+    detail::demand(young > 0 && std::isfinite(young), "material: Young's modulus", young,
+                   "be positive and finite (in Pa)");
+    detail::demand(poisson > -1 && poisson < 0.5, "material: Poisson's ratio", poisson,
+                   "be in (-1, 0.5)");
+    detail::demand(density > 0 && std::isfinite(density), "material: density", density,
+                   "be positive and finite (in kg/m^3)");
     return *this;
   }
 };

@@ -10,13 +10,17 @@ namespace pliant {
 /// Properties of Living Tissues, section 7.11.)
 template <class T>
 struct Fung {
-  T lambda, mu;  // Lamé's parameters at rest, Pa
+  T lambda, mu;  // Lamé's parameters at rest, Pa; μ not 0
   T exponent;    // b, not 0
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(GreenInvariants<S> const& E) const {
     S const Q = exponent * (2 * E.squares + lambda / mu * square(E.trace));
     return mu / (2 * exponent) * expm1(Q);
+  }
+  void check() const {
+    detail::demand(mu != 0, "Fung's mu", mu, "not be 0");
+    detail::demand(exponent != 0, "Fung's exponent", exponent, "not be 0");
   }
   /// Unless known, b is 1.
   static Fung from(Elastic const& m, double exponent = 1) {

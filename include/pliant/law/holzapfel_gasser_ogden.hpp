@@ -22,6 +22,7 @@ struct HolzapfelGasserOgden {
 
   static constexpr int element_values = 6;
 
+  void check() const { detail::demand(k2 != 0, "Holzapfel-Gasser-Ogden's k2", k2, "not be 0"); }
   /// The law of an element with its directions.
   template <class S>
   struct Along {

@@ -25,7 +25,8 @@
 // An energy of two parts, each in a set of its own, writes two functions `energy`: they add.
 // S may be T, a pack of elements or a dual number of either: write `select`, never `if`, on values,
 // and integers or T(0.5) for constants. `from` is needed only where the law takes its parameters
-// from an `Elastic`. Stress and tangent follow by differentiation.
+// from an `Elastic`, `void check() const` only where some parameters are impossible: it throws Error.
+// Stress and tangent follow by differentiation.
 namespace pliant {
 
 /// The energy is written in this set of invariants.

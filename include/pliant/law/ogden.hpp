@@ -23,6 +23,10 @@ struct Ogden {
     for (int p = 0; p < 3; ++p) w = w + term(mu[p], alpha[p], log_bar);
     return w;
   }
+  void check() const {
+    for (T a : alpha)
+      detail::demand(a != 0, "an alpha of Ogden", a, "not be 0, even where its mu is");
+  }
   /// With the exponents and the proportions of Treloar's rubber (Ogden 1972).
   static Ogden from(Elastic const& m) {
     double const unit = m.lame_mu() / 4.225;

@@ -11,6 +11,7 @@ template <class L>
 struct Sheet {
   L solid;
 
+  void check() const { detail::check_parameters(solid); }
   /// F₃₃ − 1 at the in-plane displacement gradient h, by Newton's method on ln F₃₃. It starts from
   /// F₃₃ = J₂^(−r), J₂ = det F in the plane, r the law's own ratio at rest, which is exact for
   /// λ/2 (ln J)² and in the limit of incompressibility. After 6 steps all laws here are exact to
@@ -103,6 +104,7 @@ struct Sheet<L> {
   L solid;
   static constexpr int element_values = L::element_values;
 
+  void check() const { detail::check_parameters(solid); }
   template <class S>
   PLIANT_HOST_DEVICE auto at(Vector<S, element_values> const& values) const {
     return Sheet<decltype(solid.at(values))>{solid.at(values)};

@@ -52,6 +52,8 @@ struct KelvinVoigt {
     L<T> elastic;
     T viscosity;  // η, Pa s
 
+    void check() const { detail::check_parameters(elastic); }
+
     template <int Dim>
     static constexpr int history = Dim * (Dim + 1) / 2;  // E
 
@@ -108,6 +110,12 @@ struct Prony {
     L<T> elastic;
     T share[Branches];       // β_i: stiffness of a branch over that of L
     T relaxation[Branches];  // τ_i, s
+
+    void check() const {
+      detail::check_parameters(elastic);
+      for (T tau : relaxation)
+        detail::demand(tau > 0, "a relaxation time of Prony", tau, "be positive (in s)");
+    }
 
     template <int Dim>
     static constexpr int history = (Branches + 1) * Dim * (Dim + 1) / 2;  // S_L, then the Q_i
