@@ -74,9 +74,12 @@ using sets_of = typename ChooseSets<
 
 }  // namespace detail
 
+/// A strain energy density that knows three dimensions.
+template <class L>
+concept SolidLaw = detail::sets_of<L, 3>::size > 0 || EnergyInGradient<L>;
 /// A strain energy density and its parameters, at one point of one material.
 template <class L>
-concept PointLaw = detail::sets_of<L, 3>::size > 0 || EnergyInGradient<L> || EnergyInPlane<L>;
+concept PointLaw = SolidLaw<L> || EnergyInPlane<L>;
 
 /// A law some of whose parameters differ between elements: `at(values)`, of `element_values`
 /// numbers that a body keeps per element, is the law of that element. The values may be a pack of

@@ -4,8 +4,9 @@
 
 #include <pliant/law/law.hpp>
 
-// Viscosity as a decorator of any elastic law: Formulation<Hex8, Gauss<2>, Prony<NeoHookean>::law>. What
-// flows is the second Piola-Kirchhoff stress S = F⁻¹ P, so that rotations are exact.
+// Viscosity as a decorator of an elastic law without values per element, in 3D and plane strain:
+// Formulation<Hex8, Gauss<2>, Prony<NeoHookean>::law>. What flows is the second Piola-Kirchhoff stress
+// S = F⁻¹ P, so that rotations are exact. The strain energy is that of the elastic law.
 namespace pliant {
 
 namespace detail {
@@ -49,6 +50,9 @@ template <template <class> class L>
 struct KelvinVoigt {
   template <class T>
   struct law {
+    static_assert(SolidLaw<L<double>>,
+                  "KelvinVoigt takes laws of solids without values per element: not PlaneStress, "
+                  "PerElement, or laws of fibres");
     L<T> elastic;
     T viscosity;  // η, Pa s
 
@@ -107,6 +111,9 @@ template <template <class> class L, int Branches = 1>
 struct Prony {
   template <class T>
   struct law {
+    static_assert(SolidLaw<L<double>>,
+                  "Prony takes laws of solids without values per element: not PlaneStress, "
+                  "PerElement, or laws of fibres");
     L<T> elastic;
     T share[Branches];       // β_i: stiffness of a branch over that of L
     T relaxation[Branches];  // τ_i, s

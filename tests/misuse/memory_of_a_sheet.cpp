@@ -1,0 +1,17 @@
+// expect: Prony takes laws of solids without values per element: not PlaneStress
+#include <pliant/element/linear.hpp>
+#include <pliant/formulation/formulation.hpp>
+#include <pliant/law/neo_hookean.hpp>
+#include <pliant/law/plane_stress.hpp>
+#include <pliant/law/viscosity.hpp>
+#include <pliant/quadrature/gauss.hpp>
+
+using namespace pliant;
+
+#ifndef PLIANT_MISUSE_OFF
+using Slow = Formulation<Quad4, Gauss<2>, Prony<PlaneStress<NeoHookean>::law>::law>;
+#else
+using Slow = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
+#endif
+
+static_assert(Slow::dim == 2);
