@@ -12,8 +12,10 @@
 #include "verification/swings.cpp"
 #elif defined(ROWS_EXPLICIT)
 #include "verification/same_mesh_trajectory.cpp"
-#elif defined(ROWS_LOADS)
+#elif defined(ROWS_LOADS) || defined(ROWS_SHEET) || defined(ROWS_LOCKING)
 #include "verification/cook.cpp"
+#elif defined(ROWS_FOLLOWER)
+#include "verification/land.cpp"
 #endif
 
 int main(int argc, char** argv) {
@@ -53,6 +55,12 @@ int main(int argc, char** argv) {
 #elif defined(ROWS_LOADS)
   slab<Formulation<Hex8, Gauss<2>, SimoNeoHookean> >(table, {mu, bulk},
                                                      {{2, "8.72"}, {4, "12.02"}});
+#elif defined(ROWS_SHEET)
+  sheet<Quad9, Gauss<3> >(table, {12, 24, 48});
+#elif defined(ROWS_LOCKING)
+  meets_incompressible<Quad9>(table, {24, 48});
+#elif defined(ROWS_FOLLOWER)
+  beam<Hex27>(table, {10});
 #endif
   return table.finish();
 }
