@@ -33,7 +33,10 @@ std::vector<bool> sorted_marks(Marking const& m, std::vector<T> const& values) {
       only([&](double v) { return v > -m.amount; });
       break;
     case MarkingKind::fraction_of_largest:
-      if (acting > 0) only([&, most = ranked[0]](double v) { return v > m.amount * most; });
+      if (acting > 0)
+        only([&, most = std::min(ranked[0], double{std::numeric_limits<T>::max()})](double v) {
+          return v > m.amount * most;
+        });
       break;
     case MarkingKind::top_share:
       at_most(m.amount * static_cast<double>(acting));
@@ -67,7 +70,8 @@ std::vector<bool> marks_of(Marking const& m, B const& backend,
   return marks;
 }
 
-/// Values from which some are missing (NaN): spread, with many alike, mostly zero, all alike.
+/// Values from which some are missing (NaN): spread, with many alike, mostly zero, all alike, some
+/// infinite.
 template <class T>
 std::vector<std::vector<T>> samples() {
   Random random(7);
@@ -87,6 +91,9 @@ std::vector<std::vector<T>> samples() {
       all.push_back(values);
     }
   }
+  T const infinite = std::numeric_limits<T>::infinity();
+  all.push_back({T(0.5), infinite, T(0.25), std::numeric_limits<T>::quiet_NaN(), T(0.75), T(0.25)});
+  all.push_back({infinite, T(0.5), infinite, infinite, T(0.25), infinite, T(0.125)});
   all.push_back({});
   all.push_back(std::vector<T>(5, std::numeric_limits<T>::quiet_NaN()));
   return all;
@@ -116,7 +123,7 @@ TEST_CASE("the elements that a marking marks are those of a sorted list", "[adap
                 REQUIRE(marks == expected);
               }
             }
-    CHECK(cases == 22 * 5 * (4 * 3 + 1) * 4);
+    CHECK(cases == 24 * 5 * (4 * 3 + 1) * 4);
     CHECK(marked > 100000);
   });
 }
@@ -175,6 +182,18 @@ TEST_CASE("shares beyond all and budgets of nobody are refused", "[adaptation]")
   CHECK_THROWS_AS(rule.above_fraction_of_largest(2), Error);
   CHECK_THROWS_AS(rule.above(1).budget(0), Error);
   CHECK_NOTHROW(rule.bulk(1).budget(1));
+}
+
+TEST_CASE("thresholds that are no numbers, stays and levels below zero are refused",
+          "[adaptation]") {
+  using F = Formulation<Quad4, Gauss<2>, Hooke>;
+  auto const rule = when<F>(EdgeLengthRatio{});
+  CHECK_THROWS_WITH(rule.above(NAN), says("above") && says("not a number"));
+  CHECK_THROWS_WITH(rule.below(NAN), says("below") && says("not a number"));
+  CHECK_THROWS_WITH(rule.above(1).floor(NAN), says("floor") && says("not a number"));
+  CHECK_THROWS_WITH(rule.above(1).stay(-1), says("stay of -1") && says("at least 0"));
+  CHECK_THROWS_WITH(rule.above(1).refine({.max_level = -1}), says("-1") && says("at least 0"));
+  CHECK_NOTHROW(rule.above(INFINITY).floor(-INFINITY).stay(0).refine({.max_level = 0}));
 }
 
 }  // namespace pliant::test

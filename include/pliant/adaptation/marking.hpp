@@ -11,6 +11,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/error.hpp>
+#include <pliant/math/functions.hpp>
 
 namespace pliant {
 
@@ -49,13 +50,16 @@ struct BeyondThreshold {
     return beyond ? (Sum ? static_cast<double>(values[e]) : 1.0) : 0.0;
   }
 };
+/// What is infinite counts as the largest number.
 template <class T>
 struct SignedValue {
   T const* values;
   T sign;
   PLIANT_HOST_DEVICE double operator()(Index e) const {
-    return values[e] == values[e] ? static_cast<double>(sign * values[e])
-                                  : -static_cast<double>(std::numeric_limits<T>::infinity());
+    constexpr T most = std::numeric_limits<T>::max();
+    T const v = sign * values[e];
+    return v == v ? static_cast<double>(max(-most, min(v, most)))
+                  : -std::numeric_limits<double>::infinity();
   }
 };
 
@@ -90,8 +94,8 @@ typename B::scalar threshold_of(Marking const& m, B const& backend,
   using T = typename B::scalar;
   T const sign = m.below() ? T(-1) : T(1);
   auto const extreme = backend.maximum(count, detail::SignedValue<T>{values, sign});
-  if (!std::isfinite(extreme)) return sign * std::numeric_limits<T>::infinity();  // nobody asked
-  T const strict = sign * static_cast<T>(extreme);  // beyond it there is nobody
+  T const strict = sign * std::numeric_limits<T>::infinity();  // beyond it there is nobody
+  if (!std::isfinite(extreme)) return strict;                  // nobody asked
   T const loose = static_cast<T>(
       sign *
       std::nextafter(static_cast<T>(-backend.maximum(count, detail::SignedValue<T>{values, -sign})),
@@ -117,7 +121,7 @@ typename B::scalar threshold_of(Marking const& m, B const& backend,
       break;
     }
     case MarkingKind::bulk: {
-      double const wanted = m.amount * beyond(loose, std::true_type{});
+      double const wanted = m.amount > 0 ? m.amount * beyond(loose, std::true_type{}) : 0;
       threshold =
           detail::bisect(strict, loose, [&](T t) { return beyond(t, std::true_type{}) >= wanted; });
       break;

@@ -8,6 +8,15 @@
 //   when<Linear>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine({.max_level = 6})
 namespace pliant {
 
+namespace detail {
+inline double number(char const* what, double value) {
+  if (std::isnan(value))
+    throw Error("strategy: " + std::string(what) +
+                "(NaN) is not a number to compare with; give one");
+  return value;
+}
+}  // namespace detail
+
 /// Elements of From that a criterion marks go over to To.
 template <class From, class To, class Criterion>
 struct SwitchRule {
@@ -44,7 +53,7 @@ class Marked {
           "strategy: a floor under values that are to be small; give a floor to rules that "
           "look for large values");
     Marked m = *this;
-    m.marking_.floor = value;
+    m.marking_.floor = detail::number("floor", value);
     return m;
   }
   /// At most so many elements act in one check: those of the most extreme values.
@@ -58,6 +67,8 @@ class Marked {
   }
   /// An element acts only after so many steps in its group.
   Marked stay(long steps) const {
+    if (steps < 0)
+      throw Error("strategy: a stay of " + std::to_string(steps) + " steps; give at least 0");
     Marked m = *this;
     m.stay_ = steps;
     return m;
@@ -74,6 +85,9 @@ class Marked {
                   "refine: available for Tri3 and Quad4");
     if (stay_ != 0)
       throw Error("strategy: refine has no stay; use stay with become, or check less often");
+    if (options.max_level < 0)
+      throw Error("strategy: a max_level of " + std::to_string(options.max_level) +
+                  "; give at least 0");
     return RefineRule<From, Criterion>{criterion_, marking_, options};
   }
 
@@ -89,8 +103,12 @@ class When {
  public:
   explicit When(Criterion criterion) : criterion_(criterion) {}
 
-  auto above(double value) const { return marked(MarkingKind::above, value); }
-  auto below(double value) const { return marked(MarkingKind::below, value); }
+  auto above(double value) const {
+    return marked(MarkingKind::above, detail::number("above", value));
+  }
+  auto below(double value) const {
+    return marked(MarkingKind::below, detail::number("below", value));
+  }
   auto above_fraction_of_largest(double fraction) const {
     return marked(MarkingKind::fraction_of_largest, checked(fraction));
   }
