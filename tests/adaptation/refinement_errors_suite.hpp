@@ -107,6 +107,20 @@ TEST_CASE("to refine an element that is not there is an error and leaves the bod
   });
 }
 
+TEST_CASE("lists of marks that are too few or too many are an error and leave the body",
+          "[adaptation]") {
+  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+    auto body = moving_body(backend, mesh);
+    Portrait const before(body);
+    std::size_t const types = before.groups.size();
+    for (std::size_t wrong : {types - 1, types + 1})
+      CHECK_THROWS_WITH(refine(body, Marks(wrong, {0})),
+                        says("for " + std::to_string(wrong) + " element types") &&
+                            says("the mesh has " + std::to_string(types)));
+    CHECK(Portrait(body) == before);
+  });
+}
+
 TEST_CASE("nothing marked, or only what is at its level, changes nothing", "[adaptation]") {
   on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = moving_body(backend, mesh);

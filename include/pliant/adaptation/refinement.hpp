@@ -81,13 +81,20 @@ struct RefinementReport {
 /// nodes become slaves. New nodes take displacement and velocity from the parent's shape functions,
 /// nodes that stay keep theirs and their number; each family then gets back the momentum that
 /// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
-/// exactly. Children inherit groups, conditions and named boundaries. What it did to the energy is
-/// in ledger(body). Throws Error, with the body as it was, where an element is unknown or the
-/// capacity would be exceeded.
+/// exactly. Children inherit groups, conditions on facets, pressures and named boundaries; conditions
+/// and loads on nodes stay with their nodes. What it did to the energy is in ledger(body). Throws
+/// Error, with the body as it was, where an element is unknown or the capacity would be exceeded.
 template <class TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {
   static_assert(TheBody::dim == 2, "refinement is available for plane meshes of Tri3 and Quad4");
+  std::size_t types = 0;
+  body.for_each_table([&](auto const&) { ++types; });
+  if (marked.size() != types)
+    throw Error("refine: got lists of marked elements for " + std::to_string(marked.size()) +
+                " element types, but the mesh has " + std::to_string(types) +
+                "; give one list per type, empty where none is refined");
+  if (std::ranges::all_of(marked, &std::vector<Index>::empty)) return {};
   Hierarchy const before = detail::tree_of(body);
   auto after = std::make_shared<Hierarchy>(before);
 
