@@ -65,6 +65,23 @@ TEST_CASE("a stride leaves what lies between the nodes alone", "[body]") {
   });
 }
 
+TEST_CASE("strides that would mix up the nodes are refused", "[body][errors]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(3);
+    auto body = body_of<Rubber>(backend, mesh);
+    auto const u = upload(backend, std::vector<double>(2 * mesh.nodes.size(), 0.0));
+    auto f = upload(backend, std::vector<double>(2 * mesh.nodes.size(), 3.0));
+
+    CHECK_THROWS_WITH(body.add_force(u.data(), f.data(), 1),
+                      says("body.add_force: stride 1 is smaller than the dimension 2"));
+    CHECK_THROWS_WITH(body.add_tangent_product(u.data(), u.data(), f.data(), 1, -2),
+                      says("body.add_tangent_product: stride -2"));
+    CHECK_THROWS_WITH(body.energy(u.data(), 0), says("body.energy: stride 0"));
+
+    CHECK(download<double>(f) == std::vector<double>(2 * mesh.nodes.size(), 3.0));
+  });
+}
+
 TEST_CASE("the user's numbering does not matter", "[body]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;

@@ -99,7 +99,7 @@ class Body {
   double total_energy() { return strain_energy() + kinetic_energy() + potential_energy(); }
 
   // For a simulator that owns its state: arrays in the backend's memory, node i at [stride i], which
-  // are added to and never overwritten.
+  // are added to and never overwritten. Error where a stride is smaller than the dimension.
   void add_force(T const* u, T* f, int stride = dim);
   /// f += factor · ∂F/∂u · du, at the displacement u.
   void add_tangent_product(T const* u, T const* du, T* f, double factor = 1, int stride = dim);

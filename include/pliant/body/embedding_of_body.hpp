@@ -5,6 +5,15 @@
 // Members of Body for a simulator that owns its state.
 namespace pliant {
 
+namespace detail {
+inline void check_stride(char const* verb, int stride, int dim) {
+  if (stride < dim)
+    throw Error("body." + std::string(verb) + ": stride " + std::to_string(stride) +
+                " is smaller than the dimension " + std::to_string(dim) +
+                "; node i starts at [stride i]");
+}
+}  // namespace detail
+
 template <Backend B, class M, class... Fs>
 auto Body<B, M, Fs...>::scratch() -> Scratch& {
   if (!scratch_) {
@@ -16,6 +25,7 @@ auto Body<B, M, Fs...>::scratch() -> Scratch& {
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::add_force(T const* u, T* f, int stride) {
+  detail::check_stride("add_force", stride, dim);
   Scratch& s = scratch();
   Field const own_u{s.u.data()}, own_f{s.f.data()};
   Index const* order = layout_.user_node_array.data();
@@ -30,6 +40,7 @@ void Body<B, M, Fs...>::add_force(T const* u, T* f, int stride) {
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::add_tangent_product(T const* u, T const* du, T* f, double factor,
                                             int stride) {
+  detail::check_stride("add_tangent_product", stride, dim);
   Scratch& s = scratch();
   Field const own_u{s.u.data()}, own_du{s.du.data()}, own_f{s.f.data()};
   Index const* order = layout_.user_node_array.data();
@@ -57,6 +68,7 @@ void Body<B, M, Fs...>::add_tangent_product(T const* u, T const* du, T* f, doubl
 
 template <Backend B, class M, class... Fs>
 double Body<B, M, Fs...>::energy(T const* u, int stride) {
+  detail::check_stride("energy", stride, dim);
   Scratch& s = scratch();
   Field const own_u{s.u.data()};
   backend_.for_each(nodes(), FromUser<T, dim>{own_u, u, stride, layout_.user_node_array.data()});
