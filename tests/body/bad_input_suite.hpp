@@ -207,4 +207,21 @@ TEST_CASE("a body that has no stable step says so", "[body]") {
   });
 }
 
+TEST_CASE("laws go on with their time step when there is no stable one", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Quad4, Gauss<2>, KelvinVoigt<SaintVenantKirchhoff>::template law>;
+    typename F::template law<double> const law{{3, 2}, 0.5};
+    auto const mesh = sheet();
+    Body body{backend, mesh, soft, Group<F>{law}};
+    CentralDifference step{{.step = 1e-3}};
+    step(body, 3);
+    body.clamp(nodes_of(mesh::outer_sides(mesh)));
+    body.clamp(std::vector<Index>{4});
+
+    CHECK_THROWS_AS(stable_step(body), Error);
+
+    CHECK(body.step_size() == 1e-3);
+  });
+}
+
 }  // namespace pliant::test

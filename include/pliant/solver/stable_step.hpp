@@ -162,6 +162,21 @@ double squared_frequency_bound(TheBody& body) {
   return eigenvalue;
 }
 
+/// Laws see another time step for as long as this lives.
+template <class TheBody>
+class WithStepSize {
+ public:
+  WithStepSize(TheBody& body, double step) : body_(body), before_(body.step_size()) {
+    body.set_step_size(step);
+  }
+  WithStepSize(WithStepSize const&) = delete;
+  ~WithStepSize() { body_.set_step_size(before_); }
+
+ private:
+  TheBody& body_;
+  double before_;
+};
+
 }  // namespace detail
 
 /// A time step, s, below which central differences are certain to be stable for the body frozen in
@@ -176,12 +191,9 @@ double stable_step(TheBody& body) {
   if constexpr (!TheBody::has_history) {
     return 2 / std::sqrt(detail::squared_frequency_bound(body));
   } else {
-    double const before = body.step_size();
     auto const bound = [&](double step) {  // of laws that see a time step
-      body.set_step_size(step);
-      double const b = detail::squared_frequency_bound(body);
-      body.set_step_size(before);
-      return b;
+      detail::WithStepSize const with(body, step);
+      return detail::squared_frequency_bound(body);
     };
     // At once no branch has relaxed, and no dashpot acts; one of rate c adds 2 c/Δt to Δt/2's stiffness.
     double const at_once = bound(0);
