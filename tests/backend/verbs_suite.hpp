@@ -114,6 +114,19 @@ TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
   });
 }
 
+TEST_CASE("copies beyond the end of an array are refused", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const&) {
+    typename B::template Array<float> array(1000);
+    std::vector<float> numbers(1001, 1.0f);
+
+    CHECK_THROWS_WITH(array.upload(numbers), says("copy of 1001 values, but the array holds 1000"));
+    CHECK_THROWS_WITH(array.download(numbers),
+                      says("copy of 1001 values, but the array holds 1000"));
+
+    CHECK(download<float>(array) == std::vector<float>(1000, 0.0f));
+  });
+}
+
 TEST_CASE("node loops see every node once", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     for (Index n : {0, 1, 31, 4096, 4097, 100000}) {

@@ -72,7 +72,8 @@ class OpenMP {
   template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
-#pragma omp parallel for schedule(static) num_threads(threads_) reduction(max : largest)
+#pragma omp parallel for schedule(static) num_threads(threads_) if (n > small_loop) \
+    reduction(max : largest)
     for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));
     return largest;
   }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <new>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <pliant/config.hpp>
+#include <pliant/error.hpp>
 
 namespace pliant {
 
@@ -35,12 +37,24 @@ class HostArray {
   U* data() { return values_.data(); }
   U const* data() const { return values_.data(); }
   std::size_t size() const { return values_.size(); }
-  void upload(std::span<U const> values) { std::ranges::copy(values, values_.begin()); }
+  /// Overwrites the first values.
+  void upload(std::span<U const> values) {
+    check(values.size());
+    std::ranges::copy(values, values_.begin());
+  }
+  /// Reads the first values.
   void download(std::span<U> values) const {
+    check(values.size());
     std::copy_n(values_.begin(), values.size(), values.begin());
   }
 
  private:
+  void check(std::size_t count) const {
+    if (count > size())
+      throw Error("HostArray: copy of " + std::to_string(count) + " values, but the array holds " +
+                  std::to_string(size()) + "; make the array larger");
+  }
+
   std::vector<U, detail::CacheLineAllocator<U>> values_;
 };
 
