@@ -42,12 +42,13 @@ struct Labels {
 };
 
 /// Rows of one group of problems: prints them as Markdown, and keeps what a plot needs.
-/// Options of the program: --full (finer meshes, minutes), --csv FILE (errors by mesh size are added).
+/// Options of the program: --quick (without the dear problems and finest meshes), --csv FILE (errors by mesh
+/// size are added).
 class Table {
  public:
   Table(std::string title, int argc, char** argv) : title_(std::move(title)) {
     for (int i = 1; i < argc; ++i) {
-      if (std::string_view(argv[i]) == "--full") full_ = true;
+      if (std::string_view(argv[i]) == "--quick") full_ = false;
       if (std::string_view(argv[i]) == "--csv" && i + 1 < argc) csv_.open(argv[++i], std::ios::app);
     }
     std::printf(
@@ -134,7 +135,7 @@ class Table {
   }
 
   std::string title_;
-  bool full_ = false;
+  bool full_ = true;
   std::ofstream csv_;
   int rows_ = 0, missed_ = 0;
 };
