@@ -37,11 +37,13 @@ struct Group {
     using L = typename F::template law<double>;
     if (law) {
       std::string const where = "the law given to the group on " + std::string(F::element::name());
-      auto const values_of_law = parameters(*law);
-      for (std::size_t k = 0; k < values_of_law.size(); ++k)
-        if (!std::isfinite(values_of_law[k]))
+      int k = 0;
+      for (double parameter : parameters(*law)) {
+        if (!std::isfinite(parameter))
           throw Error("body: parameter " + std::to_string(k) + " of " + where +
                       " is not finite; give finite parameters");
+        ++k;
+      }
       detail::check_law(*law, where);
       return *law;
     }
