@@ -31,6 +31,8 @@ class Adaptation {
   /// Looks and acts at once, whatever the interval.
   template <class TheBody>
   void now(TheBody& body) {
+    static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
+                  "a rule is for an element type that the body's mesh does not have");
     constexpr bool refines = (!detail::Switches<Rules> || ...);
     auto& watches = body.watches();
     watches.criteria.start();

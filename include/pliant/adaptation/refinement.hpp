@@ -12,6 +12,11 @@ namespace pliant {
 
 namespace detail {
 
+template <class E>
+inline constexpr bool can_be_split = std::same_as<E, Tri3> || std::same_as<E, Quad4>;
+template <Element... Es>
+inline constexpr bool can_be_split<Mesh<Es...>> = (can_be_split<Es> && ...);
+
 template <class E, Element... Es>
 std::vector<Connectivity<E>> elements_or_none(Mesh<Es...> const& mesh) {
   if constexpr ((std::same_as<E, Es> || ...))
@@ -87,7 +92,8 @@ struct RefinementReport {
 template <class TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {
-  static_assert(TheBody::dim == 2, "refinement is available for plane meshes of Tri3 and Quad4");
+  static_assert(detail::can_be_split<typename TheBody::mesh_type>,
+                "refinement is available for plane meshes of Tri3 and Quad4");
   std::size_t types = 0;
   body.for_each_table([&](auto const&) { ++types; });
   if (marked.size() != types)
