@@ -122,6 +122,23 @@ TEST_CASE("one integrator may step two bodies in turn", "[solver]") {
   });
 }
 
+TEST_CASE("a body does not inherit the halved step of the one before", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto first = body_of<Rubber>(backend, strip());
+    first.clamp(first.mesh().boundary("left"));
+    first.set_gravity({0, -0.05});
+    double const given = 4 * stable_step(first);
+    CentralDifference step{{.step = given, .check_interval = 32}};
+    step(first, 200);
+    REQUIRE(step.step() < given);
+    auto still = body_of<Rubber>(backend, strip());
+
+    step(still);
+
+    CHECK(step.step() == given);
+  });
+}
+
 TEST_CASE("a state that is not finite from the start is an error", "[solver]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto const mesh = strip();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <pliant/body/ledger.hpp>
 #include <pliant/solver/stable_step.hpp>
@@ -59,7 +60,7 @@ class CentralDifference {
   /// A body, a mesh, or a state that was not seen before.
   template <class TheBody>
   void begin(TheBody& body) {
-    body_ = &body;
+    if (std::exchange(body_, &body) != &body) slower_ = 1;
     checked_nodes_ = body.nodes();
     next_check_ = next_refresh_ = body.steps();
     energy_ = std::numeric_limits<double>::infinity();
