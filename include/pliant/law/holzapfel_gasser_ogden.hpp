@@ -27,6 +27,7 @@ struct HolzapfelGasserOgden {
   template <class S>
   struct Along {
     HolzapfelGasserOgden law;
+    T scale;  // k₁/(2 k₂), Pa
     Vector<S, 3> fibres[2];
 
     template <class V>
@@ -36,12 +37,13 @@ struct HolzapfelGasserOgden {
     template <class V>
     PLIANT_HOST_DEVICE V energy(FibreStretch<V> const& i) const {
       V const strain = law.dispersion * i.I1_3 + (1 - 3 * law.dispersion) * i.I4_1;
-      return law.k1 / (2 * law.k2) * expm1(law.k2 * square(max(strain, V(0))));
+      return scale * expm1(law.k2 * square(max(strain, V(0))));
     }
   };
   template <class S>
   PLIANT_HOST_DEVICE Along<S> at(Vector<S, 6> const& a) const {
     return {*this,
+            k1 / (2 * k2),
             {detail::normalised(Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
              detail::normalised(Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})}};
   }
