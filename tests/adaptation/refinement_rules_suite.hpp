@@ -49,12 +49,19 @@ TEST_CASE("a rule refines the elements of its formulation that it marks", "[adap
   });
 }
 
+template <Element E>
+using Rubber = std::conditional_t<std::same_as<E, Tri3>, TriRubber, QuadRubber>;
+
+template <Element... Es>
+auto refine_all(Mesh<Es...> const&, RefineOptions options) {
+  return Adaptation{when<Rubber<Es>>(Constant{1}).above(0.5).refine(options)...};
+}
+
 TEST_CASE("elements are refined as often as their rule says", "[adaptation]") {
   on_plane_meshes<DoubleBackends>(3, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     auto const all = element_count(body);
-    Adaptation adapt{when<TriRubber>(Constant{1}).above(0.5).refine({.max_level = 2}),
-                     when<QuadRubber>(Constant{1}).above(0.5).refine({.max_level = 2})};
+    auto adapt = refine_all(mesh, {.max_level = 2});
     for (std::size_t k : {4u, 16u, 16u}) {
       adapt.now(body);
       CHECK(element_count(body) == k * all);
