@@ -1,7 +1,9 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
+#include <pliant/body/conditions.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/formulation/mass.hpp>
 #include <pliant/mesh/hierarchy.hpp>
@@ -59,6 +61,33 @@ inline void add_family_impulse(Hierarchy const& tree, Index parent, double densi
       for (std::size_t k = 0; k < 2; ++k)
         impulse[static_cast<std::size_t>(tree.cell(c).nodes[a])][k] += lost[k] * areas[a] / area;
   }
+}
+
+/// Gives each family of a refinement its momentum back by changing velocities; returns what held
+/// nodes took of it, N s. Slaves hand their impulse to their masters.
+template <class Layout>
+Point<2> give_momentum_back(Hierarchy const& tree, std::vector<Index> const& parents,
+                            double density, Layout const& layout,
+                            std::vector<Condition<2>> const& conditions, std::vector<Point<2>>& v) {
+  std::vector<Point<2>> impulse(v.size(), Point<2>{});
+  for (Index parent : parents) add_family_impulse(tree, parent, density, v, impulse);
+  for (Slave const& slave : layout.slave_list) {
+    Point<2> const own = std::exchange(impulse[static_cast<std::size_t>(slave.node)], Point<2>{});
+    for (auto const& [master, weight] : slave.masters)
+      for (std::size_t k = 0; k < 2; ++k)
+        impulse[static_cast<std::size_t>(master)][k] += weight * own[k];
+  }
+  std::vector<DirectionMask> held(v.size(), 0);
+  for (auto const& condition : conditions)
+    for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
+  Point<2> taken{};
+  for (std::size_t i = 0; i < v.size(); ++i)
+    for (std::size_t k = 0; k < 2; ++k)
+      if (held[i] >> k & 1)
+        taken[k] += impulse[i][k];
+      else if (layout.mass_list[i] > 0)
+        v[i][k] += impulse[i][k] / layout.mass_list[i];
+  return taken;
 }
 
 }  // namespace pliant::detail
