@@ -95,6 +95,24 @@ TEST_CASE(
       CentralDifference{{.step = 1e-2}}(body, 2);
       CHECK(pull(body) == Approx(elastic + 1.1 * std::exp(-4 * x) * branch).epsilon(1e-12));
     }
+    SECTION("kept by a rule") {
+      auto body = stretched();
+      double const x = 1e-2 / 10, decay = std::exp(-x);
+      double const branch = 0.5 * (1 - decay) / x * 7 * 0.105;
+      Adaptation soften{when<A>(EdgeLengthRatio{}).above(0.01).template become<C>()};
+      soften.now(body);
+      REQUIRE(body.template groups_of<Quad4>()[0] == 1);
+      double const elastic = 2 * (1.1 - 1 / 1.1) + 3 * std::log(1.1) / 1.1;
+      CHECK(pull(body) == Approx(elastic + 1.1 * square(decay) * branch).epsilon(1e-12));
+    }
+    SECTION("begun by a rule") {
+      auto body = stretched();
+      body.template assign<Elastic>({0});
+      Adaptation soften{when<Elastic>(EdgeLengthRatio{}).above(0.01).template become<A>()};
+      soften.now(body);
+      REQUIRE(body.template groups_of<Quad4>()[0] == 0);
+      CHECK(pull(body) == Approx(1.1 * 7 * 0.105).epsilon(1e-12));
+    }
     SECTION("begun") {
       auto body = stretched();
       body.template assign<Elastic>({0});

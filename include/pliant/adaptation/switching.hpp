@@ -130,13 +130,15 @@ struct SwitchVisitor {
     auto const old_law = groups.template law<From>(own);
     auto const new_law = groups.template law<To>(own);
     auto const [rest, u, v] = again();
-    T const before = energy<Old>(old_law, rest, u), after = energy<New>(new_law, rest, u);
-    auto const difference = force<New>(new_law, rest, u) - force<Old>(old_law, rest, u);
+    T const before = energy<Old>(old_law, rest, u);
+    auto const pull_before = force<Old>(old_law, rest, u);
+    carry_past<From, To>(groups, e, rest, u);
+    T const after = energy<New>(new_law, rest, u);
+    auto const difference = force<New>(new_law, rest, u) - pull_before;
     tally(Counters::kinetic(From, To), static_cast<double>(owed * dot(difference, v)));
     tally(Counters::steps_of(From), static_cast<double>(step - since[e]));
     tally(Counters::moves(From, To), 1.0);
     tally(Counters::energy(From, To), static_cast<double>(after - before));
-    if constexpr (!keeps_history<Old, New>) forget_past<To>(groups, e, rest, u);
     tags[e] = static_cast<Tag>(To);
     since[e] = step;
     switches[e] = static_cast<std::uint16_t>(switches[e] + 1);
