@@ -103,9 +103,10 @@ struct RefinementReport {
 /// nodes become slaves. New nodes take displacement and velocity from the parent's shape functions,
 /// nodes that stay keep theirs and their number; each family then gets back the momentum that
 /// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
-/// exactly. Children inherit groups, conditions on facets, pressures and named boundaries; conditions
-/// and loads on nodes stay with their nodes. What it did to the energy is in ledger(body). Throws
-/// Error, with the body as it was, where an element is unknown or the capacity would be exceeded.
+/// exactly. Children inherit groups, conditions on facets, pressures and named boundaries;
+/// conditions and loads on nodes stay with their nodes. What it did to the energy is in ledger(body).
+/// Throws Error, with the body as it was, where an element is unknown or the capacity would be
+/// exceeded.
 template <class TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {

@@ -8,7 +8,7 @@
 namespace pliant {
 
 namespace detail {
-/// Facets told by their corners as the mesh has them: in its order, with all nodes, seen from outside.
+/// Facets told by their corners as the mesh has them: with all nodes, seen from outside.
 template <class M>
 std::vector<Facet<M::dim>> outer_facets(M const& mesh, std::vector<Facet<M::dim>> facets) {
   std::map<std::array<Index, 4>, Facet<M::dim>> outer;
