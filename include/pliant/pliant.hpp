@@ -1,7 +1,7 @@
 #pragma once
 
-// Everything that is independent of a backend, but the solvers that assemble sparse matrices:
-// <pliant/solver/newton.hpp>.
+// Everything that is independent of a backend, but what works on sparse matrices: solver/newton.hpp,
+// solver/newmark.hpp, solver/assemble.hpp and solver/assemble_mass.hpp.
 #include <pliant/adaptation/adaptation.hpp>
 #include <pliant/adaptation/criterion/combine.hpp>
 #include <pliant/adaptation/criterion/deformation.hpp>

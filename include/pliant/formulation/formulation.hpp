@@ -16,7 +16,7 @@ constexpr bool enough_points() {
                 needed = E::nodes * E::dim - rigid_motions;
   if constexpr (requires { Q::controls_hourglasses; })
     return true;
-  else if constexpr (has_mean_dilatation<Q> && E::dim == 3)  // deviators, and one dilatation
+  else if constexpr (has_mean_dilatation<Q> && E::dim == 3)  // deviators, and a dilatation
     return points * (strains - 1) + 1 >= needed;
   else
     return points * strains >= needed;

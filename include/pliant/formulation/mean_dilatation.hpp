@@ -72,7 +72,7 @@ class Projection {
   Tensor<S, size> moments_ = Tensor<S, size>::zero();  // ∫ φ_m φ_n, the lower half
 };
 
-/// Each point sees the mean dilatation of the element: W_E = Σ_q w_q det J W(H̄_q); see FBar. In plane
+/// The points see the mean dilatation of the element, as Projection makes it: W_E = Σ_q w_q det J W(H̄_q); see FBar. In plane
 /// strain too F̄ is that of space, with F̄₃₃ = (J̄/J)^(1/3): deviators of the plane alone would leave all
 /// conformal maps free.
 template <class F, Geometry G>
