@@ -51,17 +51,6 @@ struct FaceWith<3, 9> {
   using type = Quad9;
 };
 
-/// The area vector that the tangents of a surface span.
-template <class S>
-PLIANT_HOST_DEVICE Vector<S, 2> area_of(Matrix<S, 2, 1> const& t) {
-  return {{{t(1, 0)}, {-t(0, 0)}}};
-}
-template <class S>
-PLIANT_HOST_DEVICE Vector<S, 3> area_of(Matrix<S, 3, 2> const& t) {
-  return cross(Vector<S, 3>{{{t(0, 0)}, {t(1, 0)}, {t(2, 0)}}},
-               Vector<S, 3>{{{t(0, 1)}, {t(1, 1)}, {t(2, 1)}}});
-}
-
 /// F_a = −p ∫ N_a n da over the deformed facet, N.
 template <int Dim, class Face, class S>
 PLIANT_HOST_DEVICE Matrix<S, Face::nodes, Dim> pressure_force(

@@ -106,6 +106,16 @@ template <class T>
 PLIANT_HOST_DEVICE constexpr Vector<T, 3> cross(Vector<T, 3> const& a, Vector<T, 3> const& b) {
   return {{{a[1] * b[2] - a[2] * b[1]}, {a[2] * b[0] - a[0] * b[2]}, {a[0] * b[1] - a[1] * b[0]}}};
 }
+/// The area vector that the tangents of a surface span, one per column.
+template <class T>
+PLIANT_HOST_DEVICE constexpr Vector<T, 2> area_of(Matrix<T, 2, 1> const& t) {
+  return {{{t(1, 0)}, {-t(0, 0)}}};
+}
+template <class T>
+PLIANT_HOST_DEVICE constexpr Vector<T, 3> area_of(Matrix<T, 3, 2> const& t) {
+  return cross(Vector<T, 3>{{{t(0, 0)}, {t(1, 0)}, {t(2, 0)}}},
+               Vector<T, 3>{{{t(0, 1)}, {t(1, 1)}, {t(2, 1)}}});
+}
 template <class T, int R, int C>
 PLIANT_HOST_DEVICE T norm(Matrix<T, R, C> const& a) {
   return sqrt(dot(a, a));

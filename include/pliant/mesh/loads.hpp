@@ -39,12 +39,7 @@ struct SidePoint {
   }
   /// The area that the point stands for, as a vector that points outwards.
   Vector<double, E::dim> area(Nodal<E, double> const& x) const {
-    auto const t = transpose(x) * slope;  // (dim, dim − 1): how x moves along the side
-    if constexpr (E::dim == 2)
-      return {{{weight * t(1, 0)}, {-weight * t(0, 0)}}};
-    else
-      return weight * cross(Vector<double, 3>{{{t(0, 0)}, {t(1, 0)}, {t(2, 0)}}},
-                            Vector<double, 3>{{{t(0, 1)}, {t(1, 1)}, {t(2, 1)}}});
+    return weight * area_of(transpose(x) * slope);
   }
 };
 

@@ -42,9 +42,7 @@ struct AspectRatio {
             p[i] = x(side[1], i) - x(side[0], i);
             q[i] = x(side[2], i) - x(side[0], i);
           }
-          S const n0 = p[1] * q[2] - p[2] * q[1], n1 = p[2] * q[0] - p[0] * q[2],
-                  n2 = p[0] * q[1] - p[1] * q[0];
-          area = area + sqrt(n0 * n0 + n1 * n1 + n2 * n2) / T(2);
+          area = area + norm(cross(p, q)) / T(2);
         }
         return longest * area / (T(14.69693845669906858918) * size);  // 6√6
       }
