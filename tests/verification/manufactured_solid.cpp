@@ -7,8 +7,8 @@ template <template <class> class L>
 void elements(Table& table, bool full) {
   std::vector<int> linear{8, 12}, quadratic{4, 6};
   if (full) {
-    linear.push_back(20);
-    quadratic.push_back(9);
+    linear.push_back(16);
+    quadratic.push_back(8);
   }
   manufactured_rows<Tet4, L>(table, linear);
   manufactured_rows<Hex8, L>(table, linear);
