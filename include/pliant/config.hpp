@@ -3,8 +3,12 @@
 #include <cstdint>
 
 /// Stands between the parameters and the body of a lambda in a kernel: out of line it would take packs
-/// of elements through memory.
+/// of elements through memory. Nothing where the compiler does not optimise: that compiles faster.
+#if defined(__OPTIMIZE__) || defined(__CUDACC__)
 #define PLIANT_INLINE __attribute__((always_inline))
+#else
+#define PLIANT_INLINE
+#endif
 
 /// Marks functions that run on the host and, when compiled as CUDA, on the device too.
 #if defined(__CUDACC__)
