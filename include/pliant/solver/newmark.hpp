@@ -85,7 +85,8 @@ class Newmark {
       auto const force = assemble(body, s.u, Assemble::energy_and_force).force;
       Eigen::VectorXd const pull = force + external - body.damping() * (mass * s.v);
       Eigen::VectorXd a = Eigen::VectorXd::Zero(s.u.size());
-      problem.add(a, detail::solve(problem.restrict(mass), problem.restrict(pull), true), 1);
+      problem.add(a, detail::solve("Newmark", problem.restrict(mass), problem.restrict(pull), true),
+                  1);
       return a;
     }
   };
@@ -125,7 +126,8 @@ class Newmark {
                     " iterations, residual " + detail::text(size) +
                     " N; take smaller steps, or a law that does not soften");
       Eigen::SparseMatrix<double> const matrix = system.problem.restrict(state.stiffness) + inertia;
-      Eigen::VectorXd const du = detail::solve(matrix, residual, system.body.pressures().empty());
+      Eigen::VectorXd const du =
+          detail::solve("Newmark", matrix, residual, system.body.pressures().empty());
       system.problem.add(then.u, du, 1);
       last_change = du.norm();
     }

@@ -110,11 +110,12 @@ class StaticProblem {
   Index unknowns_ = 0;
 };
 
-inline Eigen::VectorXd solve(Eigen::SparseMatrix<double> const& k, Eigen::VectorXd const& r,
-                             bool is_symmetric) {
-  Error const singular(
-      "solve_static: the stiffness matrix is singular; hold the body against rigid motion, or look "
-      "for a collapsed element");
+/// `solver`: whose errors these are.
+inline Eigen::VectorXd solve(char const* solver, Eigen::SparseMatrix<double> const& k,
+                             Eigen::VectorXd const& r, bool is_symmetric) {
+  Error const singular(std::string(solver) +
+                       ": the matrix is singular; hold the body against rigid motion, or look for "
+                       "a collapsed element");
   if (Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric;
       is_symmetric && (symmetric.compute(k), symmetric.info() == Eigen::Success)) {
     Eigen::VectorXd const pivots = symmetric.vectorD().cwiseAbs();
@@ -167,7 +168,7 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
                     " iterations, residual " + detail::text(report.residual) +
                     " N; use more load_steps, or a law that does not soften");
       Eigen::VectorXd const du =
-          detail::solve(problem.restrict(state.stiffness), residual, conservative);
+          detail::solve("solve_static", problem.restrict(state.stiffness), residual, conservative);
       double factor = 1;
       Eigen::VectorXd trial;
       double const potential = state.energy - load.dot(u);
