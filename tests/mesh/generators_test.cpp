@@ -145,6 +145,16 @@ TEST_CASE("outer sides are found by their place", "[mesh]") {
   CHECK(nodes_of(lid) == nodes_of(mesh.boundary("top")));
 }
 
+TEST_CASE("elements of nodes that the mesh has not are refused when its sides are looked for",
+          "[mesh]") {
+  for (Index wrong : {-1, 20}) {
+    auto mesh = slab<Quad4>();
+    mesh.elements<Quad4>()[5][2] = wrong;
+    CHECK_THROWS_WITH(mesh::outer_sides(mesh),
+                      says("node " + std::to_string(wrong)) && says("20 nodes"));
+  }
+}
+
 TEST_CASE("sizes that make no mesh are refused", "[mesh]") {
   CHECK_THROWS_AS(mesh::rectangle({.size = {1, 0}, .cells = {2, 2}}), Error);
   CHECK_THROWS_AS(mesh::rectangle({.size = {1, NAN}, .cells = {2, 2}}), Error);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/slave.hpp>
 
 namespace pliant {
@@ -97,18 +98,28 @@ class Slaves {
     return rows;
   }
   static HostRows rows_by_master(std::vector<Slave> const& slaves) {
-    std::vector<Slave> transposed;
-    std::vector<std::pair<Index, std::pair<Index, double>>> entries;
-    for (auto const& slave : slaves)
-      for (auto const& [master, weight] : slave.masters)
-        entries.push_back({master, {slave.node, weight}});
-    std::ranges::sort(entries);
-    for (auto const& [master, entry] : entries) {
-      if (transposed.empty() || transposed.back().node != master)
-        transposed.push_back({master, {}});
-      transposed.back().masters.push_back(entry);
+    std::vector<Index> slave, master;
+    std::vector<double> weight;
+    for (auto const& [node, masters] : slaves)
+      for (auto const& [other, share] : masters) {
+        slave.push_back(node);
+        master.push_back(other);
+        weight.push_back(share);
+      }
+    HostRows rows;
+    auto const last = std::ranges::max_element(master);
+    auto const grouped = detail::group_by_key(master, last == master.end() ? 0 : *last + 1);
+    for (std::size_t k = 0; k + 1 < grouped.first.size(); ++k) {
+      if (grouped.first[k] == grouped.first[k + 1]) continue;
+      rows.node.push_back(static_cast<Index>(k));
+      for (Index j = grouped.first[k]; j < grouped.first[k + 1]; ++j) {
+        auto const entry = static_cast<std::size_t>(grouped.order[static_cast<std::size_t>(j)]);
+        rows.other.push_back(slave[entry]);
+        rows.weight.push_back(static_cast<T>(weight[entry]));
+      }
+      rows.first.push_back(static_cast<Index>(rows.other.size()));
     }
-    return rows_by_slave(transposed);
+    return rows;
   }
 
   Rows to_slaves_, to_masters_;

@@ -14,7 +14,7 @@
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
 #include <pliant/mesh/cell_tree.hpp>
-#include <pliant/mesh/slave.hpp>
+#include <pliant/mesh/compose.hpp>
 
 namespace pliant {
 

@@ -90,7 +90,7 @@ template <int Dim>
 std::vector<Index> nodes_of(std::vector<Facet<Dim>> const& facets) {
   std::vector<Index> nodes;
   for (auto const& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
-  std::ranges::sort(nodes);
+  std::sort(nodes.data(), nodes.data() + nodes.size());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }

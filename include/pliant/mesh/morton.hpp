@@ -7,9 +7,28 @@
 #include <span>
 #include <vector>
 
+#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
 
 namespace pliant {
+
+namespace detail {
+/// The positions of codes from the smallest to the largest, of equal ones in their order: a radix sort.
+inline std::vector<Index> ascending(std::vector<std::uint64_t> const& codes) {
+  constexpr int digit = 11;  // bits
+  std::vector<Index> order(codes.size()), before, keys(codes.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (int shift = 0; shift < 64; shift += digit) {
+    for (std::size_t i = 0; i < order.size(); ++i)
+      keys[i] = static_cast<Index>(codes[static_cast<std::size_t>(order[i])] >> shift &
+                                   ((1u << digit) - 1));
+    before.swap(order);
+    order = group_by_key(keys, 1 << digit).order;
+    for (Index& i : order) i = before[static_cast<std::size_t>(i)];
+  }
+  return order;
+}
+}  // namespace detail
 
 /// The order of points along a Morton (Z) curve through their bounding box: neighbours in space
 /// become neighbours in memory. Equal codes keep their order.
@@ -40,10 +59,7 @@ std::vector<Index> morton_order(std::span<std::array<double, Dim> const> points)
       for (std::size_t k = Dim; k-- > 0;) code = code << 1 | (cell[k] >> b & 1);
     codes.push_back(code);
   }
-  std::vector<Index> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](Index i) { return codes[static_cast<std::size_t>(i)]; });
-  return order;
+  return detail::ascending(codes);
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
 
 // From elements to the boundary, and from corners to the nodes between them.
@@ -51,31 +52,45 @@ template <int Dim>
 std::array<Index, 4> key_of(Facet<Dim> const& facet) {
   std::array<Index, 4> key{-1, -1, -1, -1};
   std::copy_n(facet.begin(), facet.corners(), key.begin());
-  std::ranges::sort(key);
+  std::sort(key.data(), key.data() + key.size());
   return key;
 }
 
-/// The sides of elements that have no element behind them: the boundary of a mesh.
+/// The sides of elements that have no element behind them: the boundary of a mesh, in the order of their
+/// smallest corner. Throws Error for an element of nodes that the mesh has not.
 template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
-  struct Seen {
-    Facet<Mesh<Es...>::dim> facet;
-    int times = 0;
-  };
-  std::map<std::array<Index, 4>, Seen> seen;
+  std::vector<Facet<Mesh<Es...>::dim>> sides, outer;
   auto const look_at = [&]<Element E>(E) {
     for (auto const& element : mesh.template elements<E>())
-      for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
-        auto const facet = side_of<E>(element, static_cast<int>(s));
-        auto& entry = seen[key_of(facet)];
-        entry.facet = facet;
-        ++entry.times;
-      }
+      for (std::size_t s = 0; s < E::cell::sides().size(); ++s)
+        sides.push_back(side_of<E>(element, static_cast<int>(s)));
   };
   (look_at(Es{}), ...);
-  std::vector<Facet<Mesh<Es...>::dim>> outer;
-  for (auto const& [key, entry] : seen)
-    if (entry.times == 1) outer.push_back(entry.facet);
+  // Two elements that share a side see the same corners: look for them among those of one corner.
+  std::vector<std::array<Index, 4>> keys;
+  std::vector<Index> smallest;
+  for (auto const& side : sides) {
+    for (Index node : side)
+      if (node < 0 || node >= static_cast<Index>(mesh.nodes.size()))
+        throw Error("mesh: an element refers to node " + std::to_string(node) +
+                    ", but the mesh has " + std::to_string(mesh.nodes.size()) +
+                    " nodes; correct the connectivity");
+    keys.push_back(key_of(side));
+    smallest.push_back(keys.back()[4 - side.corners()]);
+  }
+  auto const at_corner =
+      pliant::detail::group_by_key(smallest, static_cast<Index>(mesh.nodes.size()));
+  for (std::size_t corner = 0; corner < mesh.nodes.size(); ++corner)
+    for (Index i = at_corner.first[corner]; i < at_corner.first[corner + 1]; ++i) {
+      auto const side = [&](Index k) {
+        return static_cast<std::size_t>(at_corner.order[static_cast<std::size_t>(k)]);
+      };
+      int times = 0;
+      for (Index k = at_corner.first[corner]; k < at_corner.first[corner + 1]; ++k)
+        times += keys[side(k)] == keys[side(i)];
+      if (times == 1) outer.push_back(sides[side(i)]);
+    }
   return outer;
 }
 

@@ -1,14 +1,9 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <pliant/config.hpp>
-#include <pliant/error.hpp>
 
 namespace pliant {
 
@@ -18,45 +13,5 @@ struct Slave {
   Index node = -1;
   std::vector<std::pair<Index, double>> masters;  ///< (node, weight), ascending by node
 };
-
-/// Replaces masters that are slaves themselves by their own masters, until every master is free;
-/// a master reached along several ways appears once, with the sum of the weights.
-/// A slave must come after the slaves among its masters. Throws Error where one does not (which is
-/// so for any circle of slaves) and where a node is a slave twice.
-[[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> slaves) {
-  std::unordered_map<Index, std::size_t> position;
-  for (std::size_t i = 0; i < slaves.size(); ++i) {
-    if (!position.emplace(slaves[i].node, i).second)
-      throw Error("compose: node " + std::to_string(slaves[i].node) +
-                  " is a slave twice; list each slave once, with all of its masters");
-  }
-  for (std::size_t i = 0; i < slaves.size(); ++i) {
-    std::vector<std::pair<Index, double>> composed;
-    for (auto const& [master, weight] : slaves[i].masters) {
-      auto const found = position.find(master);
-      if (found == position.end()) {
-        composed.emplace_back(master, weight);
-        continue;
-      }
-      if (found->second >= i)
-        throw Error("compose: slave node " + std::to_string(slaves[i].node) + " has the master " +
-                    std::to_string(master) +
-                    ", a slave that does not come before it; order slaves after their masters");
-      for (auto const& [free, share] : slaves[found->second].masters)
-        composed.emplace_back(free, weight * share);
-    }
-    // Stable, so that equal masters are summed in a fixed order.
-    std::ranges::stable_sort(composed, {}, &std::pair<Index, double>::first);
-    auto& masters = slaves[i].masters;
-    masters.clear();
-    for (auto const& [free, weight] : composed) {
-      if (!masters.empty() && masters.back().first == free)
-        masters.back().second += weight;
-      else
-        masters.emplace_back(free, weight);
-    }
-  }
-  return slaves;
-}
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/host_array.hpp>
+#include <pliant/math/group_by_key.hpp>
 
 namespace pliant::detail {
 
@@ -99,7 +100,7 @@ class Patches {
   void assign_targets(Index nodes) {
     std::vector<Index> owner(static_cast<std::size_t>(nodes), -1);
     std::vector<Index> row(static_cast<std::size_t>(nodes), -1);  // in the current patch
-    std::vector<std::pair<Index, Index>> foreign;                 // node, scratch row
+    std::vector<Index> foreign;                                   // nodes, by scratch row
     Index next = nodes;
     for (Index p = 0; p < patch_count(); ++p) {
       scratch_first_.push_back(next);
@@ -111,24 +112,26 @@ class Patches {
         if (owner[node] < 0) owner[node] = p;
         if (owner[node] != p && row[node] < 0) {
           row[node] = next++;
-          foreign.emplace_back(static_cast<Index>(node), row[node]);
+          foreign.push_back(static_cast<Index>(node));
         }
         target_.data()[k] = owner[node] == p ? static_cast<Index>(node) : row[node];
       }
       for (std::size_t k = seen; k < foreign.size(); ++k)
-        row[static_cast<std::size_t>(foreign[k].first)] = -1;
+        row[static_cast<std::size_t>(foreign[k])] = -1;
     }
     scratch_first_.push_back(next);
     scratch_nodes_ = next - nodes;
-    std::ranges::sort(foreign);  // by node, then by patch, for rows ascend with the patch
-    for (auto const& [node, scratch] : foreign) {
-      if (folded_.empty() || folded_.back() != node) {
-        folded_.push_back(node);
-        fold_first_.push_back(static_cast<Index>(fold_rows_.size()));
-      }
-      fold_rows_.push_back(scratch);
+    // Rows ascend with the patch, so inside a node too.
+    auto const by_node = group_by_key(foreign, nodes);
+    for (Index node = 0; node < nodes; ++node) {
+      Index const first = by_node.first[static_cast<std::size_t>(node)];
+      if (first == by_node.first[static_cast<std::size_t>(node) + 1]) continue;
+      folded_.push_back(node);
+      fold_first_.push_back(first);
     }
-    fold_first_.push_back(static_cast<Index>(fold_rows_.size()));
+    fold_first_.push_back(scratch_nodes_);
+    fold_rows_ = by_node.order;
+    for (Index& fold_row : fold_rows_) fold_row += nodes;
   }
 
   int groups_ = 1;
