@@ -29,7 +29,8 @@ TEST_CASE("forces, tangents and energies are those of the serial backend", "[bac
     using T = typename B::scalar;
     constexpr bool single = std::same_as<T, float>;
     // More elements than a patch holds; strains of about 0.01.
-    int const n = F::dim == 2 ? 56 : 15;
+    constexpr bool six_per_cell = F::element::cell::corners < 6;
+    int const n = F::dim == 2 ? 56 : six_per_cell ? 8 : 13;
     auto const mesh = distorted_mesh<typename F::element>(n);
     auto const u = rounded<T>(plus(uniform(mesh.nodes, Random(1).tensor<F::dim>(0.005)), 1,
                                    Random(2).field<F::dim>(mesh.nodes.size(), 0.005 / n)));
@@ -47,8 +48,7 @@ TEST_CASE("forces, tangents and energies are those of the serial backend", "[bac
     // The tangent is of order one however small the strain: rounding alone.
     auto const df = tangent_product(oracle, u, du);
     CHECK(difference(tangent_product(body, u, du), df) < (single ? 1e-5 : 1e-13) * largest(df));
-    for (std::size_t i = 0; i < body.masses().size(); ++i)
-      REQUIRE(body.masses()[i] == oracle.masses()[i]);
+    CHECK((body.masses() == oracle.masses()));
   });
 }
 

@@ -31,14 +31,15 @@ void tables(Table& table) {
   // With 3 x 3 points, the smallest elements at the corners find folds that the points do not see.
   hang<Quad9, NeoHookean, Gauss<4>>(table, printed("-0.17452"), printed("-0.53101"),
                                     printed("97.3146"), sizes, 3);
-  hang<Quad8, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {16, 32, 64}, 3);
-  hang<Tri6, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {24, 48, 96}, 3);
-  // This law softens in compression: no strong grading at the corners, where it has no answer (section 0).
   auto const svk = [&]<Element E>(E, std::vector<int> const& n) {
+    // This law softens in compression: no strong grading at the corners, where it has no answer (section 0).
     hang<E, SaintVenantKirchhoff>(table, printed("-0.1764"), printed("-0.5307(1)"), printed("97.2"),
                                   n, 1.5);
   };
   svk(Quad9{}, {16, 32, 64});
+  if (!table.full()) return;
+  hang<Quad8, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {16, 32, 64}, 3);
+  hang<Tri6, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {24, 48, 96}, 3);
   svk(Quad8{}, {16, 32, 64});
   svk(Tri6{}, {24, 48, 96});
 }
