@@ -14,6 +14,7 @@ struct Everything {
     z -= log(2 + square(x)) * log1p(y * y);
     z *= abs(x - 2) + max(x, y) + min(x * x, 3 - y) + select(x < y, x, x * y);
     z += expm1(x - y) * cbrt(x - 2) + excess_of_expm1(x * y / 4) + excess_of_expm1(1 + y);
+    z += square_of_positive(x - y) - square_of_positive(y / 2 - x);
     return -z + excess_of_log1p(x * y / 4) + excess_of_log1p(x / 100) + (x < 100 ? 1 - x : x);
   }
 };

@@ -56,6 +56,8 @@ TEST_CASE("select, min and max choose", "[math]") {
   CHECK(pliant::min(1.0, 2.0) == 1);
   CHECK(pliant::min(2.0, 1.0) == 1);
   CHECK(square(-3.0) == 9);
+  CHECK(square_of_positive(3.0) == 9);
+  CHECK(square_of_positive(-3.0) == 0);
 }
 
 }  // namespace pliant::test

@@ -64,6 +64,9 @@ struct GroupLaws {
   }
   static constexpr int history_count = std::max({0, history_size<Fs>...});
   static constexpr bool reads_elements = value_count > 0 || history_count > 0;
+  /// Whether a kernel of forces needs few registers.
+  static constexpr bool light =
+      sizeof...(Fs) == 1 && (is_light<typename Fs::template law<T>> && ...);
 
   std::tuple<decltype(prepared<Fs>(std::declval<typename Fs::template law<T>>(), 0.0))...> laws;
   ElementData<T> data{};

@@ -22,22 +22,34 @@ PLIANT_HOST_DEVICE Vector<S, Dim> strain_along(Tensor<S, Dim> const& e, Vector<C
   }
   return product;
 }
-/// a·E a, by the products of a's components, which are the same at all points of an element.
+/// a·v, of the 2 or 3 components of v.
 template <class S, int Dim, class C>
-PLIANT_HOST_DEVICE S strain_of_line(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
-  S sum = e(0, 0) * (a[0] * a[0]);
+PLIANT_HOST_DEVICE S along(Vector<C, 3> const& a, Vector<S, Dim> const& v) {
+  S sum = v[0] * a[0];
+  for (int i = 1; i < Dim; ++i) sum = sum + v[i] * a[i];
+  return sum;
+}
+/// An entry of 2 a⊗a: the same at all points of an element, so that only these products are kept.
+template <class C>
+PLIANT_HOST_DEVICE C twice_dyad(Vector<C, 3> const& a, int i, int j) {
+  return 2 * (a[i] * a[j]);
+}
+/// 2 a·E a
+template <class S, int Dim, class C>
+PLIANT_HOST_DEVICE S twice_strain_of_line(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
+  S sum = e(0, 0) * twice_dyad(a, 0, 0);
   for (int i = 1; i < Dim; ++i) {
-    sum = sum + e(i, i) * (a[i] * a[i]);
-    for (int j = 0; j < i; ++j) sum = sum + e(i, j) * (2 * a[i] * a[j]);
+    sum = sum + e(i, i) * twice_dyad(a, i, i);
+    for (int j = 0; j < i; ++j) sum = sum + (e(i, j) + e(j, i)) * twice_dyad(a, i, j);
   }
   return sum;
 }
 
-/// ∂W/∂E of the energy along one fibre.
+/// Adds ∂W/∂E of the energy along one fibre.
 template <class Family, class L, class S, int Dim, class C>
-PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress_along(L const& law, Vector<C, 3> const& a,
-                                                      Tensor<S, Dim> const& e) {
-  return slopes_of<S>(law, Family::of(e, a)).second_stress(e, a);
+PLIANT_HOST_DEVICE void add_stress_along(Tensor<S, Dim>& second, L const& law,
+                                         Vector<C, 3> const& a, Tensor<S, Dim> const& e) {
+  slopes_of<S>(law, Family::of(e, a)).add_second_stress(second, e, a);
 }
 
 template <class L>
@@ -54,7 +66,8 @@ template <class Family, class L, class S, int Dim, std::size_t... K>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress_along_fibres(L const& law, Tensor<S, Dim> const& h,
                                                       std::index_sequence<K...>) {
   auto const e = GreenInvariants<S>::strain(h);
-  auto const second = (second_stress_along<Family>(law, law.fibres[K], e) + ...);
+  auto second = Tensor<S, Dim>::zero();
+  (add_stress_along<Family>(second, law, law.fibres[K], e), ...);
   return second + h * second;
 }
 
@@ -74,19 +87,18 @@ struct FibreStretch {
 
   template <class C, int Dim>
   PLIANT_HOST_DEVICE static FibreStretch of(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
-    return {2 * dot(a, a) * trace(e), 2 * detail::strain_of_line(e, a)};
+    return {2 * dot(a, a) * trace(e), detail::twice_strain_of_line(e, a)};
   }
-  /// ∂W/∂E, where these are the derivatives of W by the invariants.
+  /// Adds ∂W/∂E, where these are the derivatives of W by the invariants.
   template <class C, int Dim>
-  PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress(Tensor<S, Dim> const&,
-                                                  Vector<C, 3> const& a) const {
-    Tensor<S, Dim> second;
-    S const line = I4_1 + I4_1;
-    for (int i = 0; i < Dim; ++i)
-      for (int j = i; j < Dim; ++j) second(i, j) = second(j, i) = line * (a[i] * a[j]);
+  PLIANT_HOST_DEVICE void add_second_stress(Tensor<S, Dim>& second, Tensor<S, Dim> const&,
+                                            Vector<C, 3> const& a) const {
     S const round = 2 * dot(a, a) * I1_3;
-    for (int i = 0; i < Dim; ++i) second(i, i) = second(i, i) + round;
-    return second;
+    for (int i = 0; i < Dim; ++i) {
+      second(i, i) = second(i, i) + round;
+      for (int j = i; j < Dim; ++j)
+        second(i, j) = second(j, i) = second(i, j) + I4_1 * detail::twice_dyad(a, i, j);
+    }
   }
   template <class L, int Dim>
   PLIANT_HOST_DEVICE static S energy_of(L const& law, Tensor<S, Dim> const& h) {
@@ -116,22 +128,21 @@ struct FibreStrain {
   template <class C, int Dim>
   PLIANT_HOST_DEVICE static FibreStrain of(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
     auto const line = detail::strain_along(e, a);
-    S const aa = detail::strain_of_line(e, a), shear = dot(line, line) - square(aa);
+    S const aa = detail::along(a, line), shear = dot(line, line) - square(aa);
     return {aa, dot(e, e) - square(aa) - (shear + shear), shear};
   }
-  /// ∂W/∂E, where these are the derivatives of W by the invariants.
+  /// Adds ∂W/∂E, where these are the derivatives of W by the invariants.
   template <class C, int Dim>
-  PLIANT_HOST_DEVICE Tensor<S, Dim> second_stress(Tensor<S, Dim> const& e,
-                                                  Vector<C, 3> const& a) const {
+  PLIANT_HOST_DEVICE void add_second_stress(Tensor<S, Dim>& second, Tensor<S, Dim> const& e,
+                                            Vector<C, 3> const& a) const {
     auto side = detail::strain_along(e, a);
     S const round = across + across, mixed = shear - round;
-    S const half = along / 2 + (across - shear) * detail::strain_of_line(e, a);
+    S const half = along / 2 + (across - shear) * detail::along(a, side);
     for (int i = 0; i < Dim; ++i) side[i] = mixed * side[i] + half * a[i];
-    Tensor<S, Dim> second;
     for (int i = 0; i < Dim; ++i)
       for (int j = i; j < Dim; ++j)
-        second(i, j) = second(j, i) = round * e(i, j) + (side[i] * a[j] + side[j] * a[i]);
-    return second;
+        second(i, j) = second(j, i) =
+            second(i, j) + round * e(i, j) + (side[i] * a[j] + side[j] * a[i]);
   }
   template <class L, int Dim>
   PLIANT_HOST_DEVICE static S energy_of(L const& law, Tensor<S, Dim> const& h) {

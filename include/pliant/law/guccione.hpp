@@ -31,7 +31,7 @@ struct Guccione {
       return law.c / 2 * expm1(Q);
     }
     template <class V>
-    PLIANT_HOST_DEVICE V energy(CauchyGreenInvariants<V> const& i) const {
+    PLIANT_HOST_DEVICE V energy(VolumeChange<V> const& i) const {
       return law.bulk / 2 * square(i.J_1);
     }
   };

@@ -37,7 +37,7 @@ struct HolzapfelGasserOgden {
     template <class V>
     PLIANT_HOST_DEVICE V energy(FibreStretch<V> const& i) const {
       V const strain = law.dispersion * i.I1_3 + (1 - 3 * law.dispersion) * i.I4_1;
-      return scale * expm1(law.k2 * square(max(strain, V(0))));
+      return scale * expm1(law.k2 * square_of_positive(strain));
     }
   };
   template <class S>

@@ -87,6 +87,29 @@ struct CauchyGreenInvariants {
   }
 };
 
+/// Of the change of volume alone: J − 1 with J = det F.
+template <class S>
+struct VolumeChange {
+  static constexpr int count = 1;
+  S J_1;  // J − 1
+
+  template <class T>
+  using rebind = VolumeChange<T>;
+  PLIANT_HOST_DEVICE S& operator[](int) { return J_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int) const { return J_1; }
+
+  template <int Dim>
+  PLIANT_HOST_DEVICE static VolumeChange of(Tensor<S, Dim> const& h) {
+    return {determinant_less_one(h)};
+  }
+  template <int Dim>
+  PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(VolumeChange const& w, Tensor<S, Dim> const& h) {
+    Tensor<S, Dim> p = w.J_1 * cofactor_less_identity(h);
+    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.J_1;
+    return p;
+  }
+};
+
 /// Of the Green strain E = (FᵀF − I)/2: tr E and tr E².
 template <class S>
 struct GreenInvariants {

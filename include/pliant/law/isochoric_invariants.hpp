@@ -45,21 +45,21 @@ struct PrincipalInvariants {
       Tensor<S, 3> m = builtin_scalar<S>(-1) * GreenInvariants<S>::strain(h);
       S const t = -pliant::trace(m);
       for (int i = 0; i < 3; ++i) m(i, i) = m(i, i) + t;
-      Tensor<S, 3> const slope = h + m + h * m - cofactor_less_identity(h);
-      return CauchyGreenInvariants<S>::stress({w.D1, w.J_1}, h) + (4 * w.D2) * slope;
+      auto const distortions = CauchyGreenInvariants<S>::stress({w.D1 + (w.D2 + w.D2), w.J_1}, h);
+      return distortions + (4 * w.D2) * (m + h * m);
     }
   }
 };
 
 namespace detail {
 
-/// Powers of J, all with one division beside that of the cube root.
+/// Powers of J; neither the root nor the division waits for the other.
 template <class S>
 struct PowersOfJ {
-  S x, inverse_square, inverse;  // J^(1/3), J^(−2/3), 1/J
+  S x, inverse, inverse_square;  // J^(1/3), 1/J, J^(−2/3)
 
   PLIANT_HOST_DEVICE explicit PowersOfJ(S const& J_1)
-      : x(cbrt(1 + J_1)), inverse_square(1 / square(x)), inverse(square(inverse_square) * x) {}
+      : x(cbrt(1 + J_1)), inverse(1 / (1 + J_1)), inverse_square(x * inverse) {}
   /// J^(1/3) − 1
   PLIANT_HOST_DEVICE S less_one(S const& J_1) const { return J_1 / (square(x) + x + 1); }
 };

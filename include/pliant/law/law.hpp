@@ -68,7 +68,7 @@ struct ChooseSets<L, SetList<Set, Sets...>, Chosen...>
 /// The sets of invariants in which a law writes its energy, or the parts of it.
 template <class L, int Dim, class V = Dual<double, 1>>
 using sets_of = typename ChooseSets<
-    L, SetList<StrainInvariants<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
+    L, SetList<StrainInvariants<V>, VolumeChange<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
                PrincipalInvariants<V>, IsochoricInvariants<V>, MooneyInvariants<V>,
                GreenStrain<V, Dim>, FibreStretch<V>, FibreStrain<V>, PrincipalStretches<V>>>::type;
 
@@ -181,6 +181,21 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> sum_of_stresses(SetList<Sets...>, L const& law
 }
 
 }  // namespace detail
+
+namespace detail {
+template <class Sets>
+inline constexpr bool without_roots = false;
+template <template <class> class Set, class V>
+inline constexpr bool without_roots<SetList<Set<V>>> =
+    std::same_as<Set<V>, StrainInvariants<V>> || std::same_as<Set<V>, CauchyGreenInvariants<V>> ||
+    std::same_as<Set<V>, GreenInvariants<V>>;
+}  // namespace detail
+
+/// Whether the stress takes few registers: the energy is in one set of two polynomials in H.
+template <class L>
+inline constexpr bool is_light = false;
+template <PointLaw L>
+inline constexpr bool is_light<L> = detail::without_roots<detail::sets_of<L, 3>>;
 
 /// Strain energy per rest volume (J/m³) at the displacement gradient h.
 template <PointLaw L, class S, int Dim>

@@ -152,6 +152,11 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N> square(Dual<T, N> const& x) {
   return x.chain(x.value * x.value, x.value + x.value);
 }
 template <class T, int N>
+PLIANT_HOST_DEVICE constexpr Dual<T, N> square_of_positive(Dual<T, N> const& x) {
+  T const part = max(x.value, T(0));
+  return x.chain(part * part, part + part);
+}
+template <class T, int N>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> sqrt(Dual<T, N> const& x) {
   T const root = sqrt(x.value);
   return x.chain(root, T(1) / (T(2) * root));

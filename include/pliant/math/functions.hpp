@@ -73,6 +73,11 @@ template <class T>
 PLIANT_HOST_DEVICE T square(T const& x) {
   return x * x;
 }
+/// ⟨x⟩² with Macaulay's bracket ⟨x⟩ = max(x, 0): smooth where it begins.
+template <class T>
+PLIANT_HOST_DEVICE T square_of_positive(T const& x) {
+  return square(max(x, T(0)));
+}
 
 /// x − ln(1 + x), without the cancellation that the plain difference suffers for small x.
 template <class T>

@@ -56,9 +56,8 @@ __device__ __forceinline__ auto call_on_rows(Kernel const& kernel, Group group, 
 /// One block per patch: nodes to shared memory, elements' shares to their slots, slots summed by
 /// node, sums added to global memory.
 template <int Groups, int Nodes, class T, int C, class Kernel, class... Fields>
-__global__ void __launch_bounds__(
-    patch_tuning<T, Nodes>().max_threads,
-    (resident_blocks<T, Nodes, Groups, (Fields::components + ... + 0), C>))
+__global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
+                                  (resident_blocks<T, Nodes, Kernel>))
     accumulate_patches(PatchView<Nodes> const patches, __grid_constant__ Kernel const kernel,
                        NodeField<T, C> const out, Fields... fields) {
   constexpr auto tuning = patch_tuning<T, Nodes>();

@@ -38,12 +38,15 @@ constexpr PatchTuning patch_tuning() {
   return {64, 4, false, 64, 64, 64, 0};
 }
 
-/// Blocks that fit a multiprocessor, for kernels of so many groups that read so many components of
-/// fields per node: tangents, and laws told apart by tag, spill registers under the bound that suits
-/// a force of one law.
-template <class T, int Nodes, int Groups, int Components, int Dim>
-inline constexpr int resident_blocks = Groups > 1 || Components > 2 * Dim
-                                           ? patch_tuning<T, Nodes>().min_blocks * 4 / 5
-                                           : patch_tuning<T, Nodes>().min_blocks;
+/// A kernel that says that it needs few registers.
+template <class Kernel>
+concept LightKernel = requires { requires Kernel::light; };
+
+/// Blocks that fit a multiprocessor: others than light kernels spill registers under the bound that suits
+/// those, and lose more by it (up to a third of their time) than by having fewer threads.
+template <class T, int Nodes, class Kernel>
+inline constexpr int resident_blocks =
+    LightKernel<Kernel> ? patch_tuning<T, Nodes>().min_blocks
+                        : patch_tuning<T, Nodes>().min_blocks * 4 / 5;
 
 }  // namespace pliant::detail
