@@ -262,12 +262,13 @@ template <class T>
 struct HolzapfelGasserOgden : pliant::HolzapfelGasserOgden<T> {
   template <class S>
   struct Along : pliant::HolzapfelGasserOgden<T>::template Along<S> {
+    Vector<S, 3> directions[2];
     template <class V>
     PLIANT_HOST_DEVICE Tensor<V, 3> stress(Tensor<V, 3> const& h) const {
       auto const e = GreenInvariants<V>::strain(h);
       auto second = Tensor<V, 3>::zero();
-      add(second, this->fibres[0], e);
-      add(second, this->fibres[1], e);
+      add(second, directions[0], e);
+      add(second, directions[1], e);
       Isochoric<V> const i(h);
       return i.stress(V(this->law.mu / 2), this->law.bulk * i.J_1, h) + second + h * second;
     }
@@ -293,7 +294,9 @@ struct HolzapfelGasserOgden : pliant::HolzapfelGasserOgden<T> {
   };
   template <class S>
   PLIANT_HOST_DEVICE Along<S> at(Vector<S, 6> const& a) const {
-    return {pliant::HolzapfelGasserOgden<T>::at(a)};
+    return {pliant::HolzapfelGasserOgden<T>::at(a),
+            {pliant::detail::normalised(Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
+             pliant::detail::normalised(Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})}};
   }
 };
 

@@ -24,9 +24,15 @@ template <Ask ask, class L>
 AnySheet any_sheet(L solid, Kind kind) {
   // Fibres that leave the plane would shear the sheet across its thickness.
   if constexpr (requires { solid.fibres; }) {
-    solid.fibres[0] = {{{0.6}, {0.8}, {0}}};
+    auto const fibre = [&](Vector<double, 3> const& a) {
+      if constexpr (requires { solid.law.dispersion; })
+        return pliant::detail::structure(solid.law.dispersion, a);
+      else
+        return a;
+    };
+    solid.fibres[0] = fibre({{{0.6}, {0.8}, {0}}});
     if constexpr (std::extent_v<decltype(solid.fibres)> > 1)
-      solid.fibres[1] = {{{0.96}, {-0.28}, {0}}};
+      solid.fibres[1] = fibre({{{0.96}, {-0.28}, {0}}});
   }
   detail::Sheet<L> const sheet{solid};
   AnySheet any{any_law<ask, 2, double>(sheet, kind), {}, {}};

@@ -6,8 +6,8 @@
 #include <pliant/law/invariants.hpp>
 
 // Sets of invariants in which a law with fibres may write its energy. Its point has `fibres`, an array
-// of directions, unit vectors or 0; the energies along all of them add up. Made from the Green strain
-// E = (FᵀF − I)/2 and the direction a; in 2D the strain is plane.
+// of what stands for each: a direction, a unit vector or 0, unless the set says otherwise. The energies
+// along all of them add up. Made from the Green strain E = (FᵀF − I)/2; in 2D the strain is plane.
 namespace pliant {
 
 namespace detail {
@@ -29,26 +29,10 @@ PLIANT_HOST_DEVICE S along(Vector<C, 3> const& a, Vector<S, Dim> const& v) {
   for (int i = 1; i < Dim; ++i) sum = sum + v[i] * a[i];
   return sum;
 }
-/// An entry of 2 a⊗a: the same at all points of an element, so that only these products are kept.
-template <class C>
-PLIANT_HOST_DEVICE C twice_dyad(Vector<C, 3> const& a, int i, int j) {
-  return 2 * (a[i] * a[j]);
-}
-/// 2 a·E a
-template <class S, int Dim, class C>
-PLIANT_HOST_DEVICE S twice_strain_of_line(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
-  S sum = e(0, 0) * twice_dyad(a, 0, 0);
-  for (int i = 1; i < Dim; ++i) {
-    sum = sum + e(i, i) * twice_dyad(a, i, i);
-    for (int j = 0; j < i; ++j) sum = sum + (e(i, j) + e(j, i)) * twice_dyad(a, i, j);
-  }
-  return sum;
-}
-
 /// Adds ∂W/∂E of the energy along one fibre.
-template <class Family, class L, class S, int Dim, class C>
-PLIANT_HOST_DEVICE void add_stress_along(Tensor<S, Dim>& second, L const& law,
-                                         Vector<C, 3> const& a, Tensor<S, Dim> const& e) {
+template <class Family, class L, class S, int Dim, class Fibre>
+PLIANT_HOST_DEVICE void add_stress_along(Tensor<S, Dim>& second, L const& law, Fibre const& a,
+                                         Tensor<S, Dim> const& e) {
   slopes_of<S>(law, Family::of(e, a)).add_second_stress(second, e, a);
 }
 
@@ -73,32 +57,36 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> stress_along_fibres(L const& law, Tensor<S, Di
 
 }  // namespace detail
 
-/// How a family of fibres is stretched: I₁ − 3 and I₄ − 1 with I₄ = a·C a. Both are 0 where a is.
+/// How a family of fibres is stretched that spread about a direction a: ε = H:(C − I) with the structure
+/// tensor H = d I + (1 − 3d) a⊗a of their dispersion d, which stands for the fibre. (Gasser, Ogden and
+/// Holzapfel, J. R. Soc. Interface 3 (2006) 15.) For d = 0, ε = a·C a − 1.
 template <class S>
 struct FibreStretch {
-  static constexpr int count = 2;
-  S I1_3;  // I₁ − 3
-  S I4_1;  // I₄ − 1
+  static constexpr int count = 1;
+  S strain;  // ε
 
   template <class T>
   using rebind = FibreStretch<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? I1_3 : I4_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? I1_3 : I4_1; }
+  PLIANT_HOST_DEVICE S& operator[](int) { return strain; }
+  PLIANT_HOST_DEVICE S const& operator[](int) const { return strain; }
 
+  /// 2 H:E; 2 H is the same at all points of an element.
   template <class C, int Dim>
-  PLIANT_HOST_DEVICE static FibreStretch of(Tensor<S, Dim> const& e, Vector<C, 3> const& a) {
-    return {2 * dot(a, a) * trace(e), detail::twice_strain_of_line(e, a)};
+  PLIANT_HOST_DEVICE static FibreStretch of(Tensor<S, Dim> const& e, Tensor<C, 3> const& H) {
+    S sum = e(0, 0) * (2 * H(0, 0));
+    for (int i = 1; i < Dim; ++i) {
+      sum = sum + e(i, i) * (2 * H(i, i));
+      for (int j = 0; j < i; ++j) sum = sum + (e(i, j) + e(j, i)) * (2 * H(i, j));
+    }
+    return {sum};
   }
-  /// Adds ∂W/∂E, where these are the derivatives of W by the invariants.
+  /// Adds ∂W/∂E, where this is the derivative of W by ε.
   template <class C, int Dim>
   PLIANT_HOST_DEVICE void add_second_stress(Tensor<S, Dim>& second, Tensor<S, Dim> const&,
-                                            Vector<C, 3> const& a) const {
-    S const round = 2 * dot(a, a) * I1_3;
-    for (int i = 0; i < Dim; ++i) {
-      second(i, i) = second(i, i) + round;
-      for (int j = i; j < Dim; ++j)
-        second(i, j) = second(j, i) = second(i, j) + I4_1 * detail::twice_dyad(a, i, j);
-    }
+                                            Tensor<C, 3> const& H) const {
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j <= i; ++j)
+        second(i, j) = second(j, i) = second(i, j) + strain * (2 * H(i, j));
   }
   template <class L, int Dim>
   PLIANT_HOST_DEVICE static S energy_of(L const& law, Tensor<S, Dim> const& h) {

@@ -28,7 +28,7 @@ struct HolzapfelGasserOgden {
   struct Along {
     HolzapfelGasserOgden law;
     T scale;  // k₁/(2 k₂), Pa
-    Vector<S, 3> fibres[2];
+    Tensor<S, 3> fibres[2];
 
     template <class V>
     PLIANT_HOST_DEVICE V energy(IsochoricInvariants<V> const& i) const {
@@ -36,16 +36,15 @@ struct HolzapfelGasserOgden {
     }
     template <class V>
     PLIANT_HOST_DEVICE V energy(FibreStretch<V> const& i) const {
-      V const strain = law.dispersion * i.I1_3 + (1 - 3 * law.dispersion) * i.I4_1;
-      return scale * expm1(law.k2 * square_of_positive(strain));
+      return scale * expm1(law.k2 * square_of_positive(i.strain));
     }
   };
   template <class S>
   PLIANT_HOST_DEVICE Along<S> at(Vector<S, 6> const& a) const {
     return {*this,
             k1 / (2 * k2),
-            {detail::normalised(Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
-             detail::normalised(Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})}};
+            {detail::structure(dispersion, Vector<S, 3>{{{a[0]}, {a[1]}, {a[2]}}}),
+             detail::structure(dispersion, Vector<S, 3>{{{a[3]}, {a[4]}, {a[5]}}})}};
   }
 };
 

@@ -67,10 +67,12 @@ struct ChooseSets<L, SetList<Set, Sets...>, Chosen...>
 
 /// The sets of invariants in which a law writes its energy, or the parts of it.
 template <class L, int Dim, class V = Dual<double, 1>>
-using sets_of = typename ChooseSets<
-    L, SetList<StrainInvariants<V>, VolumeChange<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
-               PrincipalInvariants<V>, IsochoricInvariants<V>, MooneyInvariants<V>,
-               GreenStrain<V, Dim>, FibreStretch<V>, FibreStrain<V>, PrincipalStretches<V>>>::type;
+using sets_of =
+    typename ChooseSets<L,
+                        SetList<FibreStretch<V>, FibreStrain<V>, StrainInvariants<V>,
+                                VolumeChange<V>, CauchyGreenInvariants<V>, GreenInvariants<V>,
+                                PrincipalInvariants<V>, IsochoricInvariants<V>, MooneyInvariants<V>,
+                                GreenStrain<V, Dim>, PrincipalStretches<V>>>::type;
 
 }  // namespace detail
 
