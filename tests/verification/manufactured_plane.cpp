@@ -20,6 +20,7 @@ void elements(Table& table, bool full) {
   }
   manufactured_rows<Tri3, L>(table, linear);
   manufactured_rows<Quad4, L>(table, linear);
+  manufactured_rows<Quad4, L, OnePoint>(table, linear);
   manufactured_rows<Tri6, L>(table, quadratic);
   manufactured_rows<Quad8, L>(table, quadratic);
   manufactured_rows<Quad9, L>(table, quadratic);

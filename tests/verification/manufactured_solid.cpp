@@ -12,6 +12,7 @@ void elements(Table& table, bool full) {
   }
   manufactured_rows<Tet4, L>(table, linear);
   manufactured_rows<Hex8, L>(table, linear);
+  manufactured_rows<Hex8, L, OnePoint>(table, linear);
   manufactured_rows<Wedge6, L>(table, linear);
   manufactured_rows<Pyramid5, L>(table, linear);
   manufactured_rows<Tet10, L>(table, quadratic);

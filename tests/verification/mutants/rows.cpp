@@ -14,8 +14,12 @@
 #include "verification/same_mesh_trajectory.cpp"
 #elif defined(ROWS_LOADS) || defined(ROWS_SHEET) || defined(ROWS_LOCKING)
 #include "verification/cook.cpp"
+#elif defined(ROWS_ONE_POINT)
+#include "verification/free_faces.cpp"
 #elif defined(ROWS_FOLLOWER)
 #include "verification/land.cpp"
+#elif defined(ROWS_VISCOUS)
+#include "verification/viscosity.cpp"
 #endif
 
 int main(int argc, char** argv) {
@@ -59,6 +63,10 @@ int main(int argc, char** argv) {
   sheet<Quad9, Gauss<3> >(table, {12, 24, 48});
 #elif defined(ROWS_LOCKING)
   meets_incompressible<Quad9>(table, {24, 48});
+#elif defined(ROWS_ONE_POINT)
+  one_point(table);
+#elif defined(ROWS_VISCOUS)
+  bars<Tet4>(table);
 #elif defined(ROWS_FOLLOWER)
   beam<Hex27>(table, {10});
 #endif

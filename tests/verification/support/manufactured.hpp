@@ -181,12 +181,12 @@ Runs manufactured_errors(std::vector<int> const& sizes, Grid grid) {
 }
 
 /// Rows of one element with one law: on straight and on curved grids, in both norms.
-template <Element E, template <class> class L>
+template <Element E, template <class> class L, class Q = Full<E>>
 void manufactured_rows(Table& table, std::vector<int> const& sizes) {
-  std::string const name = name_of<Formulation<E, Full<E>, L>>();
+  std::string const name = name_of<Formulation<E, Q, L>>();
   for (Grid grid : {Grid::straight, Grid::curved}) {
     std::string const meshes = grid == Grid::straight ? "straight" : "curved";
-    auto const runs = manufactured_errors<E, L>(sizes, grid);
+    auto const runs = manufactured_errors<E, L, Q>(sizes, grid);
     table.converge({"9, error in L2", name, meshes}, runs, 0, E::degree + 1);
     table.converge({"9, error in H1", name, meshes}, runs, 1, E::degree);
   }
