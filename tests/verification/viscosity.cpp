@@ -1,8 +1,9 @@
 #include "verification/support/statics.hpp"
 
-// Section 13: viscous laws against closed forms worked out here. A bar is confined sideways and stretched so that its
-// Green strain grows with the time, E11 = e t, and then stays; over Saint Venant-Kirchhoff the elastic
-// stress S_L = k E11, k = λ + 2μ, is linear in time, and all that flows has a closed form at any step.
+// REFERENCES, section 13: viscous laws against closed forms worked out here. A bar is confined sideways and
+// stretched so that its Green strain grows with the time, E11 = e t, and then stays; over Saint
+// Venant-Kirchhoff the elastic stress S_L = k E11, k = λ + 2μ, is linear in time, and all that flows has a
+// closed form at any step.
 namespace pliant::verification {
 
 double const lambda = 3, mu = 2, k = lambda + 2 * mu;  // Pa
