@@ -1,9 +1,5 @@
 #pragma once
 
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
-
 #include <bit>
 #include <limits>
 
@@ -124,27 +120,25 @@ PLIANT_HOST_DEVICE Pack<T, L> or_limit_of_log(Pack<T, L> const& y, Pack<T, L> co
 
 }  // namespace detail
 
+/// An instruction, since not every compiler makes one of the loop, and <immintrin.h> takes longer to
+/// compile than all of Pliant.
 template <class T, int L>
 PLIANT_HOST_DEVICE Pack<T, L> sqrt(Pack<T, L> const& x) {
-#if defined(__AVX512F__)
-  if constexpr (sizeof(x.v) == 64) {
+  Pack<T, L> root;
+#if defined(__AVX__)
+  if constexpr (sizeof(x.v) == simd_bytes) {
     if constexpr (sizeof(T) == 4)
-      return {(typename Pack<T, L>::Register)_mm512_sqrt_ps((__m512)x.v)};
+      asm("vsqrtps %1, %0" : "=v"(root.v) : "v"(x.v));
     else
-      return {(typename Pack<T, L>::Register)_mm512_sqrt_pd((__m512d)x.v)};
-  }
-#elif defined(__AVX__)
-  if constexpr (sizeof(x.v) == 32) {
-    if constexpr (sizeof(T) == 4)
-      return {(typename Pack<T, L>::Register)_mm256_sqrt_ps((__m256)x.v)};
-    else
-      return {(typename Pack<T, L>::Register)_mm256_sqrt_pd((__m256d)x.v)};
+      asm("vsqrtpd %1, %0" : "=v"(root.v) : "v"(x.v));
+    return root;
   }
 #elif defined(__SSE2__)
-  if constexpr (sizeof(x.v) == 16 && sizeof(T) == 4)
-    return {(typename Pack<T, L>::Register)_mm_sqrt_ps((__m128)x.v)};
+  if constexpr (sizeof(x.v) == simd_bytes && sizeof(T) == 4) {
+    asm("sqrtps %1, %0" : "=x"(root.v) : "x"(x.v));
+    return root;
+  }
 #endif
-  Pack<T, L> root;
   for (int l = 0; l < L; ++l) root.v[l] = std::sqrt(x[l]);
   return root;
 }
