@@ -153,7 +153,7 @@ TEST_CASE("loads of all nodes are those of each", "[body]") {
   auto const mesh = distorted_mesh<Quad4>(4);
   auto const loads = Random(1).field<2>(mesh.nodes.size(), 1);
   auto at_once = body_of<Formulation<Quad4, Gauss<2>, Hooke>>(Reference<double>{}, mesh);
-  auto one_by_one = at_once;
+  auto one_by_one = body_of<Formulation<Quad4, Gauss<2>, Hooke>>(Reference<double>{}, mesh);
 
   at_once.set_loads(loads);
   for (std::size_t i = 0; i < loads.size(); ++i)

@@ -14,8 +14,8 @@
 namespace pliant {
 
 /// A deformable body: nodes, elements in groups of formulations, conditions and loads, on one backend
-/// in one precision. Everything a user hands in or reads is in the user's own order of nodes and
-/// elements.
+/// in one precision. It moves, and is not copied. Everything a user hands in or reads is in the user's
+/// own order of nodes and elements.
 template <Backend B, class M, class... Fs>
 class Body {
  public:
