@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -144,8 +143,8 @@ void for_each_face_type(std::vector<Facet<M::dim>> const& facets, Visit const& v
 
 }  // namespace detail
 
-/// The pressures of a body in the backend's memory. Functions stand for the kernels, so that bodies that
-/// are never pressed do not compile them.
+/// The pressures of a body in the backend's memory. Virtual functions stand for the kernels, so that
+/// bodies that are never pressed do not compile them.
 template <Backend B, class M>
 class SurfaceForces {
   static constexpr int Dim = M::dim;
@@ -154,39 +153,52 @@ class SurfaceForces {
   using ConstField = NodeField<T const, Dim>;
 
  public:
-  bool empty() const { return add_.empty(); }
+  bool empty() const { return parts_.empty(); }
   /// Rows that a field to accumulate into needs behind its nodes.
   Index scratch_nodes() const { return scratch_; }
 
   /// `facets`: internal numbers of nodes.
   void press(B const& backend, std::vector<Facet<Dim>> const& facets, double pascals, Index nodes) {
     detail::for_each_face_type<M>(facets, [&]<class Face>(Face, auto const& connectivity) {
-      auto const elements = std::make_shared<typename B::template Elements<Face::nodes>>(
-          backend, connectivity, 1, std::vector<Tag>(connectivity.size(), 0), nodes);
-      scratch_ = std::max(scratch_, elements->scratch_nodes());
-      T const p = static_cast<T>(pascals);
-      add_.push_back([=](B const& b, ConstField rest, ConstField u, Field f) {
-        b.template accumulate<1>(*elements, detail::PressureKernel<T, Dim, Face>{p}, f, rest, u);
-      });
-      add_change_.push_back(
-          [=](B const& b, T factor, ConstField rest, ConstField u, ConstField du, Field f) {
-            b.template accumulate<1>(
-                *elements, detail::PressureTangentKernel<T, Dim, Face>{factor * p}, f, rest, u, du);
-          });
+      auto part = std::make_unique<PressedFaces<Face>>();
+      part->elements = {backend, connectivity, 1, std::vector<Tag>(connectivity.size(), 0), nodes};
+      part->pressure = static_cast<T>(pascals);
+      scratch_ = std::max(scratch_, part->elements.scratch_nodes());
+      parts_.push_back(std::move(part));
     });
   }
   void add(B const& backend, ConstField rest, ConstField u, Field f) const {
-    for (auto const& one : add_) one(backend, rest, u, f);
+    for (auto const& part : parts_) part->add(backend, rest, u, f);
   }
   void add_change(B const& backend, T factor, ConstField rest, ConstField u, ConstField du,
                   Field f) const {
-    for (auto const& one : add_change_) one(backend, factor, rest, u, du, f);
+    for (auto const& part : parts_) part->add_change(backend, factor, rest, u, du, f);
   }
 
  private:
-  std::vector<std::function<void(B const&, ConstField, ConstField, Field)>> add_;
-  std::vector<std::function<void(B const&, T, ConstField, ConstField, ConstField, Field)>>
-      add_change_;
+  struct Part {
+    virtual ~Part() = default;
+    virtual void add(B const&, ConstField rest, ConstField u, Field f) const = 0;
+    virtual void add_change(B const&, T factor, ConstField rest, ConstField u, ConstField du,
+                            Field f) const = 0;
+  };
+  template <class Face>
+  struct PressedFaces : Part {
+    typename B::template Elements<Face::nodes> elements;
+    T pressure;  // Pa
+
+    void add(B const& backend, ConstField rest, ConstField u, Field f) const override {
+      backend.template accumulate<1>(elements, detail::PressureKernel<T, Dim, Face>{pressure}, f,
+                                     rest, u);
+    }
+    void add_change(B const& backend, T factor, ConstField rest, ConstField u, ConstField du,
+                    Field f) const override {
+      backend.template accumulate<1>(
+          elements, detail::PressureTangentKernel<T, Dim, Face>{factor * pressure}, f, rest, u, du);
+    }
+  };
+
+  std::vector<std::unique_ptr<Part>> parts_;
   Index scratch_ = 0;
 };
 
