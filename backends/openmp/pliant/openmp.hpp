@@ -40,8 +40,7 @@ class OpenMP {
 
   OpenMP(OpenMPOptions options = {}) : threads_(options.threads) {
     if (threads_ < 0)
-      throw Error("OpenMP: " + std::to_string(threads_) +
-                  " threads asked for; give a positive number, or 0 for all");
+      throw Error("OpenMP: ", threads_, " threads asked for; give a positive number, or 0 for all");
     if (threads_ == 0) threads_ = omp_get_max_threads();
   }
   int threads() const { return threads_; }

@@ -96,8 +96,7 @@ class Adaptation {
   }
 
   void set_interval(int calls) {
-    if (calls < 1)
-      throw Error("Adaptation.every: " + std::to_string(calls) + " calls; give at least 1");
+    if (calls < 1) throw Error("Adaptation.every: ", calls, " calls; give at least 1");
     interval_ = calls;
   }
 

@@ -68,9 +68,8 @@ std::vector<Index> cells_of(TheBody const& body, Hierarchy const& tree,
     auto const leaves = leaves_of<E>(tree);
     for (Index e : *list++) {
       if (e < 0 || e >= table.count())
-        throw Error("refine: there is no " + std::string(E::name()) + " element " +
-                    std::to_string(e) + "; they are numbered 0 to " +
-                    std::to_string(table.count() - 1));
+        throw Error("refine: there is no ", E::name(), " element ", e, "; they are numbered 0 to ",
+                    table.count() - 1);
       cells.push_back(leaves[static_cast<std::size_t>(e)]);
     }
   });
@@ -114,8 +113,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
                 "refinement is available for plane meshes of Tri3 and Quad4");
   constexpr std::size_t types = std::tuple_size_v<decltype(TheBody::mesh_type::tables)>;
   if (marked.size() != types)
-    throw Error("refine: got lists of marked elements for " + std::to_string(marked.size()) +
-                " element types, but the mesh has " + std::to_string(types) +
+    throw Error("refine: got lists of marked elements for ", marked.size(),
+                " element types, but the mesh has ", types,
                 "; give one list per type, empty where none is refined");
   if (std::ranges::all_of(marked, &std::vector<Index>::empty)) return {};
 

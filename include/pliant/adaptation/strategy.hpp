@@ -11,8 +11,7 @@ namespace pliant {
 namespace detail {
 inline double number(char const* what, double value) {
   if (std::isnan(value))
-    throw Error("strategy: " + std::string(what) +
-                "(NaN) is not a number to compare with; give one");
+    throw Error("strategy: ", what, "(NaN) is not a number to compare with; give one");
   return value;
 }
 }  // namespace detail
@@ -59,16 +58,14 @@ class Marked {
   /// At most so many elements act in one check: those of the most extreme values.
   Marked budget(long elements) const {
     if (elements < 1)
-      throw Error("strategy: a budget of " + std::to_string(elements) +
-                  " elements lets nobody act; give at least 1");
+      throw Error("strategy: a budget of ", elements, " elements lets nobody act; give at least 1");
     Marked m = *this;
     m.marking_.budget = elements;
     return m;
   }
   /// An element acts only after so many steps in its group.
   Marked stay(long steps) const {
-    if (steps < 0)
-      throw Error("strategy: a stay of " + std::to_string(steps) + " steps; give at least 0");
+    if (steps < 0) throw Error("strategy: a stay of ", steps, " steps; give at least 0");
     Marked m = *this;
     m.stay_ = steps;
     return m;
@@ -86,8 +83,7 @@ class Marked {
     if (stay_ != 0)
       throw Error("strategy: refine has no stay; use stay with become, or check less often");
     if (options.max_level < 0)
-      throw Error("strategy: a max_level of " + std::to_string(options.max_level) +
-                  "; give at least 0");
+      throw Error("strategy: a max_level of ", options.max_level, "; give at least 0");
     return RefineRule<From, Criterion>{criterion_, marking_, options};
   }
 
@@ -121,7 +117,7 @@ class When {
   }
   static double checked(double share) {
     if (!(share >= 0 && share <= 1))
-      throw Error("strategy: " + detail::text(share) + " is no share; give a number in [0, 1]");
+      throw Error("strategy: ", share, " is no share; give a number in [0, 1]");
     return share;
   }
   Criterion criterion_;

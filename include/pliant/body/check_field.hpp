@@ -15,13 +15,10 @@ template <std::size_t Dim>
 void check_field(char const* what, std::vector<std::array<double, Dim>> const& values,
                  Index nodes) {
   if (values.size() != static_cast<std::size_t>(nodes))
-    throw Error(std::string(what) + ": got values for " + std::to_string(values.size()) +
-                " nodes, but the body has " + std::to_string(nodes));
+    throw Error(what, ": got values for ", values.size(), " nodes, but the body has ", nodes);
   for (std::size_t i = 0; i < values.size(); ++i)
     for (double x : values[i])
-      if (!std::isfinite(x))
-        throw Error(std::string(what) + ": the value at node " + std::to_string(i) +
-                    " is not finite");
+      if (!std::isfinite(x)) throw Error(what, ": the value at node ", i, " is not finite");
 }
 
 }  // namespace pliant::detail

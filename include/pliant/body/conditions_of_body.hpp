@@ -12,10 +12,10 @@ Point<Dim> position_at(Condition<Dim> const& condition, double time) {
   Point<Dim> const u = condition.motion(time);
   for (double x : u)
     if (!std::isfinite(x))
-      throw Error("body.drive: the motion of node " +
-                  (condition.nodes.empty() ? "(none)" : std::to_string(condition.nodes[0])) +
-                  " is " + text<Dim>(u) + " at time " + detail::text(time) +
-                  " s; it must be finite");
+      throw Error(
+          "body.drive: the motion of node ",
+          condition.nodes.empty() ? MessagePiece("(none)") : MessagePiece(condition.nodes[0]),
+          " is ", u, " at time ", time, " s; it must be finite");
   return u;
 }
 }  // namespace detail
@@ -24,11 +24,11 @@ template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::add_condition(Condition<dim> condition) {
   for (Index node : condition.nodes)
     if (node < 0 || node >= nodes())
-      throw Error("body: a condition names node " + std::to_string(node) +
-                  ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
+      throw Error("body: a condition names node ", node, ", but nodes are numbered 0 to ",
+                  nodes() - 1);
   for (auto const& slave : layout_.slave_list)
     if (std::ranges::find(condition.nodes, slave.node) != condition.nodes.end())
-      throw Error("body: node " + std::to_string(slave.node) +
+      throw Error("body: node ", slave.node,
                   " hangs between others, whom it follows; hold or drive these instead");
   if (history_.tree && !condition.facets.empty())
     throw Error(
@@ -116,16 +116,14 @@ void Body<B, M, Fs...>::upload_loads() {
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_gravity(Point<dim> const& g) {
   for (double x : g)
-    if (!std::isfinite(x))
-      throw Error("body.set_gravity: " + detail::text<dim>(g) + " is not finite");
+    if (!std::isfinite(x)) throw Error("body.set_gravity: ", g, " is not finite");
   change_loads([&] { gravity_ = g; });
 }
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_damping(double per_mass) {
   if (!(per_mass >= 0 && std::isfinite(per_mass)))
-    throw Error("body.set_damping: " + detail::text(per_mass) +
-                " 1/s; give a finite number that is not negative");
+    throw Error("body.set_damping: ", per_mass, " 1/s; give a finite number that is not negative");
   synchronize_velocities();
   damping_ = per_mass;
   ++revision_;
@@ -134,11 +132,10 @@ void Body<B, M, Fs...>::set_damping(double per_mass) {
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_load(Index node, Point<dim> const& force) {
   if (node < 0 || node >= nodes())
-    throw Error("body.set_load: there is no node " + std::to_string(node) +
-                "; nodes are numbered 0 to " + std::to_string(nodes() - 1));
+    throw Error("body.set_load: there is no node ", node, "; nodes are numbered 0 to ",
+                nodes() - 1);
   for (double x : force)
-    if (!std::isfinite(x))
-      throw Error("body.set_load: the force at node " + std::to_string(node) + " is not finite");
+    if (!std::isfinite(x)) throw Error("body.set_load: the force at node ", node, " is not finite");
   change_loads([&] {
     if (loads_.empty()) loads_.resize(static_cast<std::size_t>(nodes()), Point<dim>{});
     loads_[static_cast<std::size_t>(node)] = force;

@@ -8,8 +8,7 @@ namespace pliant {
 namespace detail {
 inline void check_stride(char const* verb, int stride, int dim) {
   if (stride < dim)
-    throw Error("body." + std::string(verb) + ": stride " + std::to_string(stride) +
-                " is smaller than the dimension " + std::to_string(dim) +
+    throw Error("body.", verb, ": stride ", stride, " is smaller than the dimension ", dim,
                 "; node i starts at [stride i]");
 }
 }  // namespace detail

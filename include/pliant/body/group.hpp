@@ -13,11 +13,13 @@ namespace pliant {
 namespace detail {
 /// Throws Error, and says where, when a law finds its parameters impossible.
 template <class L>
-void check_law(L const& law, std::string const& where) {
-  try {
-    check_parameters(law);
-  } catch (Error const& error) {
-    throw Error("body: " + where + " is impossible: " + error.what());
+void check_law(L const& law, std::initializer_list<MessagePiece> where) {
+  if constexpr (requires { law.check(); }) {
+    try {
+      law.check();
+    } catch (Error const& error) {
+      throw Error("body: ", message(where), " is impossible: ", error.what());
+    }
   }
 }
 }  // namespace detail
@@ -36,15 +38,14 @@ struct Group {
   typename F::template law<double> law_for(Elastic const& material) const {
     using L = typename F::template law<double>;
     if (law) {
-      std::string const where = "the law given to the group on " + std::string(F::element::name());
       int k = 0;
       for (double parameter : parameters(*law)) {
         if (!std::isfinite(parameter))
-          throw Error("body: parameter " + std::to_string(k) + " of " + where +
-                      " is not finite; give finite parameters");
+          throw Error("body: parameter ", k, " of the law given to the group on ",
+                      F::element::name(), " is not finite; give finite parameters");
         ++k;
       }
-      detail::check_law(*law, where);
+      detail::check_law(*law, {"the law given to the group on ", F::element::name()});
       return *law;
     }
     if constexpr (LawFromElastic<L>)

@@ -24,16 +24,16 @@ ElementStart Body<B, M, Fs...>::first_elements_of(std::size_t count) const {
   auto const take = [&]<class F>(Group<F> const& group) {
     if constexpr (std::same_as<typename F::element, E> && element_values<F> > 0) {
       if (group.values.size() != count && group.values.size() != 1)
-        throw Error("body: a group's law reads " + std::to_string(element_values<F>) +
-                    " values per element; give values for 1 or for all " + std::to_string(count) +
-                    " " + E::name() + " elements, not for " + std::to_string(group.values.size()));
+        throw Error("body: a group's law reads ", element_values<F>,
+                    " values per element; give values for 1 or for all ", count, " ", E::name(),
+                    " elements, not for ", group.values.size());
       for (std::size_t k = 0; k < element_values<F>; ++k) {
         columns.emplace_back(count);
         for (std::size_t e = 0; e < count; ++e) {
           double const x = group.values[group.values.size() == 1 ? 0 : e][k];
           if (!std::isfinite(x))
-            throw Error("body: value " + std::to_string(k) + " of " + E::name() + " element " +
-                        std::to_string(e) + " is not finite; mend the group's values");
+            throw Error("body: value ", k, " of ", E::name(), " element ", e,
+                        " is not finite; mend the group's values");
           columns.back()[e] = x;
         }
       }
@@ -42,8 +42,7 @@ ElementStart Body<B, M, Fs...>::first_elements_of(std::size_t count) const {
         Vector<double, element_values<F>> row;
         for (int k = 0; k < element_values<F>; ++k)
           row[k] = group.values[e][static_cast<std::size_t>(k)];
-        detail::check_law(law.at(row),
-                          "the law of " + std::string(E::name()) + " element " + std::to_string(e));
+        detail::check_law(law.at(row), {"the law of ", E::name(), " element ", e});
       }
     }
   };
@@ -64,9 +63,8 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
   std::vector<Tag> user = groups_of<E>();
   for (Index e : elements) {
     if (e < 0 || e >= table.count())
-      throw Error("body.assign: there is no " + std::string(E::name()) + " element " +
-                  std::to_string(e) + "; they are numbered 0 to " +
-                  std::to_string(table.count() - 1));
+      throw Error("body.assign: there is no ", E::name(), " element ", e,
+                  "; they are numbered 0 to ", table.count() - 1);
     user[static_cast<std::size_t>(e)] = static_cast<Tag>(group);
   }
   synchronize_velocities();

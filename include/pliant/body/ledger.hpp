@@ -106,13 +106,13 @@ auto ledger(TheBody const& body) {
       for (int to = 0; to < Table::groups; ++to) {
         double const moved = sums[static_cast<std::size_t>(Counters::moves(from, to))];
         if (moved > 0)
-          entries.push_back({body.time(),
-                             std::string(Table::element::name()) + " group " +
-                                 std::to_string(from) + " to group " + std::to_string(to),
-                             moved,
-                             sums[static_cast<std::size_t>(Counters::energy(from, to))],
-                             sums[static_cast<std::size_t>(Counters::kinetic(from, to))],
-                             {}});
+          entries.push_back(
+              {body.time(),
+               detail::message({Table::element::name(), " group ", from, " to group ", to}),
+               moved,
+               sums[static_cast<std::size_t>(Counters::energy(from, to))],
+               sums[static_cast<std::size_t>(Counters::kinetic(from, to))],
+               {}});
       }
   });
   return entries;

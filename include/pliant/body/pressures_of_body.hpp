@@ -17,8 +17,8 @@ std::vector<Facet<M::dim>> outer_facets(M const& mesh, std::vector<Facet<M::dim>
     auto const refuse = [&](char const* why) {
       std::string nodes;
       for (std::size_t a = 0; a < facet.size(); ++a)
-        nodes += (a == 0 ? "" : a + 1 == facet.size() ? " and " : ", ") + std::to_string(facet[a]);
-      throw Error("body.press: the facet with the nodes " + nodes + why);
+        nodes += detail::message({a == 0 ? "" : a + 1 == facet.size() ? " and " : ", ", facet[a]});
+      throw Error("body.press: the facet with the nodes ", nodes, why);
     };
     auto const found = outer.find(mesh::key_of(facet));
     if (facet.size() < facet.corners() || found == outer.end())
@@ -36,8 +36,8 @@ void Body<B, M, Fs...>::press(std::vector<Facet<dim>> const& facets, double pasc
   for (auto const& facet : facets)
     for (Index node : facet)
       if (node < 0 || node >= nodes())
-        throw Error("body.press: a facet names node " + std::to_string(node) +
-                    ", but nodes are numbered 0 to " + std::to_string(nodes() - 1));
+        throw Error("body.press: a facet names node ", node, ", but nodes are numbered 0 to ",
+                    nodes() - 1);
   auto const pressed = [&](std::vector<Facet<dim>> const& as) {
     return std::ranges::find(pressures_, as, &Pressure<dim>::facets);
   };

@@ -10,8 +10,8 @@ namespace pliant {
 namespace detail {
 /// Throws Error about a parameter unless the condition holds.
 template <class T>
-void demand(bool holds, std::string const& what, T value, std::string const& must) {
-  if (!holds) throw Error(what + " is " + text(static_cast<double>(value)) + "; it must " + must);
+void demand(bool holds, char const* what, T value, char const* must) {
+  if (!holds) throw Error(what, " is ", value, "; it must ", must);
 }
 /// Throws Error where a law finds its parameters impossible.
 template <class L>

@@ -146,10 +146,8 @@ class CellTree {
       auto e = edges_.find(ends);
       // Counter-clockwise neighbours run along their common edge in opposite directions.
       if (e >= 0 && (edges_[e].cells[1] >= 0 || edges_[e].nodes[0] == ends[0]))
-        throw Error("Hierarchy: cell " + std::to_string(c) +
-                    " overlaps another one at the edge from node " + std::to_string(ends[0]) +
-                    " to " + std::to_string(ends[1]) +
-                    "; give each edge one cell on either side at most");
+        throw Error("Hierarchy: cell ", c, " overlaps another one at the edge from node ", ends[0],
+                    " to ", ends[1], "; give each edge one cell on either side at most");
       if (e < 0) e = edges_.add_initial(ends);
       set_side(c, i, e);
     }

@@ -12,18 +12,11 @@ namespace pliant {
 
 namespace detail {
 
-template <int Dim>
-std::string text(Point<Dim> const& p) {
-  std::string s = "(";
-  for (std::size_t k = 0; k < Dim; ++k) s += (k ? ", " : "") + text(p[k]);
-  return s + ")";
-}
-
 template <Element E, class M>
 std::string describe(M const& mesh, std::size_t e) {
-  std::string s = std::string(E::name()) + " element " + std::to_string(e) + " with nodes";
-  for (Index node : mesh.template elements<E>()[e]) s += " " + std::to_string(node);
-  return s;
+  std::string text = message({E::name(), " element ", e, " with nodes"});
+  for (Index node : mesh.template elements<E>()[e]) text += message({" ", node});
+  return text;
 }
 
 template <Element E, class M>
@@ -36,9 +29,8 @@ void check_elements(M const& mesh) {
     for (int a = 0; a < E::nodes; ++a) {
       Index const node = elements[e][static_cast<std::size_t>(a)];
       if (node < 0 || node >= count)
-        throw Error("mesh: " + describe<E>(mesh, e) + " refers to node " + std::to_string(node) +
-                    ", but the mesh has nodes 0 to " + std::to_string(count - 1) +
-                    "; correct the connectivity");
+        throw Error("mesh: ", describe<E>(mesh, e), " refers to node ", node,
+                    ", but the mesh has nodes 0 to ", count - 1, "; correct the connectivity");
       for (int k = 0; k < E::dim; ++k) {
         rest(a, k) = mesh.nodes[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)];
         size = std::max(size, std::abs(rest(a, k) - rest(0, k)));
@@ -52,15 +44,17 @@ void check_elements(M const& mesh) {
         double const det =
             RestMap<E, double>::at(Coefficients<E, double>::of(rest), table, q).volume;
         if (!(det > smallest))
-          throw Error("mesh: " + describe<E>(mesh, e) + " is " +
-                      (det < -smallest ? "inverted" : "degenerate") + " (Jacobian determinant " +
-                      text(det) + " near " +
-                      text<E::dim>(mesh.nodes[static_cast<std::size_t>(elements[e][0])]) +
+          throw Error("mesh: ", describe<E>(mesh, e), " is ",
+                      det < -smallest ? "inverted" : "degenerate", " (Jacobian determinant ", det,
+                      " near ", mesh.nodes[static_cast<std::size_t>(elements[e][0])],
                       "); number its nodes counter-clockwise, or repair the mesh there");
       }
     };
-    check(Gauss<E::degree + 1>{});
-    if constexpr (QuadratureOn<Corners, typename E::cell>) check(Corners{});
+    if constexpr (LinearSimplex<E>)  // the same everywhere
+      check(Gauss<1>{});
+    else
+      check(Gauss<E::degree + 1>{});
+    if constexpr (!LinearSimplex<E> && QuadratureOn<Corners, typename E::cell>) check(Corners{});
   }
 }
 
@@ -75,8 +69,7 @@ void check(Mesh<Es...> const& mesh) {
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
     for (double x : mesh.nodes[i])
       if (!std::isfinite(x))
-        throw Error("mesh: node " + std::to_string(i) + " at " +
-                    detail::text<Mesh<Es...>::dim>(mesh.nodes[i]) +
+        throw Error("mesh: node ", i, " at ", mesh.nodes[i],
                     " is not finite; correct its coordinates");
   (detail::check_elements<Es>(mesh), ...);
 }

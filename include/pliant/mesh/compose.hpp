@@ -20,7 +20,7 @@ namespace pliant {
   std::unordered_map<Index, std::size_t> position;
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     if (!position.emplace(slaves[i].node, i).second)
-      throw Error("compose: node " + std::to_string(slaves[i].node) +
+      throw Error("compose: node ", slaves[i].node,
                   " is a slave twice; list each slave once, with all of its masters");
   }
   for (std::size_t i = 0; i < slaves.size(); ++i) {
@@ -32,8 +32,7 @@ namespace pliant {
         continue;
       }
       if (found->second >= i)
-        throw Error("compose: slave node " + std::to_string(slaves[i].node) + " has the master " +
-                    std::to_string(master) +
+        throw Error("compose: slave node ", slaves[i].node, " has the master ", master,
                     ", a slave that does not come before it; order slaves after their masters");
       for (auto const& [free, share] : slaves[found->second].masters)
         composed.emplace_back(free, weight * share);

@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <span>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -87,8 +86,9 @@ class Hierarchy {
     auto marked = known == boundary_.end() ? std::vector<Index>{} : known->second;
     for (auto const& nodes : edges) {
       auto const e = tree_.edges().find(nodes);
-      require(e >= 0 && tree_.edges()[e].cells[1] < 0, "nodes ", nodes[0], " and ", nodes[1],
-              " are not joined by a boundary edge of the initial mesh; mark only such edges");
+      if (e < 0 || tree_.edges()[e].cells[1] >= 0)
+        throw Error("Hierarchy: nodes ", nodes[0], " and ", nodes[1],
+                    " are not joined by a boundary edge of the initial mesh; mark only such edges");
       marked.push_back(e);
     }
     std::ranges::sort(marked);
@@ -100,7 +100,8 @@ class Hierarchy {
   /// for a mark that was never given.
   [[nodiscard]] std::vector<Facet> facets_of(int mark) const {
     auto const found = boundary_.find(mark);
-    require(found != boundary_.end(), "mark ", mark, " is unknown; call add_boundary first");
+    if (found == boundary_.end())
+      throw Error("Hierarchy: mark ", mark, " is unknown; call add_boundary first");
     std::vector<Index> parts;
     for (Index const e : found->second) tree_.edges().collect_parts(e, parts);
     std::vector<Facet> facets;
@@ -121,10 +122,12 @@ class Hierarchy {
   Refinement refine(std::span<Index const> marked, RefinementLimits const& limits = {}) {
     std::vector<Index> wanted;
     for (Index const c : marked) {
-      require(c >= 0 && c < size(cells()), "cannot refine cell ", c, ": cells go from 0 to ",
-              size(cells()) - 1, "; mark leaves only");
-      require(is_leaf(c), "cannot refine cell ", c, " again; mark its children, from cell ",
-              cell(c).first_child, " on, or theirs");
+      if (c < 0 || c >= size(cells()))
+        throw Error("Hierarchy: cannot refine cell ", c, ": cells go from 0 to ", size(cells()) - 1,
+                    "; mark leaves only");
+      if (!is_leaf(c))
+        throw Error("Hierarchy: cannot refine cell ", c, " again; mark its children, from cell ",
+                    cell(c).first_child, " on, or theirs");
       if (cell(c).level < limits.max_level) wanted.push_back(c);
     }
     std::ranges::sort(wanted);
@@ -156,19 +159,14 @@ class Hierarchy {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
-  static void require(bool holds, auto const&... message) {
-    if (holds) return;
-    std::ostringstream text;
-    ((text << "Hierarchy: ") << ... << message);
-    throw Error(text.str());
-  }
 
   static std::vector<HierarchyCell> checked_cells(std::span<Point const> points,
                                                   std::span<std::array<Index, 3> const> triangles,
                                                   std::span<std::array<Index, 4> const> quads) {
     auto const count = triangles.size() + quads.size();
-    require(std::max(points.size(), 4 * count) <= most_,
-            "the mesh has more nodes or edges than Index can number; give a coarser one");
+    if (std::max(points.size(), 4 * count) > most_)
+      throw Error(
+          "Hierarchy: the mesh has more nodes or edges than Index can number; give a coarser one");
     std::vector<HierarchyCell> cells;
     cells.reserve(count);
     for (auto const& t : triangles) cells.push_back({.sides = 3, .nodes = {t[0], t[1], t[2], -1}});
@@ -180,17 +178,19 @@ class Hierarchy {
   static void check_shape(Index c, HierarchyCell const& cell, std::span<Point const> points) {
     auto const k = at(cell.sides);
     for (Index const n : std::span(cell.nodes).first(k))
-      require(n >= 0 && n < size(points), "cell ", c, " has the node ", n,
-              ", but nodes go from 0 to ", size(points) - 1, "; mend its node numbers");
+      if (n < 0 || n >= size(points))
+        throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
+                    size(points) - 1, "; mend its node numbers");
     for (std::size_t i = 0; i < k; ++i) {
       auto const [x, y] = points[at(cell.nodes[i])];
       auto const [next_x, next_y] = points[at(cell.nodes[(i + 1) % k])];
       auto const [last_x, last_y] = points[at(cell.nodes[(i + k - 1) % k])];
       double const a = next_x - x, b = next_y - y, p = last_x - x, q = last_y - y;
       // A sine below 1e-12 is no angle but rounding. The comparison is false for NaN and infinity.
-      require(a * q - b * p > 1e-12 * std::hypot(a, b) * std::hypot(p, q), "cell ", c,
-              " is inverted, degenerate or not finite at its node ", cell.nodes[i], " (", x, ", ",
-              y, "); cells must be strictly convex and counter-clockwise");
+      if (!(a * q - b * p > 1e-12 * std::hypot(a, b) * std::hypot(p, q)))
+        throw Error("Hierarchy: cell ", c, " is inverted, degenerate or not finite at its node ",
+                    cell.nodes[i], " ", points[at(cell.nodes[i])],
+                    "; cells must be strictly convex and counter-clockwise");
     }
   }
 
@@ -199,9 +199,10 @@ class Hierarchy {
     if (count == 0) return;
     auto const nodes = tree_.count_new_nodes(plan.parents);
     auto const check = [&](char const* what, std::size_t needed, std::size_t limit) {
-      require(needed <= limit, "to refine ", count, " cells, coarser neighbours included, takes ",
-              needed, ' ', what, " in all, and the limit is ", limit,
-              "; mark fewer cells or raise the limit");
+      if (needed > limit)
+        throw Error("Hierarchy: to refine ", count, " cells, coarser neighbours included, takes ",
+                    needed, " ", what, " in all, and the limit is ", limit,
+                    "; mark fewer cells or raise the limit");
     };
     check("nodes", points_.size() + nodes, std::min(limits.nodes, most_));
     check("leaves", leaf_count_ + 3 * count, limits.leaves);

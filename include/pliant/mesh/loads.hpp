@@ -103,11 +103,10 @@ void for_each_side(Mesh<Es...> const& mesh, std::vector<Facet<Mesh<Es...>::dim>>
   (look_at(Es{}), ...);
   for (auto const& [key, times] : seen)
     if (times != 1)
-      throw Error("loads: a facet with the nodes " + std::to_string(key[2]) + " and " +
-                  std::to_string(key[3]) +
-                  (times == 0 ? " is not the side of any element of the mesh"
-                              : " lies between two elements") +
-                  "; give facets of its boundary");
+      throw Error(
+          "loads: a facet with the nodes ", key[2], " and ", key[3],
+          times == 0 ? " is not the side of any element of the mesh" : " lies between two elements",
+          "; give facets of its boundary");
 }
 
 template <int Dim>
@@ -172,8 +171,8 @@ std::vector<Point<Mesh<Es...>::dim>> pressure_loads(
     Load const& pressure, std::vector<Point<Mesh<Es...>::dim>> const& u = {}) {
   std::vector<Point<Mesh<Es...>::dim>> loads(mesh.nodes.size());
   if (!u.empty() && u.size() != loads.size())
-    throw Error("pressure_loads: got displacements of " + std::to_string(u.size()) +
-                " nodes, but the mesh has " + std::to_string(loads.size()));
+    throw Error("pressure_loads: got displacements of ", u.size(), " nodes, but the mesh has ",
+                loads.size());
   detail::for_each_side(
       mesh, facets, [&]<Element E>(E, Connectivity<E> const& element, auto const& points) {
         auto const rest = nodal(mesh, element);

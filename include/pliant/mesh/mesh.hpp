@@ -70,7 +70,7 @@ struct Mesh {
     if (found != boundaries.end()) return found->second;
     std::string known;
     for (auto const& [other, facets] : boundaries) known += (known.empty() ? "" : ", ") + other;
-    throw Error("mesh: no boundary is called \"" + name + "\"; there are: " + known);
+    throw Error("mesh: no boundary is called \"", name, "\"; there are: ", known);
   }
 };
 

@@ -73,9 +73,8 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
   for (auto const& side : sides) {
     for (Index node : side)
       if (node < 0 || node >= static_cast<Index>(mesh.nodes.size()))
-        throw Error("mesh: an element refers to node " + std::to_string(node) +
-                    ", but the mesh has " + std::to_string(mesh.nodes.size()) +
-                    " nodes; correct the connectivity");
+        throw Error("mesh: an element refers to node ", node, ", but the mesh has ",
+                    mesh.nodes.size(), " nodes; correct the connectivity");
     keys.push_back(key_of(side));
     smallest.push_back(keys.back()[4 - side.corners()]);
   }

@@ -38,8 +38,8 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
   auto const& layout = body.layout();
   Eigen::Index const size = Eigen::Index{dim} * layout.nodes;
   if (u.size() != size)
-    throw Error("assemble: got " + std::to_string(u.size()) + " displacements, but the body has " +
-                std::to_string(size) + " (node by node)");
+    throw Error("assemble: got ", u.size(), " displacements, but the body has ", size,
+                " (node by node)");
   // Each node's row of the interpolation T: itself, or its masters.
   std::vector<std::vector<std::pair<Index, double>>> row_of(static_cast<std::size_t>(layout.nodes));
   for (Index i = 0; i < layout.nodes; ++i) row_of[static_cast<std::size_t>(i)] = {{i, 1.0}};

@@ -90,15 +90,14 @@ class CentralDifference {
       next_check_ = body.steps() + options_.check_interval;
       return;
     }
-    std::string const what = "CentralDifference: the body " +
-                             std::string(grew ? "gained energy" : "went non-finite") +
-                             " between steps " + std::to_string(body.checkpoint_step()) + " and " +
-                             std::to_string(body.steps());
+    std::string const what =
+        detail::message({"CentralDifference: the body ", grew ? "gained energy" : "went non-finite",
+                         " between steps ", body.checkpoint_step(), " and ", body.steps()});
     if (!body.restore())
-      throw Error(what + ", and there is no earlier state of this mesh; start from a finite state");
+      throw Error(what, ", and there is no earlier state of this mesh; start from a finite state");
     if (slower_ >= 8)
-      throw Error(what + ", with an eighth of the step too (" + detail::text(step_) +
-                  " s); it is now at time " + detail::text(body.time()) +
+      throw Error(what, ", with an eighth of the step too (", step_, " s); it is now at time ",
+                  body.time(),
                   " s, before that: look at its loads, and at laws that soften or cannot invert");
     energy_ = energy_of(body);  // loads may have changed since the checkpoint
     slower_ *= 2;

@@ -121,9 +121,8 @@ class Newmark {
       bool const settled = last_change <= 1e-14 * (then.u.norm() + dt * then.v.norm());
       if (std::isfinite(size) && (size <= options_.tolerance * scale || settled)) return then;
       if (iteration == options_.max_iterations || !std::isfinite(size))
-        throw Error("Newmark: no convergence in the step to time " +
-                    detail::text(system.body.time()) + " s after " + std::to_string(iteration) +
-                    " iterations, residual " + detail::text(size) +
+        throw Error("Newmark: no convergence in the step to time ", system.body.time(), " s after ",
+                    iteration, " iterations, residual ", size,
                     " N; take smaller steps, or a law that does not soften");
       Eigen::SparseMatrix<double> const matrix = system.problem.restrict(state.stiffness) + inertia;
       Eigen::VectorXd const du =

@@ -163,9 +163,8 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
       bool const finite = std::isfinite(report.residual) && std::isfinite(state.energy);
       if (finite && (settled || report.residual <= options.tolerance * scale)) break;
       if (iteration == options.max_iterations || !finite)
-        throw Error("solve_static: no convergence in load step " + std::to_string(step) + " of " +
-                    std::to_string(options.load_steps) + " after " + std::to_string(iteration) +
-                    " iterations, residual " + detail::text(report.residual) +
+        throw Error("solve_static: no convergence in load step ", step, " of ", options.load_steps,
+                    " after ", iteration, " iterations, residual ", report.residual,
                     " N; use more load_steps, or a law that does not soften");
       Eigen::VectorXd const du =
           detail::solve("solve_static", problem.restrict(state.stiffness), residual, conservative);

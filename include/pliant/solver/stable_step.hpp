@@ -156,9 +156,9 @@ double squared_frequency_bound(TheBody& body) {
       detail::RowOverMass<T, dim>{{rows.data()}, layout.mass.data(), layout.held.data()});
   double const eigenvalue = std::min(by_elements, by_rows);
   if (!std::isfinite(eigenvalue) || !(eigenvalue > 0))
-    throw Error("stable_step: the stiffness of the body is " +
-                std::string(eigenvalue > 0 ? "not finite" : "zero") + " at time " +
-                detail::text(body.time()) + " s; an element has collapsed, or every node is held");
+    throw Error("stable_step: the stiffness of the body is ",
+                eigenvalue > 0 ? "not finite" : "zero", " at time ", body.time(),
+                " s; an element has collapsed, or every node is held");
   return eigenvalue;
 }
 

@@ -52,15 +52,14 @@ class DeviceArray {
     cudaGetLastError();
     std::size_t free = 0, total = 0;
     cudaMemGetInfo(&free, &total);
-    throw Error("CUDA: out of memory: an array of " + std::to_string(size_ * sizeof(U)) +
-                " bytes was asked for, and " + std::to_string(free) + " of " +
-                std::to_string(total) +
+    throw Error("CUDA: out of memory: an array of ", size_ * sizeof(U),
+                " bytes was asked for, and ", free, " of ", total,
                 " bytes are free; use a coarser mesh, single precision, or a larger GPU");
   }
   void copy(void* to, void const* from, std::size_t count, cudaMemcpyKind kind) const {
     if (count > size_)
-      throw Error("CUDA: copy of " + std::to_string(count) + " values, but the array holds " +
-                  std::to_string(size_) + "; make the array larger");
+      throw Error("CUDA: copy of ", count, " values, but the array holds ", size_,
+                  "; make the array larger");
     if (count == 0) return;
     // An array does not know which streams use it, so it waits for all.
     detail::check(cudaDeviceSynchronize(), "cudaDeviceSynchronize");

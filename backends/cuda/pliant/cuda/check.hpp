@@ -32,8 +32,8 @@ inline void check(cudaError_t status, char const* call) {
     default:
       advice = "; look the code up in the CUDA runtime's list of errors";
   }
-  throw Error(std::string("CUDA: ") + call + " failed: " + cudaGetErrorString(status) + " (" +
-              cudaGetErrorName(status) + ")" + advice);
+  throw Error("CUDA: ", call, " failed: ", cudaGetErrorString(status), " (",
+              cudaGetErrorName(status), ")", advice);
 }
 
 }  // namespace pliant::detail

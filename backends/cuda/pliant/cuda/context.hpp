@@ -22,13 +22,13 @@ class CudaContext {
     cudaError_t const status = cudaGetDeviceCount(&count);
     if (status != cudaSuccess || count == 0) {
       cudaGetLastError();
-      throw Error(std::string("CUDA: no usable GPU (") +
-                  cudaGetErrorString(status == cudaSuccess ? cudaErrorNoDevice : status) +
+      throw Error("CUDA: no usable GPU (",
+                  cudaGetErrorString(status == cudaSuccess ? cudaErrorNoDevice : status),
                   "). Run on a machine with one, or build for OpenMP.");
     }
     if (device_ < 0 || device_ >= count)
-      throw Error("CUDA: device " + std::to_string(device_) + " asked for, but there are " +
-                  std::to_string(count) + "; give a number from 0 to " + std::to_string(count - 1));
+      throw Error("CUDA: device ", device_, " asked for, but there are ", count,
+                  "; give a number from 0 to ", count - 1);
     make_current();
     partials_ = DeviceArray<double>(max_partials);
     check(cudaMallocHost(&result_, sizeof(double)), "cudaMallocHost");

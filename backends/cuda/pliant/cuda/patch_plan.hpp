@@ -49,9 +49,8 @@ void check_nodes(std::vector<std::array<Index, Nodes>> const& connectivity, Inde
   for (std::size_t e = 0; e < connectivity.size(); ++e)
     for (Index node : connectivity[e])
       if (node < 0 || node >= nodes)
-        throw Error("element " + std::to_string(e) + " has node " + std::to_string(node) +
-                    ", but nodes are numbered from 0 to " + std::to_string(nodes - 1) +
-                    "; mend the mesh");
+        throw Error("element ", e, " has node ", node, ", but nodes are numbered from 0 to ",
+                    nodes - 1, "; mend the mesh");
 }
 
 /// Plans patches, one after the other.
@@ -64,7 +63,7 @@ class PatchPlanner {
                int patch_size)
       : connectivity_(connectivity), owner_(static_cast<std::size_t>(std::max(nodes, Index{0}))) {
     if (patch_size * Nodes >= 1 << 16)
-      throw Error("patches of " + std::to_string(patch_size) +
+      throw Error("patches of ", patch_size,
                   " elements have more slots than 16 "
                   "bits can number; make them smaller");
     check_nodes<Nodes>(connectivity, nodes);
