@@ -51,7 +51,7 @@ struct StrainInvariants {
   template <int Dim>
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(StrainInvariants const& w,
                                                   Tensor<S, Dim> const& h) {
-    Tensor<S, Dim> p = (w.squares + w.squares) * symmetric_part(h);
+    Tensor<S, Dim> p = w.squares * (h + transpose(h));
     for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.trace;
     return p;
   }
