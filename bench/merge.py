@@ -3,7 +3,8 @@
 
     bench/merge.py RESULT PART... --context KEY=VALUE...
 
-Of each benchmark's repetitions the median is kept, with their coefficient of variation as `cv`.
+Of each benchmark's repetitions the median is kept, with the `least` of the times and their coefficient
+of variation as `cv`.
 """
 import argparse
 import json
@@ -14,12 +15,14 @@ LEFT_OUT = ("host_name", "executable", "library_build_type", "json_schema_versio
 
 
 def benchmarks_of(part):
-    """Medians by name, each with the variation of its times."""
-    spread = {
-        run["run_name"]: run["real_time"]
-        for run in part["benchmarks"]
-        if run.get("aggregate_name") == "cv"
-    }
+    """Medians by name, each with the least and the variation of its times."""
+    spread, least = {}, {}
+    for run in part["benchmarks"]:
+        name = run["run_name"]
+        if run.get("aggregate_name") == "cv":
+            spread[name] = run["real_time"]
+        elif run["run_type"] == "iteration" and not run.get("error_occurred"):
+            least[name] = min(run["real_time"], least.get(name, run["real_time"]))
     for run in part["benchmarks"]:
         if run.get("error_occurred"):
             print(f"{run['name']}: {run.get('error_message')}", file=sys.stderr)
@@ -28,6 +31,7 @@ def benchmarks_of(part):
                 "name": run["run_name"].removesuffix("/manual_time"),
                 "repetitions": run["repetitions"],
                 "cv": spread[run["run_name"]],
+                "least": least[run["run_name"]],
                 **{k: v for k, v in run.items() if isinstance(v, float) and k != "cpu_time"},
                 "time_unit": run["time_unit"],
             }
