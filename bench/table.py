@@ -25,9 +25,9 @@ class Results:
         return run["real_time"] * {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1}[run["time_unit"]]
 
     def least_seconds(self, name):
-        """Of the fastest repetition; the median, where older results kept no other."""
+        """Of the fastest repetition."""
         run = self.runs[name]
-        return self.seconds(name) * run.get("least", run["real_time"]) / run["real_time"]
+        return self.seconds(name) * run["least"] / run["real_time"]
 
     def rate(self, counter, *path):
         return self.runs[self._name(path)][counter]
@@ -183,7 +183,7 @@ A node add adds three values to a node at random. Copies count bytes read and by
 
 The time of forces and tangent products as the library derives them from the energy, over that of
 the same law with its stress, or its tangent too, written by hand (bench/law/by_hand.hpp). Fastest
-repetitions of both, where the results have them: what else runs on a machine only adds.
+repetitions of both: what else runs on a machine only adds.
 
 {laws}
 
