@@ -1,1 +1,11 @@
 #include "backend/verbs_suite.hpp"
+
+namespace pliant::test {
+
+TEST_CASE("host arrays refuse what no memory holds", "[backend]") {
+  auto const most = std::numeric_limits<std::size_t>::max();
+  CHECK_THROWS_WITH(HostArray<double>(most / 4), says("larger than memory"));
+  CHECK_THROWS_WITH(HostArray<int>(most), says("larger than memory"));
+}
+
+}  // namespace pliant::test
