@@ -3,7 +3,6 @@
 #include <omp.h>
 
 #include <limits>
-#include <string>
 #include <tuple>
 
 #include <pliant/backend/backend.hpp>

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <type_traits>
 
 #include <pliant/backend/backend.hpp>

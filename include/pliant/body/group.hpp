@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pliant/body/group_laws.hpp>

@@ -121,7 +121,7 @@ PLIANT_HOST_DEVICE Pack<T, L> or_limit_of_log(Pack<T, L> const& y, Pack<T, L> co
 }  // namespace detail
 
 /// An instruction, since not every compiler makes one of the loop, and <immintrin.h> takes longer to
-/// compile than all of Pliant.
+/// read than all headers of Pliant together.
 template <class T, int L>
 PLIANT_HOST_DEVICE Pack<T, L> sqrt(Pack<T, L> const& x) {
   Pack<T, L> root;
