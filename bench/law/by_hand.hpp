@@ -94,15 +94,15 @@ template <class T>
 struct NeoHookean : pliant::NeoHookean<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
-    S const J_1 = determinant_less_one(h);
-    S const pressure = (this->mu * J_1 + this->lambda * log1p(J_1)) / (1 + J_1);
+    S const J_minus_1 = determinant_less_one(h);
+    S const pressure = (this->mu * J_minus_1 + this->lambda * log1p(J_minus_1)) / (1 + J_minus_1);
     return combined(S(this->mu), pressure, h, cofactor_less_identity(h));
   }
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> change(Tensor<S, 3> const& h, Tensor<S, 3> const& dh) const {
     auto const c = cofactor_less_identity(h), dc = cofactor_change(h, dh);
-    S const J_1 = determinant_less_one(h), inverse = 1 / (1 + J_1);
-    S const pressure = (this->mu * J_1 + this->lambda * log1p(J_1)) * inverse;
+    S const J_minus_1 = determinant_less_one(h), inverse = 1 / (1 + J_minus_1);
+    S const pressure = (this->mu * J_minus_1 + this->lambda * log1p(J_minus_1)) * inverse;
     S const dJ = trace(dh) + dot(c, dh);
     S const d_pressure = (this->mu + this->lambda * inverse - pressure) * inverse * dJ;
     Tensor<S, 3> dp = this->mu * (dh - dc) + pressure * dc + d_pressure * c;
@@ -116,25 +116,25 @@ struct NeoHookean : pliant::NeoHookean<T> {
 template <class S>
 struct Isochoric {
   Tensor<S, 3> c;
-  S D, J_1, inverse_J, x, inverse_square;  // x = J^(1/3)
+  S D, J_minus_1, inverse_J, x, inverse_square;  // x = J^(1/3)
 
   PLIANT_HOST_DEVICE explicit Isochoric(Tensor<S, 3> const& h) : c(cofactor_less_identity(h)) {
     S const beyond = determinant_beyond_trace(h);
     D = dot(h, h) - (beyond + beyond);
-    J_1 = trace(h) + beyond;
-    x = cbrt(1 + J_1);
-    inverse_J = 1 / (1 + J_1);
+    J_minus_1 = trace(h) + beyond;
+    x = cbrt(1 + J_minus_1);
+    inverse_J = 1 / (1 + J_minus_1);
     inverse_square = x * inverse_J;
   }
   /// Ī₁ − 3
-  PLIANT_HOST_DEVICE S I1_3() const {
-    S const x_1 = J_1 / (square(x) + x + 1);
+  PLIANT_HOST_DEVICE S I1_minus_3() const {
+    S const x_1 = J_minus_1 / (square(x) + x + 1);
     return (D + square(x_1) * (2 * x + 1)) * inverse_square;
   }
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(S const& W1, S const& p, Tensor<S, 3> const& h) const {
     using T = builtin_scalar<S>;
     S const shape = 2 * W1 * inverse_square;
-    return combined(shape, p + T(1.0 / 3) * shape * (J_1 - D) * inverse_J, h, c);
+    return combined(shape, p + T(1.0 / 3) * shape * (J_minus_1 - D) * inverse_J, h, c);
   }
 };
 
@@ -144,7 +144,7 @@ struct IsochoricNeoHookean : pliant::IsochoricNeoHookean<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     Isochoric<S> const i(h);
-    return i.stress(S(this->mu / 2), this->bulk * i.J_1, h);
+    return i.stress(S(this->mu / 2), this->bulk * i.J_minus_1, h);
   }
 };
 /// W₁ = μ/2, p = κ/2 (J − 1/J)
@@ -153,7 +153,8 @@ struct SimoNeoHookean : pliant::SimoNeoHookean<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     Isochoric<S> const i(h);
-    return i.stress(S(this->mu / 2), this->bulk / 2 * i.J_1 * (2 + i.J_1) * i.inverse_J, h);
+    return i.stress(S(this->mu / 2), this->bulk / 2 * i.J_minus_1 * (2 + i.J_minus_1) * i.inverse_J,
+                    h);
   }
 };
 /// W₁ = c₁ + 2 c₂ (Ī₁ − 3) + 3 c₃ (Ī₁ − 3)²
@@ -162,8 +163,8 @@ struct Yeoh : pliant::Yeoh<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     Isochoric<S> const i(h);
-    S const y = i.I1_3();
-    return i.stress(this->c1 + y * (2 * this->c2 + 3 * this->c3 * y), this->bulk * i.J_1, h);
+    S const y = i.I1_minus_3();
+    return i.stress(this->c1 + y * (2 * this->c2 + 3 * this->c3 * y), this->bulk * i.J_minus_1, h);
   }
 };
 /// W₁ = μ/2 / (1 − (Ī₁ − 3)/Jₘ)
@@ -172,8 +173,8 @@ struct Gent : pliant::Gent<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     Isochoric<S> const i(h);
-    S const W1 = this->mu * this->limit / 2 / (this->limit - i.I1_3());
-    return i.stress(W1, this->bulk * i.J_1, h);
+    S const W1 = this->mu * this->limit / 2 / (this->limit - i.I1_minus_3());
+    return i.stress(W1, this->bulk * i.J_minus_1, h);
   }
 };
 /// W₁ = μ₀ Σ k aₖ (Ī₁/λₘ²)^(k−1)
@@ -182,10 +183,10 @@ struct ArrudaBoyce : pliant::ArrudaBoyce<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     Isochoric<S> const i(h);
-    S const y = (3 + i.I1_3()) * (1 / square(this->locking));
+    S const y = (3 + i.I1_minus_3()) * (1 / square(this->locking));
     S const sum =
         T(0.5) + y * (T(0.1) + y * (T(11.0 / 350) + y * (T(19.0 / 1750) + y * T(519.0 / 134750))));
-    return i.stress(this->mu * sum, this->bulk * i.J_1, h);
+    return i.stress(this->mu * sum, this->bulk * i.J_minus_1, h);
   }
 };
 /// P = 2 c₁ J^(−2/3) (F − I₁/3 F⁻ᵀ) + 2 c₂ J^(−4/3) (I₁ F − F C − 2/3 I₂ F⁻ᵀ) + κ (J − 1) cof F
@@ -200,8 +201,9 @@ struct MooneyRivlin : pliant::MooneyRivlin<T> {
       for (int l = 0; l < 3; ++l) m(k, l) = k == l ? t - m(k, k) : -m(k, l);
     S const first = 2 * this->c1 * i.inverse_square;
     S const second = 4 * this->c2 * square(i.inverse_square);
-    S const pressure = this->bulk * i.J_1 +
-                       T(1.0 / 3) * i.inverse_J * (first * (i.J_1 - i.D) - second * (i.J_1 + D2));
+    S const pressure =
+        this->bulk * i.J_minus_1 +
+        T(1.0 / 3) * i.inverse_J * (first * (i.J_minus_1 - i.D) - second * (i.J_minus_1 + D2));
     return combined(first + second, pressure, h, i.c) + second * (m + h * m);
   }
 };
@@ -270,7 +272,7 @@ struct HolzapfelGasserOgden : pliant::HolzapfelGasserOgden<T> {
       add(second, directions[0], e);
       add(second, directions[1], e);
       Isochoric<V> const i(h);
-      return i.stress(V(this->law.mu / 2), this->law.bulk * i.J_1, h) + second + h * second;
+      return i.stress(V(this->law.mu / 2), this->law.bulk * i.J_minus_1, h) + second + h * second;
     }
 
    private:
@@ -306,11 +308,11 @@ struct Ogden : pliant::Ogden<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     auto const frame = PrincipalFrame<S, 3>::of(h);
-    S const J_1 = determinant_less_one(h);
+    S const J_minus_1 = determinant_less_one(h);
     S log_bar[3], slopes[3];
     for (int k = 0; k < 3; ++k) log_bar[k] = log1p(frame.less_one[k]);
     S const mean = (log_bar[0] + log_bar[1] + log_bar[2]) / 3;
-    for (S& slope : slopes) slope = this->bulk * J_1 * (1 + J_1);
+    for (S& slope : slopes) slope = this->bulk * J_minus_1 * (1 + J_minus_1);
     for (int p = 0; p < 3; ++p) {
       S power[3];
       for (int k = 0; k < 3; ++k) power[k] = expm1(this->alpha[p] * (log_bar[k] - mean));
@@ -330,11 +332,11 @@ struct Corotated : pliant::Corotated<T> {
   template <class S>
   PLIANT_HOST_DEVICE Tensor<S, 3> stress(Tensor<S, 3> const& h) const {
     auto const i = PrincipalInvariants<S>::of(h);
-    S const J_1 = i.J_1, x = i.I1_3();
+    S const J_minus_1 = i.J_minus_1, x = i.I1_minus_3();
     S const s = pliant::Corotated<T>{T(0), T(-0.5)}.energy(i) + i.D1 / 2;  // tr U − 3 − (J − 1)
-    S const a = J_1 + s, square_a = square(a);
+    S const a = J_minus_1 + s, square_a = square(a);
     S const by_x = 2 * (x - 6 * a - square_a);
-    S const by_a = 96 * a - 12 * x - 8 * J_1 + a * (36 * a - 4 * x + 4 * square_a);
+    S const by_a = 96 * a - 12 * x - 8 * J_minus_1 + a * (36 * a - 4 * x + 4 * square_a);
     S const inverse = 1 / (64 + by_a);
     S const s_D1 = (12 - by_x) * inverse, s_D2 = 4 * inverse;
     S const s_J = (8 * a - 2 * by_x - by_a) * inverse;

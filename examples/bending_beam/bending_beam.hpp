@@ -34,7 +34,7 @@ struct Outcome {
   Point<2> tip;  // displacement, m
   double error;  // of the tip against static Saint Venant-Kirchhoff, share of its length
   double total;  // s, wall clock
-  double forces, criteria, migration;  // s, by the backend's stopwatch
+  double forces, criteria, migration;  // s, by the backend's timer
   double share_of_hooke;               // of element-steps
   double switches;
   int most_switches;     // of one element
@@ -91,7 +91,7 @@ Outcome simulate(TheBackend const& backend, Mesh<Quad4> const& mesh, Run run,
   }
 
   Outcome outcome{};
-  auto stopwatch = backend.stopwatch();
+  auto timer = backend.timer();
   beam.measure_adaptation();
   double late = 0;
   auto const draw = [&](int frame) {
@@ -117,9 +117,9 @@ Outcome simulate(TheBackend const& backend, Mesh<Quad4> const& mesh, Run run,
       drawing += std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
     }
     if (late == 0 && beam.time() >= 0.9 * duration) late = switch_count(ledger(beam)) + 1;
-    stopwatch.start();
+    timer.start();
     step(beam, check_interval);
-    stopwatch.stop();
+    timer.stop();
     if (run == Run::adaptive) adapt.now(beam);
   }
   backend.synchronize();
@@ -129,9 +129,9 @@ Outcome simulate(TheBackend const& backend, Mesh<Quad4> const& mesh, Run run,
 
   outcome.tip = beam.displacements()[static_cast<std::size_t>(tip_node(mesh))];
   outcome.error = distance(outcome.tip, at_rest) / distance(at_rest, {0, 0});
-  outcome.forces = stopwatch.seconds();
-  outcome.criteria = beam.watches().criteria.seconds();
-  outcome.migration = beam.watches().migration.seconds();
+  outcome.forces = timer.seconds();
+  outcome.criteria = beam.timers().criteria.seconds();
+  outcome.migration = beam.timers().migration.seconds();
   auto const share = element_steps<Quad4>(beam);
   outcome.share_of_hooke = share[0] / (share[0] + share[1]);
   outcome.ledger = ledger(beam);

@@ -15,7 +15,7 @@ struct BlatzKo {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalInvariants<S> const& i) const {
-    S const j = i.J_1;
+    S const j = i.J_minus_1;
     return mu / 2 * (i.D2 + j * j + 2 * j * j * j) / square(1 + j);
   }
 };

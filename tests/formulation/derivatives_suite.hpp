@@ -26,7 +26,7 @@ double energy_at(TheBody& body, FieldOf<TheBody::dim> const& u) {
 
 TEST_CASE("forces are minus the derivative of the energy", "[formulation]") {
   on_each_formulation<DoubleBackends>([]<class B, class F>(Case<B, F>) {
-    if constexpr (history_size<F> > 0) return;  // dashpots have no energy
+    if constexpr (internal_variables_of<F> > 0) return;  // dashpots have no energy
     int const n = F::dim == 2 ? 4 : 3;
     auto const mesh = distorted_mesh<typename F::element>(n);
     auto body = body_of<F>(B{}, mesh);

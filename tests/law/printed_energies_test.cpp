@@ -82,7 +82,7 @@ struct CompressibleMooney {
   T c1, c2;
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalInvariants<S> const& i) const {
-    return c1 * i.I1_3() + c2 * i.I2_3() - (2 * c1 + 4 * c2) * log1p(i.J_1);
+    return c1 * i.I1_minus_3() + c2 * i.I2_3() - (2 * c1 + 4 * c2) * log1p(i.J_minus_1);
   }
 };
 static_assert(EnergyIn<CompressibleMooney<double>, PrincipalInvariants>);
@@ -155,7 +155,8 @@ TEST_CASE("Ogden's law of two terms is Mooney and Rivlin's", "[law]") {
     auto const h = random_state<3>(random), along = random.tensor<3>(1);
     CHECK(energy_density(ogden, h) == Approx(energy_density(mooney, h)).epsilon(1e-12));
     CHECK(largest<3>(stress(ogden, h) - stress(mooney, h)) < 1e-12);
-    CHECK(largest<3>(stress_change(ogden, h, along) - stress_change(mooney, h, along)) < 1e-10);
+    CHECK(largest<3>(stress_tangent_product(ogden, h, along) -
+                     stress_tangent_product(mooney, h, along)) < 1e-10);
   }
 }
 

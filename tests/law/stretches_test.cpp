@@ -15,7 +15,7 @@ template <int Dim, class L>
 void check_derivatives(L const& law, Tensor<double, Dim> const& h, Random& random,
                        double step = 2e-3) {
   auto const along = random.tensor<Dim>(1);
-  auto const p = stress(law, h), dp = stress_change(law, h, along);
+  auto const p = stress(law, h), dp = stress_tangent_product(law, h, along);
   auto const power = derivative([&](double t) { return energy_density(law, h + t * along); }, step);
   auto const slope =
       tensor_derivative<Dim>([&](double t) { return stress(law, h + t * along); }, step);
@@ -72,8 +72,8 @@ TEST_CASE("single precision keeps tangents where stretches are nearly equal", "[
           same(i, j) = h(i, j) = static_cast<float>(drawn(i, j));
           same_dh(i, j) = dh(i, j) = static_cast<float>(direction(i, j));
         }
-      auto const dp = stress_change(law_of_section_6<Ogden, float>, h, dh);
-      auto const exact = stress_change(law_of_section_6<Ogden>, same, same_dh);
+      auto const dp = stress_tangent_product(law_of_section_6<Ogden, float>, h, dh);
+      auto const exact = stress_tangent_product(law_of_section_6<Ogden>, same, same_dh);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           CHECK(std::abs(double{dp(i, j)} - exact(i, j)) < 2e-5 * largest<3>(exact));

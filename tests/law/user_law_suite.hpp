@@ -23,8 +23,8 @@ struct OfInvariants {
   T lambda, mu;
   template <class S>
   PLIANT_HOST_DEVICE S energy(CauchyGreenInvariants<S> const& i) const {
-    S const log_j = log1p(i.J_1);
-    return mu / 2 * i.I1_3() - mu * log_j + lambda / 2 * square(log_j);
+    S const log_j = log1p(i.J_minus_1);
+    return mu / 2 * i.I1_minus_3() - mu * log_j + lambda / 2 * square(log_j);
   }
   static OfInvariants from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 };

@@ -23,11 +23,11 @@ void check_lanes(L const& law, LawInLane const& law_in_lane) {
         }
     }
     auto const w = energy_density(law, hs);
-    auto const p = stress(law, hs), dp = stress_change(law, hs, dhs);
+    auto const p = stress(law, hs), dp = stress_tangent_product(law, hs, dhs);
     for (int lane = 0; lane < P::lanes; ++lane) {
       INFO("lane " << lane);
       auto const expected = stress(law_in_lane(lane), h[lane]);
-      auto const change = stress_change(law_in_lane(lane), h[lane], dh[lane]);
+      auto const change = stress_tangent_product(law_in_lane(lane), h[lane], dh[lane]);
       CHECK(w[lane] == Approx(energy_density(law_in_lane(lane), h[lane])).epsilon(1e-12));
       for (int i = 0; i < Dim; ++i)
         for (int j = 0; j < Dim; ++j) {

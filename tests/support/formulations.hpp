@@ -174,8 +174,8 @@ auto law_at_a_point(TheBody const& body) {
     for (int k = 0; k < element_values<F>; ++k)
       values[k] = Sample<typename F::template law<double>>::values[static_cast<std::size_t>(k)];
     return law.at(values);
-  } else if constexpr (history_size<F> > 0) {
-    return law.over(0).after(Vector<double, history_size<F> / F::points>::zero());
+  } else if constexpr (internal_variables_of<F> > 0) {
+    return law.over(0).after(Vector<double, internal_variables_of<F> / F::points>::zero());
   } else {
     return law;
   }

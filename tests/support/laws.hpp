@@ -90,8 +90,8 @@ Tensor<T, Dim> stress(AnyLaw<Dim, T> const& law, Tensor<T, Dim> const& h) {
   return law.stress(h);
 }
 template <int Dim, class T>
-Tensor<T, Dim> stress_change(AnyLaw<Dim, T> const& law, Tensor<T, Dim> const& h,
-                             Tensor<T, Dim> const& dh) {
+Tensor<T, Dim> stress_tangent_product(AnyLaw<Dim, T> const& law, Tensor<T, Dim> const& h,
+                                      Tensor<T, Dim> const& dh) {
   return law.change(h, dh);
 }
 
@@ -106,7 +106,9 @@ AnyLaw<Dim, T> any_law(L const& law, Kind kind) {
   if constexpr (ask == Ask::energy_and_stress)
     any.energy = [law](H const& h) { return pliant::energy_density(law, h); };
   else
-    any.change = [law](H const& h, H const& dh) { return pliant::stress_change(law, h, dh); };
+    any.change = [law](H const& h, H const& dh) {
+      return pliant::stress_tangent_product(law, h, dh);
+    };
   return any;
 }
 

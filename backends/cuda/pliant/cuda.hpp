@@ -14,7 +14,7 @@
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
 #include <pliant/cuda/scatter.cuh>
-#include <pliant/cuda/stopwatch.hpp>
+#include <pliant/cuda/timer.hpp>
 #include <pliant/cuda/visit.cuh>
 
 namespace pliant {
@@ -41,7 +41,7 @@ class Cuda {
   template <int Nodes>
   using Elements = CudaElements<T, Nodes>;
   using Recording = CudaRecording;
-  using Stopwatch = CudaStopwatch;
+  using Timer = CudaTimer;
   static constexpr bool orders_by_group = false;
   static constexpr char const* name() { return "Cuda"; }
 
@@ -52,7 +52,7 @@ class Cuda {
   /// Makes the backend's device the one of the calling thread; arrays are made there.
   void make_current() const { context_->make_current(); }
   void synchronize() const { context_->synchronize(); }
-  Stopwatch stopwatch() const { return Stopwatch(context_); }
+  Timer timer() const { return Timer(context_); }
   Recording record(std::function<void()> const& f) const { return {context_, f}; }
 
   template <class F>

@@ -8,7 +8,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/host_recording.hpp>
-#include <pliant/backend/host_stopwatch.hpp>
+#include <pliant/backend/host_timer.hpp>
 #include <pliant/error.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/transpose.hpp>
@@ -33,7 +33,7 @@ class OpenMP {
   template <class U>
   using Array = HostArray<U>;
   using Recording = HostRecording;
-  using Stopwatch = HostStopwatch;
+  using Timer = HostTimer;
   static constexpr bool orders_by_group = true;
   static constexpr char const* name() { return "OpenMP"; }
 
@@ -77,7 +77,7 @@ class OpenMP {
   }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
   void synchronize() const {}
-  Stopwatch stopwatch() const { return {}; }
+  Timer timer() const { return {}; }
 
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,

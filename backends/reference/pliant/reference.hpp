@@ -9,7 +9,7 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/host_array.hpp>
 #include <pliant/backend/host_recording.hpp>
-#include <pliant/backend/host_stopwatch.hpp>
+#include <pliant/backend/host_timer.hpp>
 
 namespace pliant {
 
@@ -21,7 +21,7 @@ class Reference {
   template <class U>
   using Array = HostArray<U>;
   using Recording = HostRecording;
-  using Stopwatch = HostStopwatch;
+  using Timer = HostTimer;
   static constexpr bool orders_by_group = false;
   static constexpr char const* name() { return "Reference"; }
 
@@ -64,7 +64,7 @@ class Reference {
   }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
   void synchronize() const {}
-  Stopwatch stopwatch() const { return {}; }
+  Timer timer() const { return {}; }
 
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,

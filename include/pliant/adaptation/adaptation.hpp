@@ -34,29 +34,29 @@ class Adaptation {
     static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
                   "a rule is for an element type that the body's mesh does not have");
     constexpr bool refines = (!detail::Switches<Rules> || ...);
-    auto& watches = body.watches();
-    watches.criteria.start();
+    auto& timers = body.timers();
+    timers.criteria.start();
     body.for_each_table([&](auto& table) {
       using Table = std::remove_cvref_t<decltype(table)>;
       detail::switch_groups(body, table, switching<Table>());
     });
-    watches.criteria.stop();
+    timers.criteria.stop();
     if constexpr (TheBody::backend_type::orders_by_group) {
-      watches.migration.start();
+      timers.migration.start();
       body.for_each_table([&](auto& table) { table.elements.regroup(); });
-      watches.migration.stop();
+      timers.migration.stop();
     }
     body.forget_forces();
     if constexpr (refines) {
-      watches.criteria.start();
+      timers.criteria.start();
       int max_level = 0;
       std::vector<std::vector<Index>> marked;
       body.for_each_table(
           [&](auto& table) { marked.push_back(marked_in(body, table, max_level)); });
-      watches.criteria.stop();
-      watches.migration.start();
+      timers.criteria.stop();
+      timers.migration.start();
       refine(body, marked, max_level);
-      watches.migration.stop();
+      timers.migration.stop();
     }
   }
 

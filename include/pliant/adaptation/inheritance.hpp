@@ -40,20 +40,21 @@ Vector<double, 2> on_parent(Vector<double, 2> const& xi, int child) {
   return middle - 0.5 * xi;
 }
 
-/// Appends what the points of an element remember: what the nearest point of its ancestor does.
+/// Appends the internal variables of an element: those of the nearest point of its ancestor.
 template <class Table>
-void inherit_history(Table const&, std::vector<double> const& rows, std::size_t ancestor, Tag tag,
-                     std::vector<int> const& children, std::vector<double>& history) {
-  constexpr int width = Table::Laws::history_count;
+void inherit_internal_variables(Table const&, std::vector<double> const& rows, std::size_t ancestor,
+                                Tag tag, std::vector<int> const& children,
+                                std::vector<double>& internal) {
+  constexpr int width = Table::Laws::internal_variable_count;
   if constexpr (width > 0) {
-    std::size_t const first = history.size();
-    history.resize(first + std::size_t{width}, 0.0);
+    std::size_t const first = internal.size();
+    internal.resize(first + std::size_t{width}, 0.0);
     auto const fill = [&]<int G>(GroupNumber<G>) {
       using F = typename Table::template formulation<G>;
-      if constexpr (history_size<F> > 0) {
+      if constexpr (internal_variables_of<F> > 0) {
         using Cell = typename F::element::cell;
         constexpr auto rule = F::quadrature::template rule<Cell>();
-        constexpr int size = history_size<F> / F::points;
+        constexpr int size = internal_variables_of<F> / F::points;
         for (int q = 0; q < F::points; ++q) {
           Vector<double, 2> at{{{rule.points[q][0]}, {rule.points[q][1]}}};
           for (auto child = children.rbegin(); child != children.rend(); ++child)
@@ -68,7 +69,7 @@ void inherit_history(Table const&, std::vector<double> const& rows, std::size_t 
             }
           }
           for (int k = 0; k < size; ++k)
-            history[first + static_cast<std::size_t>(size * q + k)] =
+            internal[first + static_cast<std::size_t>(size * q + k)] =
                 rows[std::size_t{width} * ancestor + static_cast<std::size_t>(size * nearest + k)];
         }
       }
@@ -82,7 +83,7 @@ template <Element E>
 struct InheritedElements {
   std::vector<Connectivity<E>> elements;
   ElementStart start;
-  std::vector<double> history;
+  std::vector<double> internal_variables;
 };
 
 /// `tags`: the groups of the elements before, by the user's number.
@@ -104,7 +105,7 @@ auto inherited_elements(Table const& table, std::vector<Tag> const& tags, Hierar
         origin.children.push_back(c);
         origin_of[after.cell(parent).first_child + c] = std::move(origin);
       }
-  auto const old_history = table.in_user_order(table.history);
+  auto const old_internal_variables = table.in_user_order(table.internal_variables);
   std::size_t const values = tags.empty() ? 0 : table.value_rows.size() / tags.size();
   InheritedElements<E> now;
   for (Index c : leaves_of<E>(after)) {
@@ -114,7 +115,8 @@ auto inherited_elements(Table const& table, std::vector<Tag> const& tags, Hierar
     now.start.tags.push_back(tags[element]);
     for (std::size_t k = 0; k < values; ++k)
       now.start.values.push_back(table.value_rows[values * element + k]);
-    inherit_history(table, old_history, element, tags[element], children, now.history);
+    inherit_internal_variables(table, old_internal_variables, element, tags[element], children,
+                               now.internal_variables);
   }
   return now;
 }

@@ -135,14 +135,14 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   auto mesh = body.mesh();
   mesh.nodes = after->points();
   std::vector<ElementStart> starts;
-  std::vector<std::vector<double>> histories;
+  std::vector<std::vector<double>> internal_variables;
   body.for_each_table([&](auto const& table) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
     auto children = detail::inherited_elements(table, body.template groups_of<E>(), *before, *after,
                                                done.parents);
     mesh.template elements<E>() = std::move(children.elements);
     starts.push_back(std::move(children.start));
-    histories.push_back(std::move(children.history));
+    internal_variables.push_back(std::move(children.internal_variables));
   });
   int mark = 0;  // as tree_of gave them
   for (auto& [name, facets] : mesh.boundaries) facets = detail::facets_of(*after, mark++);
@@ -161,9 +161,11 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   using T = typename TheBody::scalar;
   layout.u.upload(layout.padded(u));
   layout.v.upload(layout.padded(v));
-  auto history = histories.begin();
+  auto internal = internal_variables.begin();
   std::apply(
-      [&](auto&... table) { (table.history.upload(table.in_internal_order(*history++)), ...); },
+      [&](auto&... table) {
+        (table.internal_variables.upload(table.in_internal_order(*internal++)), ...);
+      },
       layout.tables);
   layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.u.data()});
   layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.v.data()});

@@ -132,7 +132,7 @@ struct SwitchVisitor {
     auto const [rest, u, v] = again();
     T const before = energy<Old>(old_law, rest, u);
     auto const pull_before = force<Old>(old_law, rest, u);
-    carry_past<From, To>(groups, e, rest, u);
+    carry_internal_variables<From, To>(groups, e, rest, u);
     T const after = energy<New>(new_law, rest, u);
     auto const difference = force<New>(new_law, rest, u) - pull_before;
     tally(Counters::kinetic(From, To), static_cast<double>(owed * dot(difference, v)));

@@ -21,7 +21,7 @@
 //                              that return nothing, the same ones with the same arguments each time
 //                              (a GPU records them once as a graph).
 //   synchronize()              waits until all that was asked for is done
-//   stopwatch()                a Stopwatch; start() and stop() do not wait, seconds() does: the time
+//   timer()                a Timer; start() and stop() do not wait, seconds() does: the time
 //                              that the work between them took, summed
 //
 // Element loops run over Elements<Nodes>, which holds connectivity and a tag per element: the number

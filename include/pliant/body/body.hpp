@@ -7,7 +7,7 @@
 #include <pliant/body/history.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/body/pressure.hpp>
-#include <pliant/body/watches.hpp>
+#include <pliant/body/timers.hpp>
 #include <pliant/mesh/check.hpp>
 
 namespace pliant {
@@ -19,8 +19,8 @@ template <Backend B, class M, class... Fs>
 class Body {
  public:
   static constexpr int dim = M::dim;
-  /// Whether a law remembers: see LawWithHistory.
-  static constexpr bool has_history = ((history_size<Fs> > 0) || ...);
+  /// Whether a law has internal variables: see LawWithInternalVariables.
+  static constexpr bool has_internal_variables = ((internal_variables_of<Fs> > 0) || ...);
   using backend_type = B;
   using scalar = typename B::scalar;
   using T = scalar;
@@ -133,13 +133,13 @@ class Body {
   void forget_forces();
   /// Velocities and displacements go forward: see Advance. Leaves a half kick of `open` owed.
   void advance(double lag, double kick, double drift);
-  /// Laws with history see time steps of this size, s; see LawWithHistory.
+  /// Laws with internal variables see time steps of this size, s; see LawWithInternalVariables.
   void set_step_size(double step);
   double step_size() const { return step_size_; }
-  /// What quadrature points remember is brought up to the present displacements.
-  void remember();
-  /// They forget their past: are as if they had always been where they are.
-  void relax();
+  /// Brings internal variables up to the present displacements.
+  void commit();
+  /// Brings them to rest: as if the body had always been where it is.
+  void equilibrate();
   void owe(double half_kick) { owed_ = half_kick; }
   double owed() const { return owed_; }
   /// Pays the half kick that the last step left open, so that velocities belong to time().
@@ -150,12 +150,12 @@ class Body {
     time_ += dt;
     steps_ += steps;
   }
-  /// Where the time of adaptation goes; stopwatches stand still unless measure_adaptation() was called.
-  using Watches = AdaptationWatches<B>;
-  Watches& watches() { return watches_; }
+  /// Where the time of adaptation goes; timers stand still unless measure_adaptation() was called.
+  using Timers = AdaptationTimers<B>;
+  Timers& timers() { return timers_; }
   void measure_adaptation() {
-    watches_.criteria.watch.emplace(backend_.stopwatch());
-    watches_.migration.watch.emplace(backend_.stopwatch());
+    timers_.criteria.timer.emplace(backend_.timer());
+    timers_.migration.timer.emplace(backend_.timer());
   }
   History<dim> const& history() const { return history_; }
   /// The largest mesh that refinement may make; one that would be larger throws Error.
@@ -212,7 +212,7 @@ class Body {
   Scratch& scratch();
   struct Checkpoint {
     typename B::template Array<T> u, v;
-    std::vector<typename B::template Array<T>> histories;  // of the tables that have one
+    std::vector<typename B::template Array<T>> internal_variables;  // of the tables that have one
     double time, step_size;
     long steps;
   };
@@ -239,14 +239,15 @@ class Body {
   std::vector<Point<dim>> loads_;
   Point<dim> gravity_{};
   double damping_ = 0, time_ = 0, owed_ = 0, energy_of_new_loads_ = 0;
-  double step_size_ = 0;  // s, since quadrature points last remembered; only laws with history care
+  double step_size_ =
+      0;  // s, since internal variables were committed; only laws that have some care
   long steps_ = 0, revision_ = 0;
   bool forces_current_ = false;  // while they are not, the nodes' rows of layout().f are zero
   History<dim> history_;
   std::optional<Scratch> scratch_;
   std::optional<Checkpoint> checkpoint_;
   std::optional<RecordedStep> recorded_;
-  Watches watches_;
+  Timers timers_;
 };
 
 template <Backend B, class M, class... Gs>

@@ -34,10 +34,10 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
 
   typename B::template Elements<E::nodes> elements;
   Laws laws;
-  std::vector<Index> user_element;             // by the internal number
-  std::vector<double> value_rows;              // (elements, values), by the user's number
-  typename B::template Array<scalar> values;   // (values, elements)
-  typename B::template Array<scalar> history;  // (history, elements)
+  std::vector<Index> user_element;            // by the internal number
+  std::vector<double> value_rows;             // (elements, values), by the user's number
+  typename B::template Array<scalar> values;  // (values, elements)
+  typename B::template Array<scalar> internal_variables;  // (internal variables, elements)
   Bookkeeping<B, groups> books;
   mutable typename B::template Array<double> no_counters{1};
   bool straight = false;  // all edges are, with their nodes in the middle

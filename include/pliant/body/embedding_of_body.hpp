@@ -58,8 +58,8 @@ void Body<B, M, Fs...>::add_tangent_product(T const* u, T const* du, T* f, doubl
           own_f, rest_field(), ConstField{own_u.data}, ConstField{own_du.data});
     });
   });
-  surface_forces_.add_change(backend_, static_cast<T>(factor), rest_field(), ConstField{own_u.data},
-                             ConstField{own_du.data}, own_f);
+  surface_forces_.add_tangent_product(backend_, static_cast<T>(factor), rest_field(),
+                                      ConstField{own_u.data}, ConstField{own_du.data}, own_f);
   layout_.slaves.hand_to_masters(backend_, own_f);
   layout_.slaves.clear(backend_, own_f);
   backend_.for_each(nodes(), AddToUser<T, dim>{{own_f.data}, f, stride, order});

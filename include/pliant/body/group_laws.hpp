@@ -9,42 +9,43 @@
 namespace pliant {
 
 /// How many numbers a formulation keeps per element: those its law reads, and those that its
-/// quadrature points remember.
+/// quadrature points keep from step to step.
 template <class F>
 inline constexpr int element_values = 0;
 template <class F>
   requires LawPerElement<typename F::template law<double>>
 inline constexpr int element_values<F> = F::template law<double>::element_values;
 template <class F>
-inline constexpr int history_size = 0;
+inline constexpr int internal_variables_of = 0;
 template <class F>
-  requires LawWithHistory<typename F::template law<double>>
-inline constexpr int history_size<F> =
-    F::points * F::template law<double>::template history<F::dim>;
+  requires LawWithInternalVariables<typename F::template law<double>>
+inline constexpr int internal_variables_of<F> =
+    F::points * F::template law<double>::template internal_variables<F::dim>;
 
-/// Whether elements that go from one group to the other keep what their points remember.
+/// Whether elements that go from one group to the other keep what their points keep.
 template <class From, class To>
-inline constexpr bool keeps_history =
-    history_size<To> == 0 || (history_size<From> == history_size<To> &&
-                              std::same_as<typename From::quadrature, typename To::quadrature>);
+inline constexpr bool keeps_internal_variables =
+    internal_variables_of<To> == 0 ||
+    (internal_variables_of<From> == internal_variables_of<To> &&
+     std::same_as<typename From::quadrature, typename To::quadrature>);
 
 /// What elements of one type keep in the backend's memory.
 template <class T>
 struct ElementData {
-  T const* values = nullptr;  // (values, elements)
-  T* history = nullptr;       // (history, elements)
+  T const* values = nullptr;        // (values, elements)
+  T* internal_variables = nullptr;  // (internal variables, elements)
   Index elements = 0;
 };
 
-/// A law with the past of an element: `at_point(q)` is the law at quadrature point q.
+/// A law with the internal variables of an element: `at_point(q)` is the law at quadrature point q.
 template <int Size, class L, class T, class Own>
 struct LawOfElement {
   L const& law;
-  ElementField<T const, 0> history;
+  ElementField<T const, 0> internal_variables;
   Own const& own;
 
   PLIANT_HOST_DEVICE auto at_point(int q) const {
-    return law.after(own(history.template part<Size>(Size * q)));
+    return law.after(own(internal_variables.template part<Size>(Size * q)));
   }
 };
 
@@ -54,7 +55,7 @@ struct GroupLaws {
   template <int G>
   using formulation = std::tuple_element_t<G, std::tuple<Fs...>>;
   static constexpr int value_count = (0 + ... + element_values<Fs>);
-  /// Where the values of group G begin; what points remember is shared by all groups.
+  /// Where the values of group G begin; what points keep is shared by all groups.
   template <int G>
   static constexpr int first_value() {
     constexpr int counts[] = {element_values<Fs>...};
@@ -62,8 +63,8 @@ struct GroupLaws {
     for (int g = 0; g < G; ++g) first += counts[g];
     return first;
   }
-  static constexpr int history_count = std::max({0, history_size<Fs>...});
-  static constexpr bool reads_elements = value_count > 0 || history_count > 0;
+  static constexpr int internal_variable_count = std::max({0, internal_variables_of<Fs>...});
+  static constexpr bool reads_elements = value_count > 0 || internal_variable_count > 0;
   /// Whether a kernel of forces needs few registers.
   static constexpr bool light =
       sizeof...(Fs) == 1 && (is_light<typename Fs::template law<T>> && ...);
@@ -87,10 +88,10 @@ struct GroupLaws {
   template <int G, class Own>
   PLIANT_HOST_DEVICE auto law(Own const& own) const {
     using F = formulation<G>;
-    if constexpr (history_size<F> > 0) {
+    if constexpr (internal_variables_of<F> > 0) {
       using L = std::remove_cvref_t<decltype(std::get<G>(laws))>;
-      return LawOfElement<history_size<F> / F::points, L, T, Own>{
-          std::get<G>(laws), {data.history, data.elements}, own};
+      return LawOfElement<internal_variables_of<F> / F::points, L, T, Own>{
+          std::get<G>(laws), {data.internal_variables, data.elements}, own};
     } else if constexpr (element_values<F> > 0) {
       ElementField<T const, 0> const all{data.values, data.elements};
       return std::get<G>(laws).at(own(all.template part<element_values<F>>(first_value<G>())));

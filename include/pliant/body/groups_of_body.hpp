@@ -79,9 +79,9 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
   auto const before = upload(backend_, download<Tag>(table.elements.tags()));
   table.elements.tags().upload(internal);
   table.elements.regroup();
-  if constexpr (Table::Laws::history_count > 0)
+  if constexpr (Table::Laws::internal_variable_count > 0)
     backend_.template visit<Table::groups>(
-        table.elements, CarryVisitor<T, typename Table::Laws>{table.laws, before.data()},
+        table.elements, CarryInternalVariables<T, typename Table::Laws>{table.laws, before.data()},
         table.no_counters, rest_field(), std::as_const(*this).displacement_field());
   checkpoint_.reset();
   forget_forces();

@@ -32,7 +32,7 @@ struct TangentKernel {
     return groups.template apply<G>(
         [this](auto const& law, auto const& rest, auto const& u, auto const& du) PLIANT_INLINE {
           return factor *
-                 force_change<typename Laws::template formulation<G>, How>(law, rest, u, du);
+                 tangent_product<typename Laws::template formulation<G>, How>(law, rest, u, du);
         },
         v...);
   }
@@ -63,11 +63,11 @@ PLIANT_HOST_DEVICE void for_each_point(Nodal<typename F::element, S> const& rest
     visit(q, RestMap<E, S>::at(x, table, q).gradient(v, table, q));
 }
 
-/// Brings what quadrature points remember up to the displacements u.
+/// Brings internal variables up to the displacements u.
 template <class T, class Laws>
-struct HistoryVisitor {
+struct CommitVisitor {
   static constexpr bool reads_elements = true;
-  static constexpr int counters = 1, count = Laws::history_count;
+  static constexpr int counters = 1, count = Laws::internal_variable_count;
   Laws groups;
 
   template <int G, class Own, class V>
@@ -75,12 +75,12 @@ struct HistoryVisitor {
                                    V const& u) const {
     using F = typename Laws::template formulation<G>;
     Vector<std::remove_cvref_t<decltype(rest(0, 0))>, count> now{};
-    if constexpr (history_size<F> > 0) {
-      constexpr int size = history_size<F> / F::points;
-      ElementField<T const, 0> const all{groups.data.history, groups.data.elements};
+    if constexpr (internal_variables_of<F> > 0) {
+      constexpr int size = internal_variables_of<F> / F::points;
+      ElementField<T const, 0> const all{groups.data.internal_variables, groups.data.elements};
       for_each_point<F>(rest, u, [&](int q, auto const& h) PLIANT_INLINE {
-        auto const past = own(all.template part<size>(size * q));
-        auto const next = groups.template law<G>().advanced(past, h);
+        auto const internal = own(all.template part<size>(size * q));
+        auto const next = groups.template law<G>().advanced(internal, h);
         for (int k = 0; k < size; ++k) now[size * q + k] = next[k];
       });
     }
@@ -89,51 +89,54 @@ struct HistoryVisitor {
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, count> const& now, Again const&,
                                  Tally const&) const {
-    ElementField<T, count> const all{groups.data.history, groups.data.elements};
-    for (int k = 0; k < history_size<typename Laws::template formulation<G>>; ++k)
+    ElementField<T, count> const all{groups.data.internal_variables, groups.data.elements};
+    for (int k = 0; k < internal_variables_of<typename Laws::template formulation<G>>; ++k)
       all(e, k) = now[k];
   }
 };
 
-/// An element is in group G without a past: its points are as if they had always been where they are.
+/// An element is in group G at rest: its points are as if they had always been where they are.
 template <int G, class Laws, class V>
-PLIANT_HOST_DEVICE void forget_past(Laws const& groups, Index e, V const& rest, V const& u) {
+PLIANT_HOST_DEVICE void equilibrate_points(Laws const& groups, Index e, V const& rest, V const& u) {
   using F = typename Laws::template formulation<G>;
   using T = std::remove_cvref_t<decltype(rest(0, 0))>;
-  constexpr int size = history_size<F> / F::points;
+  constexpr int size = internal_variables_of<F> / F::points;
   for_each_point<F>(rest, u, [&](int q, auto const& h) PLIANT_INLINE {
-    auto const past = groups.template law<G>().relaxed(h);
-    ElementField<T, Laws::history_count> const all{groups.data.history, groups.data.elements};
-    for (int k = 0; k < size; ++k) all(e, size * q + k) = past[k];
+    auto const internal = groups.template law<G>().equilibrated(h);
+    ElementField<T, Laws::internal_variable_count> const all{groups.data.internal_variables,
+                                                             groups.data.elements};
+    for (int k = 0; k < size; ++k) all(e, size * q + k) = internal[k];
   });
 }
 
-/// An element goes from one group to another. Where that keeps the past, what is kept is how it differs
-/// from a past at rest: another law's stress at the same place is no deformation.
+/// An element goes from one group to another. Where that keeps internal variables, what is kept is how they differ
+/// from those at rest: another law's stress at the same place is no deformation.
 template <int From, int To, class Laws, class V>
-PLIANT_HOST_DEVICE void carry_past(Laws const& groups, Index e, V const& rest, V const& u) {
+PLIANT_HOST_DEVICE void carry_internal_variables(Laws const& groups, Index e, V const& rest,
+                                                 V const& u) {
   using F = typename Laws::template formulation<To>;
   using T = std::remove_cvref_t<decltype(rest(0, 0))>;
-  if constexpr (!keeps_history<typename Laws::template formulation<From>, F>) {
-    forget_past<To>(groups, e, rest, u);
-  } else if constexpr (From != To && history_size<F> > 0) {
-    constexpr int size = history_size<F> / F::points;
+  if constexpr (!keeps_internal_variables<typename Laws::template formulation<From>, F>) {
+    equilibrate_points<To>(groups, e, rest, u);
+  } else if constexpr (From != To && internal_variables_of<F> > 0) {
+    constexpr int size = internal_variables_of<F> / F::points;
     for_each_point<F>(rest, u, [&](int q, auto const& h) PLIANT_INLINE {
-      auto const before = groups.template law<From>().relaxed(h);
-      auto const now = groups.template law<To>().relaxed(h);
-      ElementField<T, Laws::history_count> const all{groups.data.history, groups.data.elements};
+      auto const before = groups.template law<From>().equilibrated(h);
+      auto const now = groups.template law<To>().equilibrated(h);
+      ElementField<T, Laws::internal_variable_count> const all{groups.data.internal_variables,
+                                                               groups.data.elements};
       for (int k = 0; k < size; ++k)
         all(e, size * q + k) = all(e, size * q + k) + (now[k] - before[k]);
     });
   }
 }
 
-/// Carries the past of elements that were put into other groups by hand.
+/// Carries the internal variables of elements that were put into other groups by hand.
 template <class T, class Laws>
-struct CarryVisitor {
+struct CarryInternalVariables {
   static constexpr int counters = 1;
   Laws groups;
-  Tag const* before;  // (elements): their groups; null: none, and all forget
+  Tag const* before;  // (elements): their groups; null: none, and all points are at rest
 
   template <int G, class V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&) const {
@@ -142,10 +145,10 @@ struct CarryVisitor {
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const&, Again const& again,
                                  Tally const&) const {
-    if constexpr (history_size<typename Laws::template formulation<G>> > 0) {
+    if constexpr (internal_variables_of<typename Laws::template formulation<G>> > 0) {
       auto const [rest, u] = again();
       if (before == nullptr)
-        forget_past<G>(groups, e, rest, u);
+        equilibrate_points<G>(groups, e, rest, u);
       else
         carry<G, 0>(e, rest, u);
     }
@@ -156,7 +159,7 @@ struct CarryVisitor {
   PLIANT_HOST_DEVICE void carry(Index e, V const& rest, V const& u) const {
     if constexpr (From < std::tuple_size_v<decltype(Laws::laws)>) {
       if (before[e] == From)
-        carry_past<From, G>(groups, e, rest, u);
+        carry_internal_variables<From, G>(groups, e, rest, u);
       else
         carry<G, From + 1>(e, rest, u);
     }

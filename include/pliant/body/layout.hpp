@@ -128,10 +128,10 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     table.straight = is_straight<typename TableType::element>(mesh);
     table.value_rows = start.values;
     table.values = upload(backend, table.in_internal_order(start.values));
-    table.history =
-        Array<T>(static_cast<std::size_t>(TableType::Laws::history_count) * tags.size());
+    table.internal_variables =
+        Array<T>(static_cast<std::size_t>(TableType::Laws::internal_variable_count) * tags.size());
     if constexpr (TableType::Laws::reads_elements)
-      table.laws.data = {table.values.data(), table.history.data(), table.count()};
+      table.laws.data = {table.values.data(), table.internal_variables.data(), table.count()};
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((std::get<G>(table.laws.laws) =
             prepared<typename TableType::template formulation<G>>(law_cast<T>(

@@ -54,12 +54,12 @@ void Body<B, M, Fs...>::advance(double lag, double kick, double drift) {
 
 template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::set_step_size(double step) {
-  if (!has_history || step == step_size_) return;
+  if (!has_internal_variables || step == step_size_) return;
   step_size_ = step;
   for_each_table([&](auto& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
     auto const prepare = [&]<class F>(F const*, auto& law) {
-      if constexpr (history_size<F> > 0) law = prepared<F>(law_cast<T>(law_of<F>()), step);
+      if constexpr (internal_variables_of<F> > 0) law = prepared<F>(law_cast<T>(law_of<F>()), step);
     };
     [&]<int... G>(std::integer_sequence<int, G...>) {
       (prepare(static_cast<typename Table::template formulation<G> const*>(nullptr),
@@ -72,24 +72,24 @@ void Body<B, M, Fs...>::set_step_size(double step) {
 }
 
 template <Backend B, class M, class... Fs>
-void Body<B, M, Fs...>::remember() {
+void Body<B, M, Fs...>::commit() {
   for_each_table([&](auto& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    if constexpr (Table::Laws::history_count > 0)
+    if constexpr (Table::Laws::internal_variable_count > 0)
       backend_.template visit<Table::groups>(
-          table.elements, HistoryVisitor<T, typename Table::Laws>{table.laws}, table.no_counters,
+          table.elements, CommitVisitor<T, typename Table::Laws>{table.laws}, table.no_counters,
           rest_field(), std::as_const(*this).displacement_field());
   });
 }
 
 template <Backend B, class M, class... Fs>
-void Body<B, M, Fs...>::relax() {
+void Body<B, M, Fs...>::equilibrate() {
   synchronize_velocities();
   for_each_table([&](auto& table) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    if constexpr (Table::Laws::history_count > 0)
+    if constexpr (Table::Laws::internal_variable_count > 0)
       backend_.template visit<Table::groups>(
-          table.elements, CarryVisitor<T, typename Table::Laws>{table.laws, nullptr},
+          table.elements, CarryInternalVariables<T, typename Table::Laws>{table.laws, nullptr},
           table.no_counters, rest_field(), std::as_const(*this).displacement_field());
   });
   checkpoint_.reset();
@@ -131,11 +131,12 @@ template <Backend B, class M, class... Fs>
 void Body<B, M, Fs...>::step(double dt, int steps) {
   // Steps that are not like the others.
   auto const special = [&] {
-    return owed_ != dt / 2 || has_motions() || forces_current_ || (has_history && step_size_ != dt);
+    return owed_ != dt / 2 || has_motions() || forces_current_ ||
+           (has_internal_variables && step_size_ != dt);
   };
   for (; steps > 0 && special(); --steps) {
     evaluate_forces();
-    remember();
+    commit();
     advance(owed_, dt / 2, dt);
     set_step_size(dt);
     owed_ = dt / 2;
@@ -149,7 +150,7 @@ void Body<B, M, Fs...>::step(double dt, int steps) {
     recorded_ = RecordedStep{backend_.record([this, dt] {
                                accumulate_forces(std::as_const(*this).displacement_field(),
                                                  Field{layout_.f.data()});
-                               remember();
+                               commit();
                                advance(dt / 2, dt / 2, dt);
                              }),
                              this, dt, revision_};
@@ -165,7 +166,8 @@ void Body<B, M, Fs...>::checkpoint() {
     using A = typename B::template Array<T>;
     checkpoint_ = Checkpoint{A(layout_.u.size()), A(layout_.v.size()), {}, 0, 0, 0};
     for_each_table([&](auto const& table) {
-      if (table.history.size() > 0) checkpoint_->histories.emplace_back(table.history.size());
+      if (table.internal_variables.size() > 0)
+        checkpoint_->internal_variables.emplace_back(table.internal_variables.size());
     });
   }
   auto const count = static_cast<Index>(layout_.u.size());
@@ -173,9 +175,10 @@ void Body<B, M, Fs...>::checkpoint() {
   backend_.for_each(count, Copy<T>{layout_.v.data(), checkpoint_->v.data()});
   std::size_t which = 0;
   for_each_table([&](auto& table) {
-    if (table.history.size() > 0)
-      backend_.for_each(static_cast<Index>(table.history.size()),
-                        Copy<T>{table.history.data(), checkpoint_->histories[which++].data()});
+    if (table.internal_variables.size() > 0)
+      backend_.for_each(static_cast<Index>(table.internal_variables.size()),
+                        Copy<T>{table.internal_variables.data(),
+                                checkpoint_->internal_variables[which++].data()});
   });
   checkpoint_->time = time_;
   checkpoint_->step_size = step_size_;
@@ -190,9 +193,10 @@ bool Body<B, M, Fs...>::restore() {
   backend_.for_each(count, Copy<T>{checkpoint_->v.data(), layout_.v.data()});
   std::size_t which = 0;
   for_each_table([&](auto& table) {
-    if (table.history.size() > 0)
-      backend_.for_each(static_cast<Index>(table.history.size()),
-                        Copy<T>{checkpoint_->histories[which++].data(), table.history.data()});
+    if (table.internal_variables.size() > 0)
+      backend_.for_each(static_cast<Index>(table.internal_variables.size()),
+                        Copy<T>{checkpoint_->internal_variables[which++].data(),
+                                table.internal_variables.data()});
   });
   set_step_size(checkpoint_->step_size);
   time_ = checkpoint_->time;

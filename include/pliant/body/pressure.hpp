@@ -74,7 +74,7 @@ PLIANT_HOST_DEVICE Matrix<S, Face::nodes, Dim> pressure_force(
 
 /// Its change, by a dual number through it.
 template <int Dim, class Face, class S>
-PLIANT_HOST_DEVICE Matrix<S, Face::nodes, Dim> pressure_force_change(
+PLIANT_HOST_DEVICE Matrix<S, Face::nodes, Dim> pressure_tangent_product(
     builtin_scalar<S> p, Matrix<S, Face::nodes, Dim> const& x,
     Matrix<S, Face::nodes, Dim> const& dx) {
   Matrix<Dual<S, 1>, Face::nodes, Dim> moving;
@@ -103,7 +103,7 @@ struct PressureTangentKernel {
   T p;  // times a factor
   template <class V>
   PLIANT_HOST_DEVICE V operator()(GroupNumber<0>, V const& rest, V const& u, V const& du) const {
-    return pressure_force_change<Dim, Face>(p, rest + u, du);
+    return pressure_tangent_product<Dim, Face>(p, rest + u, du);
   }
 };
 
@@ -170,17 +170,17 @@ class SurfaceForces {
   void add(B const& backend, ConstField rest, ConstField u, Field f) const {
     for (auto const& part : parts_) part->add(backend, rest, u, f);
   }
-  void add_change(B const& backend, T factor, ConstField rest, ConstField u, ConstField du,
-                  Field f) const {
-    for (auto const& part : parts_) part->add_change(backend, factor, rest, u, du, f);
+  void add_tangent_product(B const& backend, T factor, ConstField rest, ConstField u, ConstField du,
+                           Field f) const {
+    for (auto const& part : parts_) part->add_tangent_product(backend, factor, rest, u, du, f);
   }
 
  private:
   struct Part {
     virtual ~Part() = default;
     virtual void add(B const&, ConstField rest, ConstField u, Field f) const = 0;
-    virtual void add_change(B const&, T factor, ConstField rest, ConstField u, ConstField du,
-                            Field f) const = 0;
+    virtual void add_tangent_product(B const&, T factor, ConstField rest, ConstField u,
+                                     ConstField du, Field f) const = 0;
   };
   template <class Face>
   struct PressedFaces : Part {
@@ -191,8 +191,8 @@ class SurfaceForces {
       backend.template accumulate<1>(elements, detail::PressureKernel<T, Dim, Face>{pressure}, f,
                                      rest, u);
     }
-    void add_change(B const& backend, T factor, ConstField rest, ConstField u, ConstField du,
-                    Field f) const override {
+    void add_tangent_product(B const& backend, T factor, ConstField rest, ConstField u,
+                             ConstField du, Field f) const override {
       backend.template accumulate<1>(
           elements, detail::PressureTangentKernel<T, Dim, Face>{factor * pressure}, f, rest, u, du);
     }

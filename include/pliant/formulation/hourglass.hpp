@@ -99,15 +99,16 @@ struct HourglassControl {
     return f.per_node();
   }
   template <class T, class L, class S>
-  PLIANT_HOST_DEVICE static Nodal<E, S> force_change(WithModulus<L, T> const& law,
-                                                     Nodal<E, S> const& rest, Nodal<E, S> const& u,
-                                                     Nodal<E, S> const& du) {
+  PLIANT_HOST_DEVICE static Nodal<E, S> tangent_product(WithModulus<L, T> const& law,
+                                                        Nodal<E, S> const& rest,
+                                                        Nodal<E, S> const& u,
+                                                        Nodal<E, S> const& du) {
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u),
                dv = Coefficients<E, S>::of(du);
     auto const mean = MeanGradient<E, S>::of(x);
     auto const h = mean(v), dh = mean(dv);
     auto df = control(law.modulus, mean, x, dv, dh);
-    mean.add_transpose(-mean.volume * stress_change(law.law, h, dh), df);
+    mean.add_transpose(-mean.volume * stress_tangent_product(law.law, h, dh), df);
     return df.per_node();
   }
 

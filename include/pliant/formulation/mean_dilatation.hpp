@@ -207,8 +207,9 @@ struct MeanDilatation {
 
   /// By a dual number through the force.
   template <class L, class S>
-  PLIANT_HOST_DEVICE static Nodal<E, S> force_change(L const& law, Nodal<E, S> const& rest,
-                                                     Nodal<E, S> const& u, Nodal<E, S> const& du) {
+  PLIANT_HOST_DEVICE static Nodal<E, S> tangent_product(L const& law, Nodal<E, S> const& rest,
+                                                        Nodal<E, S> const& u,
+                                                        Nodal<E, S> const& du) {
     Nodal<E, Dual<S, 1>> x, v;
     for (int a = 0; a < E::nodes; ++a)
       for (int i = 0; i < dim; ++i) {

@@ -27,23 +27,24 @@ struct ScalarOf<L<T>> {
 }  // namespace detail
 
 /// A law as the functions below take it for a formulation: itself, or with what its hourglass control
-/// needs to know of it, or with what the time since its history was brought up to date makes of that (s;
-/// 0: at once; infinite: relaxed).
+/// needs to know of it, or with what the time since its internal variables were committed makes of that (s;
+/// 0: at once; infinite: at rest).
 template <class F, class L>
 auto prepared(L const& law, [[maybe_unused]] double step = 0) {
-  if constexpr (LawWithHistory<L>) {
-    static_assert(
-        !std::same_as<typename F::quadrature, OnePoint> &&
-            !has_mean_dilatation<typename F::quadrature>,
-        "laws with history take quadratures whose points see their own deformation: neither "
-        "OnePoint nor FBar");
+  if constexpr (LawWithInternalVariables<L>) {
+    static_assert(!std::same_as<typename F::quadrature, OnePoint> &&
+                      !has_mean_dilatation<typename F::quadrature>,
+                  "laws with internal variables take quadratures whose points see their own "
+                  "deformation: neither "
+                  "OnePoint nor FBar");
     return law.over(step);
   } else if constexpr (std::same_as<typename F::quadrature, OnePoint>) {
     static_assert(PointLaw<L>, "OnePoint takes laws that are the same for all elements");
     using T = typename detail::ScalarOf<L>::type;
     auto shear = Tensor<T, F::dim>::zero();
     shear(0, 1) = T(1);
-    return WithModulus<L, T>{law, stress_change(law, Tensor<T, F::dim>::zero(), shear)(0, 1)};
+    return WithModulus<L, T>{law,
+                             stress_tangent_product(law, Tensor<T, F::dim>::zero(), shear)(0, 1)};
   } else {
     return law;
   }
@@ -66,10 +67,10 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> force(L const& law,
 
 /// The change of the nodal forces under displacements du: −∂²W_E/∂u² du, N.
 template <class F, Geometry G = Geometry::isoparametric, class L, class S>
-PLIANT_HOST_DEVICE Nodal<typename F::element, S> force_change(
+PLIANT_HOST_DEVICE Nodal<typename F::element, S> tangent_product(
     L const& law, Nodal<typename F::element, S> const& rest, Nodal<typename F::element, S> const& u,
     Nodal<typename F::element, S> const& du) {
-  return detail::SchemeOf<F, G>::force_change(law, rest, u, du);
+  return detail::SchemeOf<F, G>::tangent_product(law, rest, u, du);
 }
 
 /// The stiffness matrix K = ∂²W_E/∂u², N/m; rows and columns run over (node, direction). Large and
@@ -83,7 +84,7 @@ template <class F, class L, class S>
   for (int column = 0; column < n; ++column) {
     auto du = Nodal<typename F::element, S>::zero();
     du(column / F::dim, column % F::dim) = S(1);
-    auto const df = force_change<F>(law, rest, u, du);
+    auto const df = tangent_product<F>(law, rest, u, du);
     for (int row = 0; row < n; ++row) k(row, column) = -df(row / F::dim, row % F::dim);
   }
   return k;

@@ -40,8 +40,9 @@ struct Pointwise {
   }
 
   template <class L, class S>
-  PLIANT_HOST_DEVICE static Nodal<E, S> force_change(L const& law, Nodal<E, S> const& rest,
-                                                     Nodal<E, S> const& u, Nodal<E, S> const& du) {
+  PLIANT_HOST_DEVICE static Nodal<E, S> tangent_product(L const& law, Nodal<E, S> const& rest,
+                                                        Nodal<E, S> const& u,
+                                                        Nodal<E, S> const& du) {
     using T = builtin_scalar<S>;
     static constexpr auto table = tabulate<E, typename F::quadrature, T>();
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u),
@@ -50,7 +51,7 @@ struct Pointwise {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       auto const h = map.gradient(v, table, q), dh = map.gradient(dv, table, q);
-      auto const dp = stress_change(at_point(law, q), h, dh);
+      auto const dp = stress_tangent_product(at_point(law, q), h, dh);
       df.add_divergence(T(-table.weight[q]) * (dp * map.cofactors), table, q);
     }
     return df.per_node();

@@ -19,14 +19,14 @@ struct ArrudaBoyce {
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     // Σ aₖ (uᵏ − u₀ᵏ) = (u − u₀) Σ eₘ uᵐ with eₘ = aₘ₊₁ + u₀ eₘ₊₁, which is 0 for m = 5
     T const per_square = 1 / square(locking), rest = 3 * per_square;
-    S const u = (3 + i.I1_3) * per_square;
+    S const u = (3 + i.I1_minus_3) * per_square;
     T factor = T(coefficient(5));
     S sum = S(factor);
     for (int k = 4; k >= 1; --k) {
       factor = T(coefficient(k)) + rest * factor;
       sum = u * sum + factor;
     }
-    return mu * i.I1_3 * sum + bulk / 2 * square(i.J_1);
+    return mu * i.I1_minus_3 * sum + bulk / 2 * square(i.J_minus_1);
   }
   void check() const {
     detail::demand(locking > 0, "Arruda-Boyce's locking stretch", locking, "be positive");

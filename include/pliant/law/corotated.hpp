@@ -18,7 +18,7 @@ struct Corotated {
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalInvariants<S> const& i) const {
     S const s = trace_beyond_volume(i);  // tr U − 3 − (J − 1)
-    return mu * (i.D1 - 2 * s) + lambda / 2 * square(i.J_1 + s);
+    return mu * (i.D1 - 2 * s) + lambda / 2 * square(i.J_minus_1 + s);
   }
   static Corotated from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 
@@ -29,20 +29,21 @@ struct Corotated {
   /// cancels.
   template <class S>
   struct Quartic {
-    S J_1, x, constant;  // J − 1, I₁ − 3
+    S J_minus_1, x, constant;  // J − 1, I₁ − 3
 
     PLIANT_HOST_DEVICE explicit Quartic(PrincipalInvariants<S> const& i)
-        : J_1(i.J_1), x(i.I1_3()), constant(x * x - 12 * i.D1 - 4 * i.D2) {}
+        : J_minus_1(i.J_minus_1), x(i.I1_minus_3()), constant(x * x - 12 * i.D1 - 4 * i.D2) {}
     PLIANT_HOST_DEVICE S value(S const& s) const {
-      S const a = J_1 + s;
-      return 64 * s + constant + a * (48 * a - 12 * x - 8 * J_1 + a * (12 * a - 2 * x + square(a)));
+      S const a = J_minus_1 + s;
+      return 64 * s + constant +
+             a * (48 * a - 12 * x - 8 * J_minus_1 + a * (12 * a - 2 * x + square(a)));
     }
     PLIANT_HOST_DEVICE S slope(S const& s) const {
-      S const a = J_1 + s;
-      return 64 - 12 * x - 8 * J_1 + a * (96 - 4 * x + a * (36 + 4 * a));
+      S const a = J_minus_1 + s;
+      return 64 - 12 * x - 8 * J_minus_1 + a * (96 - 4 * x + a * (36 + 4 * a));
     }
     PLIANT_HOST_DEVICE S curvature(S const& s) const {
-      S const a = J_1 + s;
+      S const a = J_minus_1 + s;
       return 96 - 4 * x + a * (72 + 12 * a);
     }
   };
@@ -51,7 +52,7 @@ struct Corotated {
   template <class S>
   PLIANT_HOST_DEVICE static S trace_beyond_volume(PrincipalInvariants<S> const& i) {
     Quartic<S> const q(i);
-    S root = 3 * q.x / (sqrt(9 + 3 * q.x) + 3) - q.J_1;
+    S root = 3 * q.x / (sqrt(9 + 3 * q.x) + 3) - q.J_minus_1;
     for (int step = 0; step < 5; ++step) {
       S const p = q.value(root), slope = q.slope(root);
       S const reach = sqrt(max(9 * square(slope) - 12 * p * q.curvature(root), S(0)));
@@ -63,7 +64,7 @@ struct Corotated {
   template <class S, int N>
   PLIANT_HOST_DEVICE static Dual<S, N> trace_beyond_volume(
       PrincipalInvariants<Dual<S, N>> const& i) {
-    PrincipalInvariants<S> const values{i.D1.value, i.D2.value, i.J_1.value};
+    PrincipalInvariants<S> const values{i.D1.value, i.D2.value, i.J_minus_1.value};
     S const root = trace_beyond_volume(values);
     S const slope = max(Quartic<S>(values).slope(root), flattest<S>());
     return root - Quartic<Dual<S, N>>(i).value(Dual<S, N>(root)) * (1 / slope);

@@ -15,7 +15,7 @@ struct Gent {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
-    return -mu * limit / 2 * log1p(-i.I1_3 / limit) + bulk / 2 * square(i.J_1);
+    return -mu * limit / 2 * log1p(-i.I1_minus_3 / limit) + bulk / 2 * square(i.J_minus_1);
   }
   void check() const { detail::demand(limit > 0, "Gent's limit", limit, "be positive"); }
   /// Unless known, Jₘ is 97.2, what fits Treloar's rubber: a uniaxial stretch of 10.

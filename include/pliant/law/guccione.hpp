@@ -32,7 +32,7 @@ struct Guccione {
     }
     template <class V>
     PLIANT_HOST_DEVICE V energy(VolumeChange<V> const& i) const {
-      return law.bulk / 2 * square(i.J_1);
+      return law.bulk / 2 * square(i.J_minus_1);
     }
   };
   template <class S>

@@ -32,7 +32,7 @@ struct HolzapfelGasserOgden {
 
     template <class V>
     PLIANT_HOST_DEVICE V energy(IsochoricInvariants<V> const& i) const {
-      return law.mu / 2 * i.I1_3 + law.bulk / 2 * square(i.J_1);
+      return law.mu / 2 * i.I1_minus_3 + law.bulk / 2 * square(i.J_minus_1);
     }
     template <class V>
     PLIANT_HOST_DEVICE V energy(FibreStretch<V> const& i) const {

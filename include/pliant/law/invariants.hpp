@@ -62,15 +62,15 @@ struct StrainInvariants {
 template <class S>
 struct CauchyGreenInvariants {
   static constexpr int count = 2;
-  S D;    // I₁ − 3 − 2(J − 1)
-  S J_1;  // J − 1
+  S D;          // I₁ − 3 − 2(J − 1)
+  S J_minus_1;  // J − 1
 
-  PLIANT_HOST_DEVICE S I1_3() const { return D + (J_1 + J_1); }  // I₁ − 3
+  PLIANT_HOST_DEVICE S I1_minus_3() const { return D + (J_minus_1 + J_minus_1); }  // I₁ − 3
 
   template <class T>
   using rebind = CauchyGreenInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? D : J_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? D : J_1; }
+  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? D : J_minus_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? D : J_minus_1; }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static CauchyGreenInvariants of(Tensor<S, Dim> const& h) {
@@ -81,8 +81,8 @@ struct CauchyGreenInvariants {
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(CauchyGreenInvariants const& w,
                                                   Tensor<S, Dim> const& h) {
     Tensor<S, Dim> const c = cofactor_less_identity(h);
-    Tensor<S, Dim> p = (w.D + w.D) * (h - c) + w.J_1 * c;
-    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.J_1;
+    Tensor<S, Dim> p = (w.D + w.D) * (h - c) + w.J_minus_1 * c;
+    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.J_minus_1;
     return p;
   }
 };
@@ -91,12 +91,12 @@ struct CauchyGreenInvariants {
 template <class S>
 struct VolumeChange {
   static constexpr int count = 1;
-  S J_1;  // J − 1
+  S J_minus_1;  // J − 1
 
   template <class T>
   using rebind = VolumeChange<T>;
-  PLIANT_HOST_DEVICE S& operator[](int) { return J_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int) const { return J_1; }
+  PLIANT_HOST_DEVICE S& operator[](int) { return J_minus_1; }
+  PLIANT_HOST_DEVICE S const& operator[](int) const { return J_minus_1; }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static VolumeChange of(Tensor<S, Dim> const& h) {
@@ -104,8 +104,8 @@ struct VolumeChange {
   }
   template <int Dim>
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(VolumeChange const& w, Tensor<S, Dim> const& h) {
-    Tensor<S, Dim> p = w.J_1 * cofactor_less_identity(h);
-    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.J_1;
+    Tensor<S, Dim> p = w.J_minus_1 * cofactor_less_identity(h);
+    for (int i = 0; i < Dim; ++i) p(i, i) = p(i, i) + w.J_minus_1;
     return p;
   }
 };

@@ -13,7 +13,7 @@ struct IsochoricNeoHookean {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
-    return mu / 2 * i.I1_3 + bulk / 2 * square(i.J_1);
+    return mu / 2 * i.I1_minus_3 + bulk / 2 * square(i.J_minus_1);
   }
   static IsochoricNeoHookean from(Elastic const& m) { return {T(m.lame_mu()), T(m.bulk())}; }
 };

@@ -90,20 +90,25 @@ template <class L>
 concept LawPerElement = requires(L const& law, Vector<double, L::element_values> const& values) {
   { law.at(values) } -> PointLaw;
 };
-/// A law whose quadrature points remember, `history<d>` numbers each in d dimensions. `over(step)` is what
-/// a time step (s) makes of it; then `after(past)` is the law at a point with that past, and
-/// `advanced(past, H)` what the point remembers once it has come to H, and `relaxed(H)` what it
-/// remembers if it has always been there. See KelvinVoigt and Prony.
+/// A law whose quadrature points keep internal variables, `internal_variables<d>` each in d dimensions. `over(step)` is what
+/// a time step (s) makes of it; then `after(internal)` is the law at a point with that internal, and
+/// `advanced(internal, H)` what the point keeps once it has come to H, and `equilibrated(H)` what it
+/// keeps if it has always been there. See KelvinVoigt and Prony.
 template <class L>
-concept LawWithHistory = requires(L const& law, Vector<double, L::template history<3>> const& past,
-                                  Tensor<double, 3> const& h) {
-  { law.over(1.0).after(past) } -> PointLaw;
-  { law.over(1.0).advanced(past, h) } -> std::same_as<Vector<double, L::template history<3>>>;
-  { law.over(1.0).relaxed(h) } -> std::same_as<Vector<double, L::template history<3>>>;
-};
+concept LawWithInternalVariables =
+    requires(L const& law, Vector<double, L::template internal_variables<3>> const& internal,
+             Tensor<double, 3> const& h) {
+      { law.over(1.0).after(internal) } -> PointLaw;
+      {
+        law.over(1.0).advanced(internal, h)
+      } -> std::same_as<Vector<double, L::template internal_variables<3>>>;
+      {
+        law.over(1.0).equilibrated(h)
+      } -> std::same_as<Vector<double, L::template internal_variables<3>>>;
+    };
 /// What a formulation can be made of.
 template <class L>
-concept Law = PointLaw<L> || LawPerElement<L> || LawWithHistory<L>;
+concept Law = PointLaw<L> || LawPerElement<L> || LawWithInternalVariables<L>;
 
 /// The law at quadrature point q of an element.
 template <class L>
@@ -224,8 +229,8 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> stress(L const& law, Tensor<S, Dim> const& h) 
 
 /// The change of stress dP = ∂P/∂F : dH, by a one-component dual through the stress.
 template <PointLaw L, class S, int Dim>
-PLIANT_HOST_DEVICE Tensor<S, Dim> stress_change(L const& law, Tensor<S, Dim> const& h,
-                                                Tensor<S, Dim> const& dh) {
+PLIANT_HOST_DEVICE Tensor<S, Dim> stress_tangent_product(L const& law, Tensor<S, Dim> const& h,
+                                                         Tensor<S, Dim> const& dh) {
   Tensor<Dual<S, 1>, Dim> variables;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) {

@@ -14,7 +14,8 @@ struct NeoHookean {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(CauchyGreenInvariants<S> const& i) const {
-    return mu / 2 * i.D + mu * excess_of_log1p(i.J_1) + lambda / 2 * square(log1p(i.J_1));
+    return mu / 2 * i.D + mu * excess_of_log1p(i.J_minus_1) +
+           lambda / 2 * square(log1p(i.J_minus_1));
   }
   static NeoHookean from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 };

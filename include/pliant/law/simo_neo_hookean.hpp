@@ -13,7 +13,8 @@ struct SimoNeoHookean {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
-    return mu / 2 * i.I1_3 + bulk / 4 * (square(i.J_1) + 2 * excess_of_log1p(i.J_1));
+    return mu / 2 * i.I1_minus_3 +
+           bulk / 4 * (square(i.J_minus_1) + 2 * excess_of_log1p(i.J_minus_1));
   }
   static SimoNeoHookean from(Elastic const& m) { return {T(m.lame_mu()), T(m.bulk())}; }
 };

@@ -14,7 +14,7 @@ struct StableNeoHookean {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(CauchyGreenInvariants<S> const& i) const {
-    return mu / 2 * i.D + (lambda + mu) / 2 * square(i.J_1);
+    return mu / 2 * i.D + (lambda + mu) / 2 * square(i.J_minus_1);
   }
   static StableNeoHookean from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 };

@@ -59,14 +59,14 @@ struct KelvinVoigt {
     void check() const { detail::check_parameters(elastic); }
 
     template <int Dim>
-    static constexpr int history = Dim * (Dim + 1) / 2;  // E
+    static constexpr int internal_variables = Dim * (Dim + 1) / 2;  // E
 
-    /// A point with its past.
+    /// A point with its internal variables.
     template <class S, int N>
     struct Point {
       L<T> elastic;
       T rate;  // η/Δt, Pa
-      Vector<S, N> past;
+      Vector<S, N> internal;
 
       template <class I>
       PLIANT_HOST_DEVICE auto energy(I const& i) const -> decltype(elastic.energy(i)) {
@@ -75,7 +75,7 @@ struct KelvinVoigt {
       template <class V, int Dim>
       PLIANT_HOST_DEVICE Tensor<V, Dim> stress(Tensor<V, Dim> const& h) const {
         auto e = detail::green_strain(h);
-        for (int k = 0; k < N; ++k) e[k] = rate * (e[k] - past[k]);
+        for (int k = 0; k < N; ++k) e[k] = rate * (e[k] - internal[k]);
         return pliant::stress(elastic, h) + detail::pushed_forward(h, e);
       }
     };
@@ -85,15 +85,15 @@ struct KelvinVoigt {
       T rate;  // η/Δt, Pa; 0 where no time has passed
 
       template <class S, int N>
-      PLIANT_HOST_DEVICE Point<S, N> after(Vector<S, N> const& past) const {
-        return {elastic, rate, past};
+      PLIANT_HOST_DEVICE Point<S, N> after(Vector<S, N> const& internal) const {
+        return {elastic, rate, internal};
       }
       template <class S, int N, int Dim>
       PLIANT_HOST_DEVICE Vector<S, N> advanced(Vector<S, N> const&, Tensor<S, Dim> const& h) const {
         return detail::green_strain(h);
       }
       template <class S, int Dim>
-      PLIANT_HOST_DEVICE auto relaxed(Tensor<S, Dim> const& h) const {
+      PLIANT_HOST_DEVICE auto equilibrated(Tensor<S, Dim> const& h) const {
         return detail::green_strain(h);
       }
     };
@@ -125,9 +125,10 @@ struct Prony {
     }
 
     template <int Dim>
-    static constexpr int history = (Branches + 1) * Dim * (Dim + 1) / 2;  // S_L, then the Q_i
+    static constexpr int internal_variables =
+        (Branches + 1) * Dim * (Dim + 1) / 2;  // S_L, then the Q_i
 
-    /// A point with its past.
+    /// A point with its internal variables.
     template <class S, int N>
     struct Point {
       L<T> elastic;
@@ -154,19 +155,19 @@ struct Prony {
       T gain[Branches];   // β (1 − e^(−Δt/τ)) τ/Δt
 
       template <class S, int N>
-      PLIANT_HOST_DEVICE Point<S, N> after(Vector<S, N> const& past) const {
+      PLIANT_HOST_DEVICE Point<S, N> after(Vector<S, N> const& internal) const {
         constexpr int n = N / (Branches + 1);
         Point<S, N> point{elastic, {}, {}, Vector<S, n>::zero()};
-        for (int k = 0; k < n; ++k) point.last[k] = past[k];
+        for (int k = 0; k < n; ++k) point.last[k] = internal[k];
         for (int b = 0; b < Branches; ++b) {
           point.gain[b] = gain[b];
           for (int k = 0; k < n; ++k)
-            point.flowed[k] = point.flowed[k] + decay[b] * past[(b + 1) * n + k];
+            point.flowed[k] = point.flowed[k] + decay[b] * internal[(b + 1) * n + k];
         }
         return point;
       }
       template <class S, int N, int Dim>
-      PLIANT_HOST_DEVICE Vector<S, N> advanced(Vector<S, N> const& past,
+      PLIANT_HOST_DEVICE Vector<S, N> advanced(Vector<S, N> const& internal,
                                                Tensor<S, Dim> const& h) const {
         constexpr int n = N / (Branches + 1);
         auto const s = detail::second_stress(elastic, h);
@@ -174,14 +175,15 @@ struct Prony {
         for (int k = 0; k < n; ++k) {
           now[k] = s[k];
           for (int b = 0; b < Branches; ++b)
-            now[(b + 1) * n + k] = decay[b] * past[(b + 1) * n + k] + gain[b] * (s[k] - past[k]);
+            now[(b + 1) * n + k] =
+                decay[b] * internal[(b + 1) * n + k] + gain[b] * (s[k] - internal[k]);
         }
         return now;
       }
       template <class S, int Dim>
-      PLIANT_HOST_DEVICE auto relaxed(Tensor<S, Dim> const& h) const {
+      PLIANT_HOST_DEVICE auto equilibrated(Tensor<S, Dim> const& h) const {
         auto const s = detail::second_stress(elastic, h);
-        auto now = Vector<S, history<Dim>>::zero();
+        auto now = Vector<S, internal_variables<Dim>>::zero();
         for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) now[k] = s[k];
         return now;
       }

@@ -13,7 +13,8 @@ struct Yeoh {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
-    return i.I1_3 * (c1 + i.I1_3 * (c2 + i.I1_3 * c3)) + bulk / 2 * square(i.J_1);
+    return i.I1_minus_3 * (c1 + i.I1_minus_3 * (c2 + i.I1_minus_3 * c3)) +
+           bulk / 2 * square(i.J_minus_1);
   }
   /// With c₂ and c₃ as multiples of c₁; neo-Hookean where they are not known.
   static Yeoh from(Elastic const& m, double second = 0, double third = 0) {

@@ -82,14 +82,14 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
                                        wi * wj * k(a * dim + p, b * dim + q));
     };
     [&]<int... G>(std::integer_sequence<int, G...>) {
-      // Laws with history are relaxed.
+      // Laws with internal variables are at rest.
       typename Table::HostLaws laws{{prepared<typename Table::template formulation<G>>(
           body.template law_of<typename Table::template formulation<G>>(),
           std::numeric_limits<double>::infinity())...}};
       std::vector<double> const values = detail::columns(table.value_rows, elements.size());
-      std::vector<double> history(static_cast<std::size_t>(Table::Laws::history_count) *
-                                  elements.size());
-      laws.data = {values.data(), history.data(), static_cast<Index>(elements.size())};
+      std::vector<double> internal(static_cast<std::size_t>(Table::Laws::internal_variable_count) *
+                                   elements.size());
+      laws.data = {values.data(), internal.data(), static_cast<Index>(elements.size())};
       for (std::size_t e = 0; e < elements.size(); ++e) {
         OneElement const own{static_cast<Index>(e)};
         (void)((tags[e] == G ? (add(GroupNumber<G>{}, e, laws.template law<G>(own)), true)
@@ -120,7 +120,7 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
         for (int k = 0; k < dim; ++k) {
           auto dx = Matrix<double, Face::nodes, dim>::zero();
           dx(b, k) = 1;
-          auto const df = detail::pressure_force_change<dim, Face>(pascals, x, dx);
+          auto const df = detail::pressure_tangent_product<dim, Face>(pascals, x, dx);
           for (auto const& [j, weight] :
                row_of[static_cast<std::size_t>(nodes[static_cast<std::size_t>(b)])])
             add(df, [&, j = j, weight = weight](Index row, double value) {

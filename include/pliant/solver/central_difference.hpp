@@ -17,7 +17,7 @@ struct CentralDifferenceOptions {
   int refresh_interval = 1024;  // steps between evaluations of the stable step
   /// Growth of the total energy between checks, over strain and kinetic energy, that counts as a
   /// blow-up. Not looked at while nodes are driven or facets pressed, which does work, nor with laws
-  /// that remember: they may give back what the strain energy does not count.
+  /// that have internal variables: they may give back what the strain energy does not count.
   double energy_growth = 0.1;
 };
 
@@ -82,7 +82,8 @@ class CentralDifference {
   void check(TheBody& body) {
     double const strain = body.strain_energy(), kinetic = body.kinetic_energy();
     double const energy = energy_of(body);
-    bool const grew = !TheBody::has_history && !body.has_motions() && body.pressures().empty() &&
+    bool const grew = !TheBody::has_internal_variables && !body.has_motions() &&
+                      body.pressures().empty() &&
                       energy > energy_ + options_.energy_growth * (strain + kinetic);
     if (std::isfinite(energy) && !grew) {
       body.checkpoint();

@@ -33,8 +33,9 @@ class Newmark {
   /// that did.
   template <class TheBody>
   void operator()(TheBody& body, int steps = 1) {
-    static_assert(!TheBody::has_history,
-                  "Newmark takes laws without history: step viscous bodies with CentralDifference");
+    static_assert(!TheBody::has_internal_variables,
+                  "Newmark takes laws without internal variables: step viscous bodies with "
+                  "CentralDifference");
     System<TheBody> system(body, options_.mass);
     State now{system.problem.start(), vector_of(body.velocities()), {}};
     // Velocities of driven nodes, which a body does not keep, and digits beyond its precision go on.

@@ -136,7 +136,7 @@ inline Eigen::VectorXd solve(char const* solver, Eigen::SparseMatrix<double> con
 /// search: on the potential energy, or, as pressures that follow a surface have none, on the work of
 /// the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
 /// Engineering 14 (1979) 1613). Done within the tolerance, or when a step no longer moves anything but
-/// the last digits. Laws that remember are relaxed, and remember that. Velocities are left alone. Throws
+/// the last digits. Internal variables are brought to rest. Velocities are left alone. Throws
 /// Error, with the body as it was, where the matrix is singular or the iteration does not converge.
 template <class TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
@@ -193,7 +193,7 @@ NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
     for (std::size_t k = 0; k < points[i].size(); ++k)
       points[i][k] = u[static_cast<Eigen::Index>(i * points[i].size() + k)];
   body.set_displacements(points);
-  if constexpr (TheBody::has_history) body.relax();
+  if constexpr (TheBody::has_internal_variables) body.equilibrate();
   return report;
 }
 

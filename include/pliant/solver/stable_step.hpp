@@ -188,7 +188,7 @@ class WithStepSize {
 /// Error when the state is not finite.
 template <class TheBody>
 double stable_step(TheBody& body) {
-  if constexpr (!TheBody::has_history) {
+  if constexpr (!TheBody::has_internal_variables) {
     return 2 / std::sqrt(detail::squared_frequency_bound(body));
   } else {
     auto const bound = [&](double step) {  // of laws that see a time step

@@ -30,7 +30,7 @@ TEST_CASE("children have their parent's values, and its points' memory", "[adapt
       h(0, 1) = 0.2;
       body.step(0.01, 1);
       body.set_displacements(uniform(body.mesh().nodes, h));
-      body.remember();
+      body.commit();
       body.set_step_size(0.05);
       auto const along = uniform(mesh.nodes, h);
       double const energy = body.strain_energy(), work = inner(body.forces(), along);

@@ -1,4 +1,4 @@
-// expect: laws with history take quadratures whose points see their own deformation
+// expect: laws with internal variables take quadratures whose points see their own deformation
 #include <pliant/pliant.hpp>
 #include <pliant/reference.hpp>
 

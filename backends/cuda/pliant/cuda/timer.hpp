@@ -10,10 +10,9 @@ namespace pliant {
 
 /// Measures on the GPU, by pairs of events on the backend's stream: neither start() nor stop()
 /// waits.
-class CudaStopwatch {
+class CudaTimer {
  public:
-  explicit CudaStopwatch(std::shared_ptr<detail::CudaContext> context)
-      : context_(std::move(context)) {}
+  explicit CudaTimer(std::shared_ptr<detail::CudaContext> context) : context_(std::move(context)) {}
 
   void start() { running_.emplace_back(record(), nullptr); }
   void stop() {

@@ -1,4 +1,4 @@
-// expect: Newmark takes laws without history: step viscous bodies with CentralDifference
+// expect: Newmark takes laws without internal variables: step viscous bodies with CentralDifference
 #include <pliant/pliant.hpp>
 #include <pliant/reference.hpp>
 #include <pliant/solver/newmark.hpp>

@@ -6,16 +6,16 @@ namespace pliant {
 
 /// Where the time of adaptation goes: evaluating criteria and deciding; moving elements.
 template <class B>
-struct AdaptationWatches {
-  struct Watch {
-    std::optional<typename B::Stopwatch> watch;  // empty: stands still
+struct AdaptationTimers {
+  struct Optional {
+    std::optional<typename B::Timer> timer;  // empty: stands still
     void start() {
-      if (watch) watch->start();
+      if (timer) timer->start();
     }
     void stop() {
-      if (watch) watch->stop();
+      if (timer) timer->stop();
     }
-    double seconds() { return watch ? watch->seconds() : 0.0; }
+    double seconds() { return timer ? timer->seconds() : 0.0; }
   } criteria, migration;
 };
 

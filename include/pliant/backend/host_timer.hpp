@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// The stopwatch of the backends that run on the host.
-class HostStopwatch {
+/// The timer of the backends that run on the host.
+class HostTimer {
  public:
   void start() { started_ = now(); }
   void stop() { seconds_ += now() - started_; }

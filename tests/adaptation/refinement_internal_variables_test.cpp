@@ -1,0 +1,1 @@
+#include "adaptation/refinement_internal_variables_suite.hpp"

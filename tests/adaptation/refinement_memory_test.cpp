@@ -1,1 +1,0 @@
-#include "adaptation/refinement_memory_suite.hpp"

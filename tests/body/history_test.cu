@@ -1,1 +1,0 @@
-#include "body/history_suite.hpp"

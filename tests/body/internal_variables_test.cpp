@@ -1,0 +1,1 @@
+#include "body/internal_variables_suite.hpp"
