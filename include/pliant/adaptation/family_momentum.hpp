@@ -3,11 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/body/conditions.hpp>
+#include <pliant/constraint/condition.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/formulation/mass.hpp>
-#include <pliant/mesh/hierarchy.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/hierarchy.hpp>
 
 namespace pliant::detail {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <pliant/backend/dispatch.hpp>
-#include <pliant/body/conditions.hpp>
 #include <pliant/body/element_table.hpp>
-#include <pliant/mesh/hierarchy.hpp>
+#include <pliant/constraint/condition.hpp>
+#include <pliant/topology/hierarchy.hpp>
 
 // What children take over from the elements that were split.
 namespace pliant::detail {

@@ -7,7 +7,7 @@
 #include <pliant/adaptation/inheritance.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/element/linear.hpp>
-#include <pliant/mesh/hierarchy.hpp>
+#include <pliant/topology/hierarchy.hpp>
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pliant/backend/field.hpp>
-#include <pliant/body/conditions.hpp>
+#include <pliant/constraint/condition.hpp>
 
 // The node loops of a moving body.
 namespace pliant {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/constraint/slave.hpp>
 #include <pliant/math/group_by_key.hpp>
-#include <pliant/mesh/slave.hpp>
 
 namespace pliant {
 

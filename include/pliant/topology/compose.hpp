@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/constraint/slave.hpp>
 #include <pliant/error.hpp>
-#include <pliant/mesh/slave.hpp>
 
 namespace pliant {
 

@@ -9,7 +9,7 @@
 
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
-#include <pliant/mesh/edge_tree.hpp>
+#include <pliant/topology/edge_tree.hpp>
 
 namespace pliant {
 

@@ -14,7 +14,7 @@
 #include <catch2/catch.hpp>
 
 #include <pliant/error.hpp>
-#include <pliant/mesh/hierarchy.hpp>
+#include <pliant/topology/hierarchy.hpp>
 
 namespace {
 

@@ -12,8 +12,8 @@
 
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
-#include <pliant/mesh/cell_tree.hpp>
-#include <pliant/mesh/compose.hpp>
+#include <pliant/topology/cell_tree.hpp>
+#include <pliant/topology/compose.hpp>
 
 namespace pliant {
 
