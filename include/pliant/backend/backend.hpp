@@ -88,6 +88,11 @@ concept Backend =
       typename B::template Elements<4>;
     };
 
+/// An array of zeros, made by a backend.
+template <class U, Backend B>
+auto zeros(B const&, std::size_t count) {
+  return typename B::template Array<U>(count);
+}
 /// The array with the values of a vector.
 template <Backend B, class U>
 typename B::template Array<U> upload(B const&, std::vector<U> const& values) {
