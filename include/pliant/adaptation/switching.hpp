@@ -48,7 +48,7 @@ struct RankVisitor {
 };
 
 /// One pass over a table: evaluates the criteria of the rules that look at each element's group, and
-/// lets the first rule that holds act: the tag changes, the books are kept.
+/// lets the first rule that holds act: the tag changes, the statistics are updated.
 template <class Table, class... Rules>
 struct SwitchVisitor {
   using T = typename Table::scalar;
@@ -176,13 +176,14 @@ template <class TheBody, class Table, class... Rules>
 void switch_groups(TheBody& body, Table& table, std::tuple<Rules...> const& rules) {
   if constexpr (sizeof...(Rules) > 0) {
     using T = typename TheBody::scalar;
-    if (!table.books.open) table.books.start(body.backend(), table.count(), body.history().born);
+    if (!table.statistics.open)
+      table.statistics.start(body.backend(), table.count(), body.history().born);
     SwitchVisitor<Table, Rules...> visitor{table.laws,
                                            rules,
                                            {},
                                            table.elements.tags().data(),
-                                           table.books.since.data(),
-                                           table.books.switches.data(),
+                                           table.statistics.since.data(),
+                                           table.statistics.switches.data(),
                                            static_cast<Index>(body.steps()),
                                            static_cast<T>(body.owed())};
     int r = 0;
@@ -199,7 +200,7 @@ void switch_groups(TheBody& body, Table& table, std::tuple<Rules...> const& rule
         },
         rules);
     body.backend().template visit<Table::groups>(
-        table.elements, visitor, table.books.counters, body.rest_field(),
+        table.elements, visitor, table.statistics.counters, body.rest_field(),
         std::as_const(body).displacement_field(), std::as_const(body).velocity_field());
   }
 }

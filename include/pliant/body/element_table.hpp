@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <pliant/body/bookkeeping.hpp>
 #include <pliant/body/group.hpp>
+#include <pliant/body/group_statistics.hpp>
 #include <pliant/body/kernels.hpp>
 
 namespace pliant {
@@ -38,7 +38,7 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   std::vector<double> value_rows;             // (elements, values), by the user's number
   typename B::template Array<scalar> values;  // (values, elements)
   typename B::template Array<scalar> internal_variables;  // (internal variables, elements)
-  Bookkeeping<B, groups> books;
+  GroupStatistics<B, groups> statistics;
   mutable typename B::template Array<double> no_counters{1};
   bool straight = false;  // all edges are, with their nodes in the middle
 

@@ -71,9 +71,9 @@ void Body<B, M, Fs...>::assign(std::vector<Index> const& elements) {
   std::vector<Tag> internal(user.size());
   for (std::size_t e = 0; e < user.size(); ++e)
     internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
-  if (auto& books = table.books; books.open || steps_ > history_.born) {
-    if (!books.open) books.start(backend_, table.count(), history_.born);
-    books.enter(download<Tag>(table.elements.tags()), internal, steps_);
+  if (auto& statistics = table.statistics; statistics.open || steps_ > history_.born) {
+    if (!statistics.open) statistics.start(backend_, table.count(), history_.born);
+    statistics.enter(download<Tag>(table.elements.tags()), internal, steps_);
   }
   using Table = std::remove_reference_t<decltype(table)>;
   auto const before = upload(backend_, download<Tag>(table.elements.tags()));

@@ -12,8 +12,8 @@ template <class TheBody, class Table>
 std::vector<double> counters(TheBody const& body, Table const& table, std::size_t which) {
   std::vector<double> sums(CounterLayout<Table::groups>::count, 0.0);
   if (which < body.history().totals.size()) sums = body.history().totals[which].counters;
-  if (table.books.open) {
-    auto const own = download<double>(table.books.counters);
+  if (table.statistics.open) {
+    auto const own = download<double>(table.statistics.counters);
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += own[k];
   }
   return sums;
@@ -26,7 +26,7 @@ std::vector<double> all_counters(TheBody const& body, Table const& table, std::s
   std::vector<double> sums = counters(body, table, which);
   auto const tags = download<Tag>(table.elements.tags());
   std::vector<Index> since(tags.size(), static_cast<Index>(body.history().born));
-  if (table.books.open) since = download<Index>(table.books.since);
+  if (table.statistics.open) since = download<Index>(table.statistics.since);
   for (std::size_t e = 0; e < tags.size(); ++e)
     if (tags[e] < Table::groups)
       sums[static_cast<std::size_t>(Counters::steps_of(tags[e]))] +=
@@ -43,7 +43,7 @@ constexpr std::size_t table_index() {
     return table_index<TheBody, E, I + 1>();
 }
 
-/// Adds the books of the present layout to the history, before the layout goes.
+/// Adds the statistics of the present layout to the history, before the layout goes.
 template <class TheBody>
 auto closed_totals(TheBody const& body) {
   std::vector<typename std::remove_cvref_t<decltype(body.history())>::Totals> totals;
@@ -69,8 +69,8 @@ template <Element E, class TheBody>
 std::vector<int> switch_counts(TheBody const& body) {
   auto const& table = body.layout().template table<E>();
   std::vector<int> counts(static_cast<std::size_t>(table.count()), 0);
-  if (table.books.open) {
-    auto const internal = download<std::uint16_t>(table.books.switches);
+  if (table.statistics.open) {
+    auto const internal = download<std::uint16_t>(table.statistics.switches);
     for (std::size_t e = 0; e < internal.size(); ++e)
       counts[static_cast<std::size_t>(table.user_element[e])] = internal[e];
   }

@@ -23,7 +23,7 @@ inline auto bending_rules() {
                     when<Turning>(criterion).below(0.04).become<Linear>()};
 }
 
-TEST_CASE("the books follow every switch of a bending beam", "[adaptation]") {
+TEST_CASE("the statistics follow every switch of a bending beam", "[adaptation]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto body = bending_body(backend);
     auto const elements = body.mesh().template elements<Quad4>().size();
@@ -69,7 +69,7 @@ TEST_CASE("the books follow every switch of a bending beam", "[adaptation]") {
   });
 }
 
-TEST_CASE("the books stay right when a user moves elements too", "[adaptation]") {
+TEST_CASE("the statistics stay right when a user moves elements too", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     auto body = bending_body(backend);
     auto adapt = bending_rules();

@@ -23,7 +23,7 @@ struct CounterLayout {
 /// What is remembered of the elements of one type while they change groups; made when adaptation
 /// first looks at them, so that other scenes do not pay.
 template <Backend B, int Groups>
-struct Bookkeeping {
+struct GroupStatistics {
   using Counters = CounterLayout<Groups>;
 
   typename B::template Array<Index> since;  // (elements): step of the last change of group

@@ -1,1 +1,0 @@
-#include "adaptation/switching_books_suite.hpp"

@@ -1,0 +1,1 @@
+#include "adaptation/switching_statistics_suite.hpp"
