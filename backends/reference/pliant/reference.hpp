@@ -33,17 +33,21 @@ class Reference {
              std::vector<Tag> const& tags, Index /* nodes */)
         : connectivity_(std::move(connectivity)), tags_(tags.size()) {
       tags_.upload(tags);
+      tag_data_ = tags_.data();
     }
     Index count() const { return static_cast<Index>(connectivity_.size()); }
     Index scratch_nodes() const { return 0; }
     HostArray<Tag>& tags() { return tags_; }
     HostArray<Tag> const& tags() const { return tags_; }
+    HostArray<Tag> take_tags() { return std::move(tags_); }
+    Tag tag(Index e) const { return tag_data_[e]; }
     void regroup() {}
     Index const* nodes(Index e) const { return connectivity_[static_cast<std::size_t>(e)].data(); }
 
    private:
     std::vector<std::array<Index, Nodes>> connectivity_;
     HostArray<Tag> tags_;
+    Tag const* tag_data_ = nullptr;  // whoever owns them
   };
 
   template <class F>
@@ -102,7 +106,7 @@ class Reference {
   template <int Groups, int Nodes, class F>
   static void loop(Elements<Nodes> const& elements, F const& f) {
     for (Index e = 0; e < elements.count(); ++e)
-      dispatch<Groups>(elements.tags().data()[e], [&](auto group) { f(group, e); });
+      dispatch<Groups>(elements.tag(e), [&](auto group) { f(group, e); });
   }
 };
 

@@ -34,6 +34,7 @@
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
+//   .take_tags()               gives the array of tags away: its new owner keeps it while loops run
 //   .scratch_nodes()           rows that a field to accumulate into needs behind its nodes
 //   accumulate<Groups>(elements, kernel, out, fields...)
 //                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`

@@ -54,6 +54,7 @@ class CudaElements {
     backend.make_current();
     detail::check_nodes<Nodes>(connectivity, nodes);
     tags_ = uploaded(tags);
+    tag_data_ = tags_.data();
     connectivity_ = padded(connectivity);
     if constexpr (!detail::scatters<T, Nodes>) plan(connectivity, nodes, size_and_threads[0]);
   }
@@ -62,15 +63,16 @@ class CudaElements {
   Index scratch_nodes() const { return 0; }
   DeviceArray<Tag>& tags() { return tags_; }
   DeviceArray<Tag> const& tags() const { return tags_; }
+  DeviceArray<Tag> take_tags() { return std::move(tags_); }
   /// Nothing to do: kernels read the tags.
   void regroup() {}
 
   Index patches() const { return patches_; }
   int threads() const { return threads_; }
-  View view() const { return {count_, connectivity_.data(), tags_.data()}; }
+  View view() const { return {count_, connectivity_.data(), tag_data_}; }
   detail::PatchView<Nodes> patch_view() const {
     return {count_,       patch_size_,  node_capacity_, diagonal_capacity_,
-            tags_.data(), rows_.data(), nodes_.data(),  diagonals_.data()};
+            tag_data_,    rows_.data(), nodes_.data(),  diagonals_.data()};
   }
 
  private:
@@ -106,6 +108,7 @@ class CudaElements {
   Index count_ = 0, patches_ = 0;
   int threads_ = 1, patch_size_ = 0, node_capacity_ = 0, diagonal_capacity_ = 0;
   DeviceArray<Tag> tags_;
+  Tag const* tag_data_ = nullptr;  // whoever owns them
   DeviceArray<Index> connectivity_;
   DeviceArray<detail::PatchNode> nodes_;
   DeviceArray<detail::PatchRow<Nodes>> rows_;

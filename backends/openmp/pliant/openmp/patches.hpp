@@ -31,6 +31,7 @@ class Patches {
         ordered_tags_(tags.size()),
         order_(connectivity.size()) {
     tags_.upload(tags);
+    tag_data_ = tags_.data();
     for (std::size_t e = 0; e < connectivity.size(); ++e)
       std::ranges::copy(connectivity[e], connectivity_.data() + e * Nodes);
     assign_targets(nodes);
@@ -44,6 +45,7 @@ class Patches {
   Index scratch_nodes() const { return scratch_nodes_; }
   HostArray<Tag>& tags() { return tags_; }
   HostArray<Tag> const& tags() const { return tags_; }
+  HostArray<Tag> take_tags() { return std::move(tags_); }
 
   Index const* nodes(Index e) const { return connectivity_.data() + std::ptrdiff_t{Nodes} * e; }
   /// The rows that an element adds to: its nodes, or scratch rows.
@@ -75,11 +77,11 @@ class Patches {
   void regroup() {
     for (Index p = 0; p < patch_count(); ++p) {
       auto const first = static_cast<std::size_t>(p * patch_size);
-      auto const size = std::min(tags_.size() - first, static_cast<std::size_t>(patch_size));
-      if (std::equal(tags_.data() + first, tags_.data() + first + size,
+      auto const size = std::min(ordered_tags_.size() - first, static_cast<std::size_t>(patch_size));
+      if (std::equal(tag_data_ + first, tag_data_ + first + size,
                      ordered_tags_.data() + first))
         continue;
-      std::copy_n(tags_.data() + first, size, ordered_tags_.data() + first);
+      std::copy_n(tag_data_ + first, size, ordered_tags_.data() + first);
       order(p);
     }
   }
@@ -92,7 +94,7 @@ class Patches {
     for (int g = 0; g < groups_; ++g) {
       *bound++ = static_cast<Index>(next - order_.data());
       for (Index e = first; e < last; ++e)
-        if (tags_.data()[e] == g) *next++ = e;
+        if (tag_data_[e] == g) *next++ = e;
     }
     *bound = static_cast<Index>(next - order_.data());
   }
@@ -137,6 +139,7 @@ class Patches {
   int groups_ = 1;
   HostArray<Index> connectivity_, target_;  // (elements, Nodes)
   HostArray<Tag> tags_, ordered_tags_;      // as they are, and as the order knows them
+  Tag const* tag_data_ = nullptr;           // whoever owns them
   HostArray<Index> order_;                  // elements, ordered by group inside each patch
   std::vector<Index> bounds_;               // (patches, groups + 1)
   Index scratch_nodes_ = 0;
