@@ -11,6 +11,7 @@
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/body.hpp>
+#include <pliant/body/energy.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/config.hpp>
 #include <pliant/element/linear.hpp>

@@ -34,25 +34,26 @@ class Adaptation {
     static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
                   "a rule is for an element type that the body's mesh does not have");
     constexpr bool refines = (!detail::Switches<Rules> || ...);
-    auto& timers = body.timers();
+    auto& parts = body.parts();
+    auto& timers = parts.timers;
     timers.criteria.start();
-    body.for_each_table([&](auto& table) {
+    parts.for_each_type([&](auto& table, auto& elements) {
       using Table = std::remove_cvref_t<decltype(table)>;
-      detail::switch_groups(body, table, switching<Table>());
+      detail::switch_groups(parts, table, elements, switching<Table>());
     });
     timers.criteria.stop();
     if constexpr (TheBody::backend_type::orders_by_group) {
       timers.migration.start();
-      body.for_each_table([&](auto& table) { table.elements.regroup(); });
+      parts.for_each_type([&](auto& table, auto&) { table.elements.regroup(); });
       timers.migration.stop();
     }
-    body.forget_forces();
+    forget_forces(parts);
     if constexpr (refines) {
       timers.criteria.start();
       int max_level = 0;
       std::vector<std::vector<Index>> marked;
-      body.for_each_table(
-          [&](auto& table) { marked.push_back(marked_in(body, table, max_level)); });
+      parts.for_each_type(
+          [&](auto& table, auto&) { marked.push_back(marked_in(parts, table, max_level)); });
       timers.criteria.stop();
       timers.migration.start();
       refine(body, marked, max_level);
@@ -69,19 +70,19 @@ class Adaptation {
   }
 
   /// The elements that rules want refined, by the user's number.
-  template <class TheBody, class Table>
-  std::vector<Index> marked_in(TheBody& body, Table& table, int& max_level) const {
+  template <class Parts, class Table>
+  std::vector<Index> marked_in(Parts& parts, Table& table, int& max_level) const {
     std::vector<Index> marked;
     auto const look = [&](auto const& rule) {
       using Rule = std::remove_cvref_t<decltype(rule)>;
       if constexpr (!detail::Switches<Rule> && detail::On<Rule, Table>) {
         static_assert(Table::template group_of<typename Rule::from> < Table::groups,
                       "a rule names a formulation of which the body has no Group");
-        auto const values = detail::criterion_values(body, table, rule);
+        auto const values = detail::criterion_values(parts, table, rule);
         auto const threshold =
-            threshold_of(rule.marking, body.backend(), values.data(), table.count());
-        auto const on_host = download<typename TheBody::scalar>(values);
-        auto const levels = detail::levels_of<typename Table::element>(body);
+            threshold_of(rule.marking, parts.backend, values.data(), table.count());
+        auto const on_host = download<typename Parts::T>(values);
+        auto const levels = detail::levels_of<typename Table::element>(parts);
         for (std::size_t e = 0; e < on_host.size(); ++e) {
           Index const element = table.user_element[e];
           bool const holds = rule.marking.below() ? on_host[e] < threshold : on_host[e] > threshold;

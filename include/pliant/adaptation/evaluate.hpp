@@ -35,16 +35,15 @@ struct EvaluateVisitor {
 /// The value of a criterion for every element of a type, in the user's order.
 template <Element E, class TheBody, class Criterion>
 std::vector<double> evaluate(TheBody const& body, Criterion const& criterion) {
-  using B = typename TheBody::backend_type;
+  auto const& parts = body.parts();
   using T = typename TheBody::scalar;
-  auto const& table = body.layout().template table<E>();
+  auto const& table = parts.layout.template table<E>();
   using Table = std::remove_cvref_t<decltype(table)>;
-  typename B::template Array<T> values(static_cast<std::size_t>(table.count()));
-  typename B::template Array<double> counters(1);
-  body.backend().template visit<Table::groups>(
+  auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
+  parts.backend.template visit<Table::groups>(
       table.elements,
-      detail::EvaluateVisitor<Table, Criterion>{table.laws, criterion, values.data()}, counters,
-      body.rest_field(), body.displacement_field());
+      detail::EvaluateVisitor<Table, Criterion>{table.laws, criterion, values.data()},
+      parts.no_counters, parts.rest(), parts.u());
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)

@@ -6,8 +6,7 @@
 #include <pliant/constraint/condition.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/formulation/mass.hpp>
-#include <pliant/mesh/mesh.hpp>
-#include <pliant/topology/hierarchy.hpp>
+#include <pliant/topology/topology.hpp>
 
 namespace pliant::detail {
 
@@ -64,22 +63,18 @@ inline void add_family_impulse(Hierarchy const& tree, Index parent, double densi
 }
 
 /// Gives each family of a refinement its momentum back by changing velocities; returns what held
-/// nodes took of it, N s. Slaves hand their impulse to their masters.
-template <class Layout>
+/// nodes took of it, N s. Slaves hand their impulse to their masters. `held`: directions, by node.
+template <class Layout, class M>
 Point<2> give_momentum_back(Hierarchy const& tree, std::vector<Index> const& parents,
-                            double density, Layout const& layout,
-                            std::vector<Condition<2>> const& conditions, std::vector<Point<2>>& v) {
+                            double density, Layout const& layout, Topology<M> const& topology,
+                            std::vector<DirectionMask> const& held, std::vector<Point<2>>& v) {
   std::vector<Point<2>> impulse(v.size(), Point<2>{});
   for (Index parent : parents) add_family_impulse(tree, parent, density, v, impulse);
-  for (Slave const& slave : layout.slave_list) {
-    Point<2> const own = std::exchange(impulse[static_cast<std::size_t>(slave.node)], Point<2>{});
-    for (auto const& [master, weight] : slave.masters)
-      for (std::size_t k = 0; k < 2; ++k)
-        impulse[static_cast<std::size_t>(master)][k] += weight * own[k];
-  }
-  std::vector<DirectionMask> held(v.size(), 0);
-  for (auto const& condition : conditions)
-    for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
+  topology.interpolation.apply_transpose(
+      [&](Index i, int k) -> double& {
+        return impulse[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+      },
+      2);
   Point<2> taken{};
   for (std::size_t i = 0; i < v.size(); ++i)
     for (std::size_t k = 0; k < 2; ++k)

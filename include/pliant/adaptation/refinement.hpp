@@ -1,13 +1,10 @@
 #pragma once
 
-#include <memory>
-#include <span>
+#include <optional>
 
 #include <pliant/adaptation/family_momentum.hpp>
-#include <pliant/adaptation/inheritance.hpp>
-#include <pliant/body/ledger.hpp>
+#include <pliant/body/change_topology.hpp>
 #include <pliant/element/linear.hpp>
-#include <pliant/topology/hierarchy.hpp>
 
 namespace pliant {
 
@@ -26,67 +23,89 @@ std::vector<Connectivity<E>> elements_or_none(Mesh<Es...> const& mesh) {
     return {};
 }
 
-/// The refinement tree of a plane body: the one it has, or a new one. Named boundaries and the
-/// facets of pressures and of conditions are marked, in this order, so that children inherit them.
-/// Conditions come last, for more of them, on nodes, may follow.
-template <class TheBody>
-std::shared_ptr<Hierarchy const> tree_of(TheBody const& body) {
-  if (body.history().tree) return body.history().tree;
-  auto const& mesh = body.mesh();
-  auto const tree = std::make_shared<Hierarchy>(mesh.nodes, elements_or_none<Tri3>(mesh),
-                                                elements_or_none<Quad4>(mesh));
-  int mark = 0;
-  auto const add = [&](std::vector<Facet<2>> const& facets) {
-    std::vector<std::array<Index, 2>> edges;
-    for (auto const& facet : facets) edges.push_back({facet[0], facet[1]});
-    tree->add_boundary(mark++, edges);
-  };
-  for (auto const& [name, facets] : mesh.boundaries) add(facets);
-  for (auto const& pressure : body.pressures()) add(pressure.facets);
-  for (auto const& condition : body.conditions()) add(condition.facets);
-  return tree;
+/// The refinement tree of a plane body: the one it has, or a new one.
+template <class M>
+std::shared_ptr<Hierarchy const> tree_of(Topology<M> const& topology) {
+  if (topology.tree) return topology.tree;
+  auto const& mesh = topology.mesh;
+  if (!mesh.slaves.empty())
+    throw Error("refine: the mesh came with ", mesh.slaves.size(),
+                " hanging nodes, of which it is not known what was refined; give the coarse mesh, "
+                "and refine the body");
+  return std::make_shared<Hierarchy>(mesh.nodes, elements_or_none<Tri3>(mesh),
+                                     elements_or_none<Quad4>(mesh));
+}
+
+template <Element E>
+inline constexpr int sides_of = static_cast<int>(E::cell::sides().size());
+
+/// The leaves of a tree that are elements of a type, in the order of the mesh's list.
+template <Element E>
+std::vector<Index> leaves_of(Hierarchy const& tree) {
+  std::vector<Index> cells;
+  for (Index c : tree.leaves())
+    if (tree.cell(c).sides == sides_of<E>) cells.push_back(c);
+  return cells;
 }
 
 /// How often each element of a type was refined, by the user's number.
-template <Element E, class TheBody>
-std::vector<int> levels_of(TheBody const& body) {
-  if (!body.history().tree) return std::vector<int>(body.mesh().template elements<E>().size(), 0);
+template <Element E, class Parts>
+std::vector<int> levels_of(Parts const& parts) {
+  auto const& topology = *parts.state.topology;
+  if (!topology.tree) return std::vector<int>(topology.mesh.template elements<E>().size(), 0);
   std::vector<int> levels;
-  for (Index c : leaves_of<E>(*body.history().tree))
-    levels.push_back(body.history().tree->cell(c).level);
+  for (Index c : leaves_of<E>(*topology.tree)) levels.push_back(topology.tree->cell(c).level);
   return levels;
 }
 
 /// The cells of marked elements, which are given by the user's numbers for each element type.
-template <class TheBody>
-std::vector<Index> cells_of(TheBody const& body, Hierarchy const& tree,
+template <Element... Es>
+std::vector<Index> cells_of(Mesh<Es...> const&, Hierarchy const& tree,
                             std::vector<std::vector<Index>> const& marked) {
   std::vector<Index> cells;
   auto list = marked.begin();
-  body.for_each_table([&](auto const& table) {
-    using E = typename std::remove_cvref_t<decltype(table)>::element;
+  auto const add = [&]<Element E>(E) {
     auto const leaves = leaves_of<E>(tree);
     for (Index e : *list++) {
-      if (e < 0 || e >= table.count())
+      if (e < 0 || e >= static_cast<Index>(leaves.size()))
         throw Error("refine: there is no ", E::name(), " element ", e, "; they are numbered 0 to ",
-                    table.count() - 1);
+                    leaves.size() - 1);
       cells.push_back(leaves[static_cast<std::size_t>(e)]);
     }
-  });
+  };
+  (add(Es{}), ...);
   return cells;
 }
 
-/// A field with its values at new nodes: those of the parent's shape functions.
-inline std::vector<Point<2>> interpolated(std::vector<Point<2>> field,
-                                          std::vector<NewNode> const& new_nodes) {
-  for (NewNode const& n : new_nodes) {
-    Point<2> value{};
-    for (Index parent : std::span(n.parents).first(static_cast<std::size_t>(n.count)))
-      for (std::size_t k = 0; k < 2; ++k)
-        value[k] += field[static_cast<std::size_t>(parent)][k] / n.count;
-    field.push_back(value);
+/// Where the elements of a type come from, in the order of the new mesh's list.
+template <Element E>
+std::vector<Transfer<2>::Origin> origins_of(Hierarchy const& before, Hierarchy const& after) {
+  std::vector<Index> element_of(before.cells().size(), -1);  // by cell
+  auto const old_leaves = leaves_of<E>(before);
+  for (std::size_t e = 0; e < old_leaves.size(); ++e)
+    element_of[static_cast<std::size_t>(old_leaves[e])] = static_cast<Index>(e);
+  std::vector<Transfer<2>::Origin> origins;
+  for (Index c : leaves_of<E>(after)) {
+    if (static_cast<std::size_t>(c) < element_of.size()) {
+      origins.push_back({element_of[static_cast<std::size_t>(c)], -1});
+    } else {
+      Index const parent = after.cell(c).parent;
+      origins.push_back({element_of[static_cast<std::size_t>(parent)],
+                         static_cast<int>(c - after.cell(parent).first_child)});
+    }
   }
-  return field;
+  return origins;
+}
+
+/// The new nodes of a refinement, as means of their parents.
+inline std::vector<Transfer<2>::NewNode> interpolated_nodes(std::vector<NewNode> const& nodes) {
+  std::vector<Transfer<2>::NewNode> list;
+  for (NewNode const& n : nodes) {
+    list.push_back({n.node, {}});
+    for (int k = 0; k < n.count; ++k)
+      list.back().parents.emplace_back(n.parents[static_cast<std::size_t>(k)], 1.0 / n.count);
+  }
+  return list;
 }
 
 }  // namespace detail
@@ -97,6 +116,86 @@ struct RefinementReport {
   std::size_t new_nodes = 0;
 };
 
+/// A refinement that is ready to be made; nothing has changed yet.
+template <class M>
+struct RefinementPlan {
+  std::shared_ptr<Topology<M> const> before, after;
+  Transfer<2> transfer;
+  std::vector<Index> parents;  // cells of after.tree that were split, coarser ones first
+};
+
+/// Plans the refinement of marked elements: see refine. Empty where none is split. Throws Error where an
+/// element is unknown or the body's limits would be exceeded.
+template <class Parts>
+auto plan_refinement(Parts const& parts, std::vector<std::vector<Index>> const& marked,
+                     int max_level = 30)
+    -> std::optional<RefinementPlan<typename Parts::mesh_type>> {
+  using M = typename Parts::mesh_type;
+  constexpr std::size_t types = std::tuple_size_v<decltype(M::tables)>;
+  if (marked.size() != types)
+    throw Error("refine: got lists of marked elements for ", marked.size(),
+                " element types, but the mesh has ", types,
+                "; give one list per type, empty where none is refined");
+  if (std::ranges::all_of(marked, &std::vector<Index>::empty)) return std::nullopt;
+
+  auto const& old = *parts.state.topology;
+  auto const before = detail::tree_of(old);
+  auto const tree = std::make_shared<Hierarchy>(*before);
+  Refinement const done = tree->refine(detail::cells_of(old.mesh, *before, marked),
+                                       {parts.limits.nodes, parts.limits.elements, max_level});
+  if (done.parents.empty()) return std::nullopt;
+
+  auto const origins = [&]<Element... Es>(Mesh<Es...> const&) {
+    return std::vector<std::vector<Transfer<2>::Origin>>{detail::origins_of<Es>(*before, *tree)...};
+  }(old.mesh);
+  Transfer<2> transfer(static_cast<Index>(old.mesh.nodes.size()),
+                       detail::interpolated_nodes(done.new_nodes), origins);
+
+  auto topology = std::make_shared<Topology<M>>();
+  M& mesh = topology->mesh;
+  mesh.nodes = tree->points();
+  [&]<Element... Es>(Mesh<Es...>&) {
+    auto const fill = [&]<Element E>(E) {
+      for (Index c : detail::leaves_of<E>(*tree))
+        std::copy_n(tree->cell(c).nodes.begin(), std::size_t{E::nodes},
+                    mesh.template elements<E>().emplace_back().begin());
+    };
+    (fill(Es{}), ...);
+  }(mesh);
+  for (auto const& [name, facets] : old.mesh.boundaries)
+    mesh.boundaries.emplace(name, transfer.carry_facets(facets));
+  mesh.slaves = tree->slaves();
+  for (std::size_t type = 0; type < types; ++type) {
+    auto const& values = old.element_values[type];
+    std::size_t const count = detail::element_count(old.mesh, type);
+    topology->element_values.push_back(
+        transfer.carry_elements(values, type, count > 0 ? values.size() / count : 0));
+  }
+  topology->interpolation = Interpolation(mesh.slaves);
+  topology->tree = tree;
+  return RefinementPlan<M>{parts.state.topology, std::move(topology), std::move(transfer),
+                           done.parents};
+}
+
+/// Makes a planned refinement. Throws Error, with the body as it was, where fields are not finite or memory
+/// runs out.
+template <class Parts>
+RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> const& plan) {
+  double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
+  double const kinetic = kinetic_energy_of(parts);
+  auto const give_back = [&](auto const& layout, auto const& held, auto& v) {
+    return detail::give_momentum_back(*plan.after->tree, plan.parents, parts.material.density,
+                                      layout, *plan.after, held, v);
+  };
+  Point<2> const taken = change_topology(parts, plan.after, plan.transfer, give_back);
+  parts.state.record.refinements.push_back(
+      {parts.state.time, "refine", static_cast<double>(plan.parents.size()),
+       energy_at(std::as_const(parts), std::as_const(parts).u()) - strain,
+       kinetic_energy_of(parts) - kinetic, taken});
+  for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
+  return {plan.parents.size(), plan.transfer.new_nodes().size()};
+}
+
 /// Splits elements of a plane body into four. `marked` has, for each element type in the order of the
 /// mesh, the elements to split by the user's number. Neighbours differ by one level at most; hanging
 /// nodes become slaves. New nodes take displacement and velocity from the parent's shape functions,
@@ -104,77 +203,21 @@ struct RefinementReport {
 /// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
 /// exactly. Children inherit groups, conditions on facets, pressures and named boundaries;
 /// conditions and loads on nodes stay with their nodes. What it did to the energy is in ledger(body).
-/// Throws Error, with the body as it was, where an element is unknown or the capacity would be
+/// Throws Error, with the body as it was, where an element is unknown or the body's limits would be
 /// exceeded.
 template <class TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {
   static_assert(detail::can_be_split<typename TheBody::mesh_type>,
                 "refinement is available for plane meshes of Tri3 and Quad4");
-  constexpr std::size_t types = std::tuple_size_v<decltype(TheBody::mesh_type::tables)>;
-  if (marked.size() != types)
-    throw Error("refine: got lists of marked elements for ", marked.size(),
-                " element types, but the mesh has ", types,
-                "; give one list per type, empty where none is refined");
-  if (std::ranges::all_of(marked, &std::vector<Index>::empty)) return {};
+  auto const plan = plan_refinement(body.parts(), marked, max_level);
+  return plan ? commit(body.parts(), *plan) : RefinementReport{};
+}
 
-  auto const before = detail::tree_of(body);
-  auto const after = std::make_shared<Hierarchy>(*before);
-  auto const& capacity = body.history().capacity;
-  Refinement const done = after->refine(detail::cells_of(body, *before, marked),
-                                        {capacity.nodes, capacity.elements, max_level});
-  if (done.parents.empty()) return {};
-
-  auto u = body.displacements(), v = body.velocities();
-  detail::check_field("refine (displacements)", u, body.nodes());
-  detail::check_field("refine (velocities)", v, body.nodes());
-  double const strain_before = body.strain_energy(), kinetic_before = body.kinetic_energy();
-  u = detail::interpolated(std::move(u), done.new_nodes);
-  v = detail::interpolated(std::move(v), done.new_nodes);
-
-  auto mesh = body.mesh();
-  mesh.nodes = after->points();
-  std::vector<ElementStart> starts;
-  std::vector<std::vector<double>> internal_variables;
-  body.for_each_table([&](auto const& table) {
-    using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto children = detail::inherited_elements(table, body.template groups_of<E>(), *before, *after,
-                                               done.parents);
-    mesh.template elements<E>() = std::move(children.elements);
-    starts.push_back(std::move(children.start));
-    internal_variables.push_back(std::move(children.internal_variables));
-  });
-  int mark = 0;  // as tree_of gave them
-  for (auto& [name, facets] : mesh.boundaries) facets = detail::facets_of(*after, mark++);
-  auto pressures = body.pressures();
-  for (auto& pressure : pressures) pressure.facets = detail::facets_of(*after, mark++);
-  auto conditions = body.conditions();
-  for (auto& condition : conditions) detail::inherit_condition(*after, mark++, condition);
-  auto loads = body.loads();
-  if (!loads.empty()) loads.resize(mesh.nodes.size(), Point<2>{});
-
-  auto layout = body.make_layout(std::move(mesh), after->slaves(), starts);
-  Point<2> const taken = detail::give_momentum_back(*after, done.parents, body.material().density,
-                                                    layout, conditions, v);
-
-  // As they are, and not by the body's setters, which stop driven nodes.
-  using T = typename TheBody::scalar;
-  layout.u.upload(layout.padded(u));
-  layout.v.upload(layout.padded(v));
-  auto internal = internal_variables.begin();
-  std::apply(
-      [&](auto&... table) {
-        (table.internal_variables.upload(table.in_internal_order(*internal++)), ...);
-      },
-      layout.tables);
-  layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.u.data()});
-  layout.slaves.interpolate(body.backend(), NodeField<T, 2>{layout.v.data()});
-  body.replace(std::move(layout), std::move(conditions), std::move(pressures), std::move(loads),
-               after, detail::closed_totals(body));
-  body.add_refinement({body.time(), "refine", static_cast<double>(done.parents.size()),
-                       body.strain_energy() - strain_before, body.kinetic_energy() - kinetic_before,
-                       taken});
-  return {done.parents.size(), done.new_nodes.size()};
+/// The largest mesh that refinements of a body may make.
+template <class TheBody>
+void set_mesh_limits(TheBody& body, MeshLimits limits) {
+  body.parts().limits = limits;
 }
 
 }  // namespace pliant

@@ -5,7 +5,7 @@
 
 #include <pliant/adaptation/criterion/element_state.hpp>
 #include <pliant/adaptation/strategy.hpp>
-#include <pliant/body/body.hpp>
+#include <pliant/body/velocities.hpp>
 
 namespace pliant::detail {
 
@@ -159,49 +159,47 @@ auto only_switching(Rule const& rule) {
 }
 
 /// Values of a rule's criterion in the backend's memory, NaN where it does not look.
-template <class TheBody, class Table, class Rule>
-auto criterion_values(TheBody& body, Table& table, Rule const& rule) {
-  using B = typename TheBody::backend_type;
-  using T = typename TheBody::scalar;
-  typename B::template Array<T> values(static_cast<std::size_t>(table.count()));
-  typename B::template Array<double> counters(1);
-  body.backend().template visit<Table::groups>(
-      table.elements, RankVisitor<Table, Rule>{table.laws, rule, values.data()}, counters,
-      body.rest_field(), std::as_const(body).displacement_field());
+template <class Parts, class Table, class Rule>
+auto criterion_values(Parts& parts, Table& table, Rule const& rule) {
+  auto values = zeros<typename Parts::T>(parts.backend, static_cast<std::size_t>(table.count()));
+  parts.backend.template visit<Table::groups>(
+      table.elements, RankVisitor<Table, Rule>{table.laws, rule, values.data()}, parts.no_counters,
+      parts.rest(), std::as_const(parts).u());
   return values;
 }
 
 /// Lets the switching rules act on one table, once.
-template <class TheBody, class Table, class... Rules>
-void switch_groups(TheBody& body, Table& table, std::tuple<Rules...> const& rules) {
+template <class Parts, class Table, class Elements, class... Rules>
+void switch_groups(Parts& parts, Table& table, Elements& elements,
+                   std::tuple<Rules...> const& rules) {
   if constexpr (sizeof...(Rules) > 0) {
-    using T = typename TheBody::scalar;
-    if (!table.statistics.open)
-      table.statistics.start(body.backend(), table.count(), body.history().born);
+    using T = typename Parts::T;
+    auto& statistics = elements.statistics;
+    if (!statistics.open) statistics.start(parts.backend, table.count(), parts.state.record.born);
     SwitchVisitor<Table, Rules...> visitor{table.laws,
                                            rules,
                                            {},
-                                           table.elements.tags().data(),
-                                           table.statistics.since.data(),
-                                           table.statistics.switches.data(),
-                                           static_cast<Index>(body.steps()),
-                                           static_cast<T>(body.owed())};
+                                           elements.tags.data(),
+                                           statistics.since.data(),
+                                           statistics.switches.data(),
+                                           static_cast<Index>(parts.state.steps),
+                                           static_cast<T>(parts.state.pending_half_kick)};
     int r = 0;
     std::apply(
         [&](auto const&... rule) {
           ((visitor.threshold[r++] =
                 rule.marking.ranks()
-                    ? threshold_of(rule.marking, body.backend(),
-                                   criterion_values(body, table, rule).data(), table.count())
+                    ? threshold_of(rule.marking, parts.backend,
+                                   criterion_values(parts, table, rule).data(), table.count())
                 : rule.marking.below()
                     ? static_cast<T>(rule.marking.amount)
                     : static_cast<T>(std::max(rule.marking.amount, rule.marking.floor))),
            ...);
         },
         rules);
-    body.backend().template visit<Table::groups>(
-        table.elements, visitor, table.statistics.counters, body.rest_field(),
-        std::as_const(body).displacement_field(), std::as_const(body).velocity_field());
+    parts.backend.template visit<Table::groups>(table.elements, visitor, statistics.counters,
+                                                parts.rest(), std::as_const(parts).u(),
+                                                std::as_const(parts).v());
   }
 }
 

@@ -3,18 +3,11 @@
 #include <vector>
 
 #include <pliant/body/group.hpp>
-#include <pliant/body/group_statistics.hpp>
-#include <pliant/body/kernels.hpp>
+#include <pliant/body/group_laws.hpp>
 
 namespace pliant {
 
-/// How the elements of one type begin, by the user's number.
-struct ElementStart {
-  std::vector<Tag> tags;       // the group of each
-  std::vector<double> values;  // (elements, values): what laws read per element
-};
-
-/// The elements of one type in a body, and the groups they may belong to.
+/// The elements of one type in a layout, and the groups they may belong to.
 template <Backend B, Element E, class Formulations>
 struct ElementTable;
 
@@ -34,13 +27,10 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
 
   typename B::template Elements<E::nodes> elements;
   Laws laws;
-  std::vector<Index> user_element;            // by the internal number
-  std::vector<double> value_rows;             // (elements, values), by the user's number
-  typename B::template Array<scalar> values;  // (values, elements)
-  typename B::template Array<scalar> internal_variables;  // (internal variables, elements)
-  GroupStatistics<B, groups> statistics;
-  mutable typename B::template Array<double> no_counters{1};
-  bool straight = false;  // all edges are, with their nodes in the middle
+  std::vector<Index> user_element;             // by the internal number
+  typename B::template Array<scalar> values;   // (values, elements)
+  typename B::template Array<scalar> scratch;  // (elements), of whoever needs it
+  bool straight = false;                       // all edges are, with their nodes in the middle
 
   Index count() const { return elements.count(); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -33,7 +34,7 @@ struct GroupStatistics {
   typename B::template Array<double> counters;
   bool open = false;
 
-  void start(B const&, Index elements, long step) {
+  void start(B const&, Index elements, std::int64_t step) {
     auto const n = static_cast<std::size_t>(elements);
     since = typename B::template Array<Index>(n);
     since.upload(std::vector<Index>(n, static_cast<Index>(step)));
@@ -42,7 +43,7 @@ struct GroupStatistics {
     open = true;
   }
   /// Enters that elements went from the groups `before` to `after` at a step, by hand.
-  void enter(std::vector<Tag> const& before, std::vector<Tag> const& after, long step) {
+  void enter(std::vector<Tag> const& before, std::vector<Tag> const& after, std::int64_t step) {
     auto from = download<Index>(since);
     auto times = download<std::uint16_t>(switches);
     auto sums = download<double>(counters);

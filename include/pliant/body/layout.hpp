@@ -6,12 +6,13 @@
 #include <pliant/body/element_table.hpp>
 #include <pliant/body/motion.hpp>
 #include <pliant/body/numbering.hpp>
-#include <pliant/body/slaves.hpp>
+#include <pliant/body/state.hpp>
+#include <pliant/constraint/interpolation_on.hpp>
 
 namespace pliant {
 
-/// The part of a body that depends on its mesh: arrays in the backend's memory, in internal order. A
-/// refinement makes a new one and swaps it in, so that a failure leaves the body as it was.
+/// What follows from a body's topology: numbering, and arrays in the backend's memory in internal order
+/// that a run does not change, with room for forces. Another topology has another layout.
 template <Backend B, class M, class... Fs>
 struct Layout;
 
@@ -30,23 +31,20 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static constexpr bool acts = (std::same_as<typename F::element, Es> || ...);
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
-  Mesh<Es...> mesh;                             // in the user's order, of the elements that act now
-  std::vector<Slave> slave_list;                // in the user's order
   std::vector<double> mass_list;                // kg, in the user's order, slaves' handed on
   std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
   Index nodes = 0;
   Array<Index> user_node_array;
-  Array<T> rest, u, v, f;     // (nodes, 4); f with scratch rows behind
+  Array<T> rest, f;           // (nodes, 4); f with scratch rows behind
   Array<T> mass;              // (nodes)
   Array<DirectionMask> held;  // (nodes)
-  Array<T> load;              // (nodes, 4), or empty
+  Array<T> load;  // (nodes, 4): loads with those of slaves handed on; empty where not needed
   std::tuple<Table<Es>...> tables;
-  Slaves<B> slaves;
+  InterpolationOn<B> interpolation;
 
-  /// `starts`: one for each element type.
-  Layout(B const& backend, Mesh<Es...> m, std::vector<Slave> hanging, Elastic const& material,
-         std::tuple<Group<Fs>...> const& groups, std::vector<ElementStart> const& starts)
-      : mesh(std::move(m)), slave_list(std::move(hanging)) {
+  Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
+         std::tuple<Group<Fs>...> const& groups) {
+    auto const& mesh = topology.mesh;
     Numbering<Es...> numbering(mesh);
     internal_node = std::move(numbering.internal_node);
     user_node = std::move(numbering.user_node);
@@ -55,24 +53,21 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
     Index scratch = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, material, groups, starts[I], scratch), ...);
+      (make_table<I>(backend, numbering, topology, material, groups, scratch), ...);
     }(std::index_sequence_for<Es...>());
 
-    auto const padded = static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes);
-    upload_rest();
-    u = Array<T>(padded);
-    v = Array<T>(padded);
-    f = Array<T>(padded +
-                 static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(scratch));
-    held = Array<DirectionMask>(static_cast<std::size_t>(nodes));
+    upload_rest(backend, mesh);
+    f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
+                                            static_cast<std::size_t>(scratch));
+    held = zeros<DirectionMask>(backend, static_cast<std::size_t>(nodes));
 
-    std::vector<Slave> internal = slave_list;
+    std::vector<Slave> internal = topology.interpolation.slaves();
     for (auto& slave : internal) {
       slave.node = internal_of(slave.node);
       for (auto& [master, weight] : slave.masters) master = internal_of(master);
     }
-    slaves = Slaves<B>(backend, internal);
-    lump_mass(material.density);
+    interpolation = InterpolationOn<B>(backend, Interpolation(std::move(internal)));
+    lump_mass(topology, material.density);
     std::vector<T> masses(mass_list.size());
     for (std::size_t i = 0; i < masses.size(); ++i)
       masses[static_cast<std::size_t>(internal_node[i])] = static_cast<T>(mass_list[i]);
@@ -113,25 +108,17 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
  private:
   template <std::size_t I>
-  void make_table(B const& backend, Numbering<Es...>& numbering, Elastic const& material,
-                  std::tuple<Group<Fs>...> const& groups, ElementStart const& start,
-                  Index& scratch) {
+  void make_table(B const& backend, Numbering<Es...>& numbering,
+                  Topology<Mesh<Es...>> const& topology, Elastic const& material,
+                  std::tuple<Group<Fs>...> const& groups, Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
     table.user_element = std::move(numbering.user_element[I]);
-    std::vector<Tag> tags(table.user_element.size());
-    for (std::size_t e = 0; e < tags.size(); ++e)
-      tags[e] = start.tags[static_cast<std::size_t>(table.user_element[e])];
-    table.elements = {backend, std::move(std::get<I>(numbering.tables)), TableType::groups, tags,
-                      nodes};
+    table.elements = {backend, std::move(std::get<I>(numbering.tables)), TableType::groups,
+                      std::vector<Tag>(table.user_element.size(), 0), nodes};
     scratch = std::max(scratch, table.elements.scratch_nodes());
-    table.straight = is_straight<typename TableType::element>(mesh);
-    table.value_rows = start.values;
-    table.values = upload(backend, table.in_internal_order(start.values));
-    table.internal_variables =
-        Array<T>(static_cast<std::size_t>(TableType::Laws::internal_variable_count) * tags.size());
-    if constexpr (TableType::Laws::reads_elements)
-      table.laws.data = {table.values.data(), table.internal_variables.data(), table.count()};
+    table.straight = is_straight<typename TableType::element>(topology.mesh);
+    table.values = upload(backend, table.in_internal_order(topology.element_values[I]));
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((std::get<G>(table.laws.laws) =
             prepared<typename TableType::template formulation<G>>(law_cast<T>(
@@ -186,28 +173,22 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
 
   /// Positions relative to the middle of the body: single precision keeps its digits.
-  void upload_rest() {
+  void upload_rest(B const& backend, Mesh<Es...> const& mesh) {
     auto const box = extent(mesh);
     std::vector<Point<dim>> relative = mesh.nodes;
     for (auto& p : relative)
       for (std::size_t k = 0; k < dim; ++k) p[k] -= box.middle[k];
-    std::vector<T> const values = padded(relative);
-    rest = Array<T>(values.size());
-    rest.upload(values);
+    rest = upload(backend, padded(relative));
   }
 
-  void lump_mass(double density) {
-    mass_list.assign(mesh.nodes.size(), 0.0);
-    (add_mass<Es>(density), ...);
-    for (auto const& slave : slave_list) {
-      double& own = mass_list[static_cast<std::size_t>(slave.node)];
-      for (auto const& [master, weight] : slave.masters)
-        mass_list[static_cast<std::size_t>(master)] += weight * own;
-      own = 0;
-    }
+  void lump_mass(Topology<Mesh<Es...>> const& topology, double density) {
+    mass_list.assign(topology.mesh.nodes.size(), 0.0);
+    (add_mass<Es>(topology.mesh, density), ...);
+    topology.interpolation.apply_transpose(
+        [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
   }
   template <Element E>
-  void add_mass(double density) {
+  void add_mass(Mesh<Es...> const& mesh, double density) {
     for (auto const& nodes_of_element : mesh.template elements<E>()) {
       auto const share = nodal_volumes<E>(nodal(mesh, nodes_of_element));
       for (int a = 0; a < E::nodes; ++a)

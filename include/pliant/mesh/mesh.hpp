@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include <pliant/constraint/slave.hpp>
 #include <pliant/element/element.hpp>
 #include <pliant/error.hpp>
 
@@ -55,6 +56,8 @@ struct Mesh {
   std::vector<Point<dim>> nodes;                        // m
   std::tuple<std::vector<Connectivity<Es>>...> tables;  // one list of elements per type
   std::map<std::string, std::vector<Facet<dim>>> boundaries{};
+  std::vector<Slave>
+      slaves{};  // nodes that hang between others, each after the slaves among its masters
 
   template <Element E>
   std::vector<Connectivity<E>>& elements() {

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include <pliant/body/ledger.hpp>
+#include <pliant/solver/distortion.hpp>
+#include <pliant/solver/leapfrog.hpp>
 #include <pliant/solver/stable_step.hpp>
 
 namespace pliant {
@@ -14,24 +16,35 @@ struct CentralDifferenceOptions {
   double safety = 0.9;          // times the guaranteed stable step
   double step = 0;              // s; 0: from stable_step
   int check_interval = 256;     // steps between checks of finiteness and energy
-  int refresh_interval = 1024;  // steps between evaluations of the stable step
-  /// Growth of the total energy between checks, over strain and kinetic energy, that counts as a
-  /// blow-up. Not looked at while nodes are driven or facets pressed, which does work, nor with laws
-  /// that have internal variables: they may give back what the strain energy does not count.
+  int refresh_interval = 1024;  // steps between evaluations of the stable step, at the most
+  int watch_interval = 16;  // steps between looks at the distortion, which may ask for one earlier
+  /// Growth of the total energy since the last check, over strain and kinetic energy, and since the start,
+  /// over the largest of these so far, that counts as a blow-up. Not looked at while nodes are driven or
+  /// facets pressed, which does work, nor with laws that have internal variables: they may give back
+  /// what the strain energy does not count.
   double energy_growth = 0.1;
 };
 
-/// Explicit time integration by central differences (leapfrog, velocity Verlet), with lumped masses
-/// and centred mass damping. At intervals the state is checked: one that went non-finite, or whose
-/// energy grew by more than its loads and its adaptation explain, is rolled back to the last check and
-/// done again with half the step; after three halvings it throws Error, and the body is at the last
-/// good state.
+/// What a call of an integrator did.
+struct Advanced {
+  std::int64_t steps = 0;  // by which the body's count went forward; negative after a roll-back
+  double time = 0;         // s: where the body is now
+  double step = 0;         // s: the size of the last step
+  bool rolled_back =
+      false;  // to a time before the call: set loads anew for the time that it is now
+};
+
+/// Explicit time integration by central differences (leapfrog, velocity Verlet), with lumped masses and mass
+/// damping. At intervals the state is checked: one that went non-finite, or whose energy grew by more
+/// than its loads and its adaptation explain, is rolled back to the last check and done again with half
+/// the step; after three halvings it throws Error, and the body is at the last good state. A call that
+/// is rolled back behind its own begin returns there, so that its caller can set what depends on time.
 class CentralDifference {
  public:
   explicit CentralDifference(CentralDifferenceOptions options = {}) : options_(options) {
     if (!(options.safety > 0 && options.safety <= 1) ||
         !(options.step >= 0 && std::isfinite(options.step)) || options.check_interval < 1 ||
-        options.refresh_interval < 1 || !(options.energy_growth >= 0))
+        options.refresh_interval < 1 || options.watch_interval < 1 || !(options.energy_growth >= 0))
       throw Error(
           "CentralDifference: safety must be in (0, 1], step and energy_growth not negative, and "
           "intervals at least 1");
@@ -44,75 +57,124 @@ class CentralDifference {
 
   /// Takes steps.
   template <class TheBody>
-  void operator()(TheBody& body, int steps = 1) {
-    long const goal = body.steps() + steps;
-    while (body.steps() < goal) {
-      if (body_ != &body || checked_nodes_ != body.nodes() || body.checkpoint_step() < 0)
-        begin(body);
-      if (body.steps() >= next_check_) check(body);
-      if (body.steps() >= next_refresh_) refresh(body);
-      body.step(step_,
-                static_cast<int>(std::min({goal, next_check_, next_refresh_}) - body.steps()));
+  Advanced operator()(TheBody& body, int steps = 1) {
+    if (steps < 0) throw Error("CentralDifference: ", steps, " steps; give 0 or more");
+    auto& parts = body.parts();
+    auto& state = parts.state;
+    std::int64_t const begun = state.steps, goal = begun + steps;
+    begin(parts);
+    auto& own = state.integrator;
+    while (state.steps < goal) {
+      if ((!parts.has_checkpoint || state.steps >= own.next_check) && !check(parts) &&
+          state.steps < begun)
+        return {state.steps - begun, state.time, own.step, true};
+      if (state.steps >= own.next_watch) watch(parts);
+      if (state.steps >= own.next_refresh) refresh(parts);
+      step_ = own.step;
+      take_steps(
+          parts, own.step,
+          static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch}) -
+                           state.steps));
     }
+    return {state.steps - begun, state.time, own.step, false};
   }
 
  private:
-  /// A body, a mesh, or a state that was not seen before.
-  template <class TheBody>
-  void begin(TheBody& body) {
-    if (std::exchange(body_, &body) != &body) slower_ = 1;
-    checked_nodes_ = body.nodes();
-    next_check_ = next_refresh_ = body.steps();
-    energy_ = std::numeric_limits<double>::infinity();
-  }
-
-  template <class TheBody>
-  void refresh(TheBody& body) {
-    step_ = (options_.step > 0 ? options_.step : options_.safety * stable_step(body)) / slower_;
-    next_refresh_ = body.steps() + options_.refresh_interval;
-  }
-
-  /// The energy that only time integration changes.
-  template <class TheBody>
-  static double energy_of(TheBody& body) {
-    return body.total_energy() - adaptation_energy(body) - body.energy_of_new_loads();
-  }
-
-  template <class TheBody>
-  void check(TheBody& body) {
-    double const strain = body.strain_energy(), kinetic = body.kinetic_energy();
-    double const energy = energy_of(body);
-    bool const grew = !TheBody::has_internal_variables && !body.has_motions() &&
-                      body.pressures().empty() &&
-                      energy > energy_ + options_.energy_growth * (strain + kinetic);
-    if (std::isfinite(energy) && !grew) {
-      body.checkpoint();
-      energy_ = energy;
-      next_check_ = body.steps() + options_.check_interval;
+  /// Takes over a state that another integrator, or none, has advanced so far.
+  template <class Parts>
+  void begin(Parts& parts) {
+    parts.watched_energy = [](Parts& p) { return total_energy_of(p); };
+    auto& own = parts.state.integrator;
+    bool const resumed = own.active && parts.integrator == nullptr;
+    if (own.active && (parts.integrator == this || resumed)) {
+      parts.integrator = this;
       return;
+    }
+    parts.integrator = this;
+    parts.has_checkpoint = false;
+    own = IntegratorState{.active = true};
+    own.next_check = own.next_refresh = own.next_watch = parts.state.steps;
+  }
+
+  /// A look at how much the elements are distorted: where that has changed, the stable step has too.
+  template <class Parts>
+  void watch(Parts& parts) {
+    auto& own = parts.state.integrator;
+    own.next_watch = parts.state.steps + options_.watch_interval;
+    if (options_.step > 0) return;
+    double const distortion = largest_distortion(parts);
+    if (!(std::abs(distortion - own.distortion) <= 0.1 * (1 + own.distortion)))
+      own.next_refresh = parts.state.steps;
+  }
+
+  template <class Parts>
+  void refresh(Parts& parts) {
+    auto& own = parts.state.integrator;
+    own.next_refresh = parts.state.steps + options_.refresh_interval;
+    if (options_.step == 0) own.distortion = largest_distortion(parts);
+    double const step =
+        (options_.step > 0 ? options_.step : options_.safety * stable_step_of(parts)) / own.slower;
+    if (step == own.step) return;
+    // Leapfrog's energy depends on the step.
+    double const change = (own.step * own.step - step * step) * acceleration_term(parts);
+    own.first_energy += change;
+    own.last_energy += change;
+    own.step = step;
+  }
+
+  /// The energy that time integration keeps, J: with the kinetic energy v₋·M·v₊/2 of the half steps around the
+  /// present time, v∓ = v ∓ Δt/2 a, and without what is booked.
+  template <class Parts>
+  static double energy_of(Parts& parts) {
+    double const step = parts.state.integrator.step;
+    return total_energy_of(parts) - step * step * acceleration_term(parts) - booked_energy(parts);
+  }
+
+  /// Whether the state is good; if not, it is rolled back. Keeps a good one.
+  template <class Parts>
+  bool check(Parts& parts) {
+    auto& state = parts.state;
+    auto& own = state.integrator;
+    double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
+    double const present = strain + kinetic_energy_of(parts);
+    double const energy = energy_of(parts);
+    bool const watched =
+        !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
+    // Comparisons with NaN, before the first check, are false.
+    bool const grew = watched && (energy > own.last_energy + options_.energy_growth * present ||
+                                  energy > own.first_energy + options_.energy_growth *
+                                                                  std::max(own.scale, present));
+    if (std::isfinite(energy) && !grew) {
+      own.scale = std::max(own.scale, present);
+      own.last_energy = energy;
+      if (!std::isfinite(own.first_energy) || !watched) own.first_energy = energy;
+      own.next_check = state.steps + options_.check_interval;
+      keep_checkpoint(parts);
+      return true;
     }
     std::string const what =
         detail::message({"CentralDifference: the body ", grew ? "gained energy" : "went non-finite",
-                         " between steps ", body.checkpoint_step(), " and ", body.steps()});
-    if (!body.restore())
-      throw Error(what, ", and there is no earlier state of this mesh; start from a finite state");
-    if (slower_ >= 8)
-      throw Error(what, ", with an eighth of the step too (", step_, " s); it is now at time ",
-                  body.time(),
+                         " before step ", state.steps});
+    if (!parts.has_checkpoint)
+      throw Error(what,
+                  ", and there is no earlier state to go back to since the mesh, a condition or "
+                  "the state was changed by hand; start from a finite state, with a smaller step");
+    double const slower = own.slower;
+    roll_back(parts);
+    if (slower >= 8)
+      throw Error(what, ", with an eighth of the step too (", own.step, " s); it is now at step ",
+                  state.steps, " and time ", state.time,
                   " s, before that: look at its loads, and at laws that soften or cannot invert");
-    energy_ = energy_of(body);  // loads may have changed since the checkpoint
-    slower_ *= 2;
+    own.slower = 2 * slower;
     ++retries_;
-    next_check_ = body.steps() + options_.check_interval;
-    next_refresh_ = body.steps();
+    own.next_check = state.steps + options_.check_interval;
+    own.next_refresh = own.next_watch = state.steps;
+    return false;
   }
 
   CentralDifferenceOptions options_;
-  double step_ = 0, slower_ = 1, energy_ = 0;
-  long next_check_ = 0, next_refresh_ = 0;
+  double step_ = 0;
   int retries_ = 0;
-  void const* body_ = nullptr;
-  Index checked_nodes_ = -1;
 };
 
 }  // namespace pliant

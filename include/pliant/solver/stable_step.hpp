@@ -3,32 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include <pliant/body/body.hpp>
+#include <pliant/backend/value_at.hpp>
+#include <pliant/body/velocities.hpp>
 
 namespace pliant {
 
 namespace detail {
-
-/// Row sums Σ_j |K_ij| of an element's stiffness, per node and direction.
-template <class Laws>
-struct StiffnessRows {
-  static constexpr bool reads_elements = Laws::reads_elements;
-  Laws groups;
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
-    using F = typename Laws::template formulation<G>;
-    return groups.template apply<G>(
-        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          auto const k = stiffness<F>(law, rest, u);
-          auto rows = std::remove_cvref_t<decltype(u)>::zero();
-          for (int i = 0; i < F::nodes * F::dim; ++i)
-            for (int j = 0; j < F::nodes * F::dim; ++j)
-              rows(i / F::dim, i % F::dim) = rows(i / F::dim, i % F::dim) + abs(k(i, j));
-          return rows;
-        },
-        v...);
-  }
-};
 
 /// An upper bound of the largest |eigenvalue| of a symmetric matrix, within a factor N^(1/8): the
 /// Frobenius norm ‖A⁴‖^(1/4), computed from A scaled to norm one.
@@ -92,19 +72,6 @@ struct ElementSpectra {
   }
 };
 
-/// A number that is not one must not get lost in a maximum.
-PLIANT_HOST_DEVICE double infinite_if_not_finite(double x) {
-  return x <= std::numeric_limits<double>::max() ? x : std::numeric_limits<double>::infinity();
-}
-
-template <class T>
-struct ValueAt {
-  T const* data;
-  PLIANT_HOST_DEVICE double operator()(Index i) const {
-    return infinite_if_not_finite(static_cast<double>(data[i]));
-  }
-};
-
 /// The largest row sum over mass of a free direction.
 template <class T, int Dim>
 struct RowOverMass {
@@ -123,59 +90,54 @@ struct RowOverMass {
 };
 
 /// An upper bound of ω², 1/s².
-template <class TheBody>
-double squared_frequency_bound(TheBody& body) {
-  using T = typename TheBody::scalar;
-  using B = typename TheBody::backend_type;
-  constexpr int dim = TheBody::dim;
-  B const& backend = body.backend();
-  auto& layout = body.layout();
-  typename B::template Array<T> rows(layout.f.size());
+template <class Parts>
+double squared_frequency_bound(Parts& parts) {
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& backend = parts.backend;
+  auto const at = std::as_const(parts).here();
+  if (parts.row_sums.size() != parts.layout.f.size())
+    parts.row_sums = zeros<T>(backend, parts.layout.f.size());
+  NodeField<T, dim> const rows{parts.row_sums.data()};
+  clear_rows(parts, rows);
+  auto const largest_row = [&] {
+    return backend.maximum(
+        parts.layout.nodes,
+        detail::RowOverMass<T, dim>{
+            {parts.row_sums.data()}, parts.layout.mass.data(), parts.layout.held.data()});
+  };
+  // Terms beside the elements have no mass of their own: only their rows bound them.
+  double by_terms = 0;
+  for (auto const* terms : {&parts.pressures, &parts.terms})
+    for (auto const& term : *terms) term->add_row_sums(backend, at, rows);
+  if (!parts.pressures.empty() || !parts.terms.empty()) {
+    parts.layout.interpolation.apply_transpose(backend, rows);
+    by_terms = largest_row();
+  }
+  parts.elements().add_row_sums(backend, at, rows);
   double by_elements = 0;
-  std::as_const(body).for_each_table([&](auto const& table) {
+  parts.for_each_type([&](auto& table, auto&) {
     using Table = std::remove_cvref_t<decltype(table)>;
     if (table.count() == 0) return;
     using Laws = typename Table::Laws;
-    auto const u = std::as_const(body).displacement_field();
-    backend.template accumulate<Table::groups>(
-        table.elements, detail::StiffnessRows<Laws>{table.laws}, NodeField<T, dim>{rows.data()},
-        body.rest_field(), u);
-    typename B::template Array<T> bounds(static_cast<std::size_t>(table.count()));
-    typename B::template Array<double> counters(1);
+    if (table.scratch.size() == 0)
+      table.scratch = zeros<T>(backend, static_cast<std::size_t>(table.count()));
     backend.template visit<Table::groups>(
         table.elements,
-        detail::ElementSpectra<T, Laws>{table.laws, static_cast<T>(body.material().density),
-                                        bounds.data()},
-        counters, body.rest_field(), u);
-    by_elements =
-        std::max(by_elements, backend.maximum(table.count(), detail::ValueAt<T>{bounds.data()}));
+        detail::ElementSpectra<T, Laws>{table.laws, static_cast<T>(parts.material.density),
+                                        table.scratch.data()},
+        parts.no_counters, at.rest, at.u);
+    by_elements = std::max(
+        by_elements, backend.maximum(table.count(), detail::ValueAt<T>{table.scratch.data()}));
   });
-  layout.slaves.hand_to_masters(backend, NodeField<T, dim>{rows.data()});
-  double const by_rows = backend.maximum(
-      layout.nodes,
-      detail::RowOverMass<T, dim>{{rows.data()}, layout.mass.data(), layout.held.data()});
-  double const eigenvalue = std::min(by_elements, by_rows);
+  parts.layout.interpolation.add_transpose(backend, rows);
+  double const eigenvalue = std::min(by_elements + by_terms, largest_row());
   if (!std::isfinite(eigenvalue) || !(eigenvalue > 0))
     throw Error("stable_step: the stiffness of the body is ",
-                eigenvalue > 0 ? "not finite" : "zero", " at time ", body.time(),
+                eigenvalue > 0 ? "not finite" : "zero", " at time ", parts.state.time,
                 " s; an element has collapsed, or every node is held");
   return eigenvalue;
 }
-
-/// Laws see another time step for as long as this lives.
-template <class TheBody>
-class WithStepSize {
- public:
-  WithStepSize(TheBody& body, double step) : body_(body), before_(body.step_size()) {
-    body.set_step_size(step);
-  }
-  WithStepSize(WithStepSize const&) = delete;
-  ~WithStepSize() { body_.set_step_size(before_); }
-
- private:
-  TheBody& body_;
-  double before_;
-};
 
 }  // namespace detail
 
@@ -186,14 +148,14 @@ class WithStepSize {
 /// hanging nodes, whose interpolation weights are not negative. Centred mass damping does not lower
 /// the limit; a dashpot (KelvinVoigt), whose rate lags half a step, does: ω² Δt² + 2 c Δt ≤ 4. Throws
 /// Error when the state is not finite.
-template <class TheBody>
-double stable_step(TheBody& body) {
-  if constexpr (!TheBody::has_internal_variables) {
-    return 2 / std::sqrt(detail::squared_frequency_bound(body));
+template <class Parts>
+double stable_step_of(Parts& parts) {
+  if constexpr (!Parts::has_internal_variables) {
+    return 2 / std::sqrt(detail::squared_frequency_bound(parts));
   } else {
     auto const bound = [&](double step) {  // of laws that see a time step
-      detail::WithStepSize const with(body, step);
-      return detail::squared_frequency_bound(body);
+      WithStepSize<Parts> const with(parts, step);
+      return detail::squared_frequency_bound(parts);
     };
     // At once no branch has relaxed, and no dashpot acts; one of rate c adds 2 c/Δt to Δt/2's stiffness.
     double const at_once = bound(0);
@@ -207,6 +169,11 @@ double stable_step(TheBody& body) {
     }
     return step;
   }
+}
+
+template <class TheBody>
+double stable_step(TheBody& body) {
+  return stable_step_of(body.parts());
 }
 
 }  // namespace pliant

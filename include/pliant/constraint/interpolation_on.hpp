@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
-#include <pliant/constraint/slave.hpp>
+#include <pliant/constraint/interpolation.hpp>
 #include <pliant/math/group_by_key.hpp>
 
 namespace pliant {
@@ -33,31 +33,38 @@ struct ClearRow {
 };
 }  // namespace detail
 
-/// The hanging nodes of a body: compressed rows in both directions, so that values are interpolated
-/// from masters to slaves, and forces handed from slaves to masters, without two writers of a node.
+/// An Interpolation in the memory of a backend: compressed rows in both directions, so that values go
+/// from masters to slaves, and forces from slaves to masters, without two writers of a node.
 template <Backend B>
-class Slaves {
+class InterpolationOn {
   using T = typename B::scalar;
 
  public:
-  Slaves() = default;
-  Slaves(B const& backend, std::vector<Slave> const& slaves)
-      : to_slaves_(backend, rows_by_slave(slaves)), to_masters_(backend, rows_by_master(slaves)) {}
+  InterpolationOn() = default;
+  InterpolationOn(B const& backend, Interpolation const& host)
+      : to_slaves_(backend, rows_by_slave(host.slaves())),
+        to_masters_(backend, rows_by_master(host.slaves())) {}
 
   bool empty() const { return to_slaves_.count == 0; }
 
-  /// Sets a field at the slaves from their masters: v_s = Σ_i T_si v_i, as v_1 + Σ_i T_si (v_i − v_1)
-  /// since weights add up to one: what masters share is not rounded.
+  /// v ← P v: sets slaves from their masters, v_s = Σ_i P_si v_i, as v_1 + Σ_i P_si (v_i − v_1) since
+  /// weights add up to one: what masters share is not rounded.
   template <int C>
-  void interpolate(B const& backend, NodeField<T, C> field) const {
-    if (!empty()) backend.for_each(to_slaves_.count, to_slaves_.template apply<C, false>(field));
+  void apply(B const& backend, NodeField<T, C> field) const {
+    if (!empty()) backend.for_each(to_slaves_.count, to_slaves_.template rows<C, false>(field));
   }
-  /// Adds to a field at the masters what the slaves hold: f_i += Σ_s T_si f_s.
+  /// Adds Pᵀ of what slaves hold to their masters, f_i += Σ_s P_si f_s; slaves keep theirs.
   template <int C>
-  void hand_to_masters(B const& backend, NodeField<T, C> field) const {
-    if (!empty()) backend.for_each(to_masters_.count, to_masters_.template apply<C, true>(field));
+  void add_transpose(B const& backend, NodeField<T, C> field) const {
+    if (!empty()) backend.for_each(to_masters_.count, to_masters_.template rows<C, true>(field));
   }
-  /// Takes away what slaves hold, once it is with their masters.
+  /// f ← Pᵀ f: the same, and slaves hold nothing afterwards.
+  template <int C>
+  void apply_transpose(B const& backend, NodeField<T, C> field) const {
+    add_transpose(backend, field);
+    clear(backend, field);
+  }
+  /// Sets a field to zero at the slaves.
   template <int C>
   void clear(B const& backend, NodeField<T, C> field) const {
     if (!empty())
@@ -81,7 +88,7 @@ class Slaves {
           other(upload(backend, rows.other)),
           weight(upload(backend, rows.weight)) {}
     template <int C, bool Add>
-    detail::WeightedRow<T, C, Add> apply(NodeField<T, C> field) const {
+    detail::WeightedRow<T, C, Add> rows(NodeField<T, C> field) const {
       return {field, node.data(), first.data(), other.data(), weight.data()};
     }
   };

@@ -3,54 +3,8 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/group_laws.hpp>
 
-// The adapters between the element loops of a backend, which speak of group numbers and gathered
-// values, and the physics of a formulation.
+// What quadrature points keep from step to step.
 namespace pliant {
-
-template <class Laws, Geometry How = Geometry::isoparametric>
-struct ForceKernel {
-  static constexpr bool reads_elements = Laws::reads_elements, light = Laws::light;
-  Laws groups;
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
-    return groups.template apply<G>(
-        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          return force<typename Laws::template formulation<G>, How>(law, rest, u);
-        },
-        v...);
-  }
-};
-
-/// Adds factor · ∂F/∂u · du.
-template <class T, class Laws, Geometry How = Geometry::isoparametric>
-struct TangentKernel {
-  static constexpr bool reads_elements = Laws::reads_elements;
-  Laws groups;
-  T factor;
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
-    return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u, auto const& du) PLIANT_INLINE {
-          return factor *
-                 tangent_product<typename Laws::template formulation<G>, How>(law, rest, u, du);
-        },
-        v...);
-  }
-};
-
-template <class Laws, Geometry How = Geometry::isoparametric>
-struct EnergyKernel {
-  static constexpr bool reads_elements = Laws::reads_elements;
-  Laws groups;
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
-    return groups.template apply<G>(
-        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          return energy<typename Laws::template formulation<G>, How>(law, rest, u);
-        },
-        v...);
-  }
-};
 
 /// Calls visit(q, H) at each quadrature point of an element.
 template <class F, class S, class Visit>

@@ -1,16 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <pliant/config.hpp>
 
 namespace pliant {
-
-class Hierarchy;
 
 /// What adaptation did to a body's energy. Switching laws and refining are not physics: whatever
 /// they add or take is written down.
@@ -25,24 +23,33 @@ struct LedgerEntry {
 };
 
 /// The largest mesh that refinement may make.
-struct Capacity {
+struct MeshLimits {
   std::size_t nodes = std::numeric_limits<Index>::max();
   std::size_t elements = std::numeric_limits<Index>::max();
 };
 
-/// What a body remembers of its adaptation beyond the present mesh.
-template <std::size_t Dim>
-struct History {
-  /// Per element type, in the order of the mesh: sums of the layouts that are gone.
-  struct Totals {
-    std::vector<double> counters;  // CounterLayout
-  };
+/// When an Adaptation last looked at a body.
+struct LastLook {
+  std::uint64_t adaptation;  // which: see Adaptation
+  std::int64_t step;
+};
 
-  std::shared_ptr<Hierarchy const> tree;  // null before the first refinement
-  Capacity capacity;
+/// What adaptation has done to a body beyond the present mesh.
+template <std::size_t Dim>
+struct AdaptationRecord {
   std::vector<LedgerEntry<Dim>> refinements;
-  std::vector<Totals> totals;
-  long born = 0;  // the step at which the present layout was made
+  /// Per element type, in the order of the mesh: counters (CounterLayout) of the meshes that are gone.
+  std::vector<std::vector<double>> totals;
+  std::int64_t born = 0;  // the step at which the present mesh was made
+  std::vector<LastLook> looks;
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("refinements", r.refinements...);
+    visit("totals of earlier meshes", r.totals...);
+    visit("birth of the mesh", r.born...);
+    visit("looks of adaptations", r.looks...);
+  }
 };
 
 }  // namespace pliant

@@ -1,0 +1,191 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <pliant/backend/dispatch.hpp>
+#include <pliant/body/checkpoint.hpp>
+#include <pliant/body/groups.hpp>
+#include <pliant/body/ledger.hpp>
+#include <pliant/body/set_state.hpp>
+
+// Another topology for a body: every field goes over by one Transfer.
+namespace pliant {
+
+namespace detail {
+
+/// How many elements of one type (its place among the mesh's) there are.
+template <Element... Es>
+std::size_t element_count(Mesh<Es...> const& mesh, std::size_t type) {
+  std::size_t const counts[] = {mesh.template elements<Es>().size()...};
+  return counts[type];
+}
+
+/// Where a point of a child lies on its parent's cell; the fourth child of a triangle is turned by half a
+/// turn.
+template <class Cell>
+Vector<double, 2> on_parent(Vector<double, 2> const& xi, int child) {
+  if (child < Cell::corners) return 0.5 * (Cell::corner(child) + xi);
+  Vector<double, 2> const middle{{{0.5}, {0.5}}};
+  return middle - 0.5 * xi;
+}
+
+/// The internal variables of the elements of one type, (elements, variables) by the user's number: those of the
+/// nearest point of their ancestors. `tags`: the groups of the new elements.
+template <class Table>
+std::vector<double> carried_internal_variables(std::vector<double> const& rows,
+                                               std::vector<Tag> const& tags,
+                                               std::vector<Transfer<2>::Origin> const& origins) {
+  constexpr int width = Table::Laws::internal_variable_count;
+  std::vector<double> carried(std::size_t{width} * origins.size());
+  for (std::size_t e = 0; width > 0 && e < origins.size(); ++e) {
+    auto const fill = [&]<int G>(GroupNumber<G>) {
+      using F = typename Table::template formulation<G>;
+      if constexpr (internal_variables_of<F> > 0) {
+        using Cell = typename F::element::cell;
+        constexpr auto rule = F::quadrature::template rule<Cell>();
+        constexpr int size = internal_variables_of<F> / F::points;
+        for (int q = 0; q < F::points; ++q) {
+          Vector<double, 2> at{{{rule.points[q][0]}, {rule.points[q][1]}}};
+          if (origins[e].child >= 0) at = on_parent<Cell>(at, origins[e].child);
+          int nearest = 0;
+          double least = std::numeric_limits<double>::infinity();
+          for (int p = 0; p < F::points; ++p) {
+            double const apart = std::hypot(rule.points[p][0] - at[0], rule.points[p][1] - at[1]);
+            if (apart < least) {
+              least = apart;
+              nearest = p;
+            }
+          }
+          auto const from = std::size_t{width} * static_cast<std::size_t>(origins[e].element);
+          for (int k = 0; k < size; ++k)
+            carried[std::size_t{width} * e + static_cast<std::size_t>(size * q + k)] =
+                rows[from + static_cast<std::size_t>(size * nearest + k)];
+        }
+      }
+    };
+    dispatch<Table::groups>(tags[e], fill);
+  }
+  return carried;
+}
+
+/// Conditions and pressures on the new mesh.
+template <int Dim>
+Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfer) {
+  for (auto& pressure : prescribed.pressures)
+    pressure.facets = transfer.carry_facets(pressure.facets);
+  for (auto& condition : prescribed.conditions) {
+    if (condition.facets.empty()) continue;
+    condition.facets = transfer.carry_facets(condition.facets);
+    condition.nodes = nodes_of(condition.facets);
+  }
+  return prescribed;
+}
+
+}  // namespace detail
+
+/// Puts a layout of a topology in force, with a state at rest on it whose arrays wait to be filled. What is
+/// recorded, and checkpoints, go.
+template <class Parts>
+void put_in_force(Parts& parts, typename Parts::layout_type layout,
+                  std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
+                  std::shared_ptr<Prescribed<Parts::dim> const> prescribed) {
+  parts.layout = std::move(layout);
+  parts.state.topology = std::move(topology);
+  parts.state.prescribed = std::move(prescribed);
+  parts.recorded.reset();
+  parts.checkpoint.reset();
+  parts.has_checkpoint = false;
+  parts.scratch.reset();
+  parts.row_sums = {};
+  parts.forces_current = false;  // those of the new layout are zero
+  parts.loads_current = false;
+  parts.state.load = {};
+  parts.state.pending_half_kick = 0;
+  make_arrays(parts);
+}
+
+/// Brings all that follows from the state's topology, conditions and groups up to them.
+template <class Parts>
+void follow_state(Parts& parts) {
+  parts.for_each_type([](auto& table, auto&) { table.elements.regroup(); });
+  if (parts.state.load.size() > 0) make_loads(parts);
+  upload_conditions(parts);
+  if (parts.upload_pressures) parts.upload_pressures(parts);
+  renew_terms(parts);
+  make_room_for_forces(parts);
+  set_step_size(parts, std::exchange(parts.state.step_size, 0.0));  // its laws are new
+}
+
+/// Takes all fields over to another topology. give_back(layout, held, v) may change the velocities that the
+/// transfer gives (the user's order), and returns the impulse that held nodes took, N s, which is
+/// returned. Throws Error, with the body as it was, where fields are not finite.
+template <class Parts, class GiveBack>
+Point<Parts::dim> change_topology(
+    Parts& parts, std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
+    Transfer<Parts::dim> const& transfer, GiveBack const& give_back) {
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  synchronize_velocities(parts);
+  auto& state = parts.state;
+  auto const& old = parts.layout;
+  auto u = old.in_user_order(state.u), v = old.in_user_order(state.v);
+  detail::check_field("refine (displacements)", u, old.nodes);
+  detail::check_field("refine (velocities)", v, old.nodes);
+  std::vector<Point<dim>> loads;
+  if (state.load.size() > 0) loads = old.in_user_order(state.load);
+
+  u = transfer.carry_nodes(std::move(u));
+  v = transfer.carry_nodes(std::move(v));
+  std::vector<std::vector<Tag>> tags;
+  std::vector<std::vector<double>> internal_variables;
+  parts.for_each_type([&](auto const& table, auto const& elements) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    std::size_t const type = tags.size();
+    tags.push_back(
+        transfer.carry_elements(user_groups<typename Table::element>(std::as_const(parts)), type));
+    if constexpr (Table::Laws::internal_variable_count > 0)
+      internal_variables.push_back(detail::carried_internal_variables<Table>(
+          table.in_user_order(elements.internal_variables), tags.back(), transfer.origins(type)));
+    else
+      internal_variables.emplace_back();
+  });
+  auto prescribed =
+      std::make_shared<Prescribed<dim> const>(detail::carried(*state.prescribed, transfer));
+
+  typename Parts::layout_type layout(parts.backend, *topology, parts.material, parts.groups);
+  std::vector<DirectionMask> held(topology->mesh.nodes.size(), 0);  // by the user's number
+  for (auto const& condition : prescribed->conditions)
+    for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
+  Point<dim> const taken = give_back(layout, held, v);
+  auto totals = detail::closed_totals(parts);
+
+  // As they are, and not by the body's setters, which stop driven nodes.
+  put_in_force(parts, std::move(layout), std::move(topology), std::move(prescribed));
+  state.record.totals = std::move(totals);
+  state.record.born = state.steps;
+  state.u.upload(parts.layout.padded(u));
+  state.v.upload(parts.layout.padded(v));
+  parts.layout.interpolation.apply(parts.backend, parts.u());
+  parts.layout.interpolation.apply(parts.backend, parts.v());
+  if (!loads.empty()) {
+    loads.resize(u.size(), Point<dim>{});
+    state.load = zeros<T>(parts.backend, parts.layout.rest.size());
+    state.load.upload(parts.layout.padded(loads));
+  }
+  std::size_t type = 0;
+  parts.for_each_type([&](auto& table, auto& elements) {
+    std::vector<Tag> internal(table.user_element.size());
+    for (std::size_t e = 0; e < internal.size(); ++e)
+      internal[e] = tags[type][static_cast<std::size_t>(table.user_element[e])];
+    elements.tags.upload(internal);
+    elements.internal_variables.upload(table.in_internal_order(internal_variables[type++]));
+    elements.statistics = {};
+  });
+  follow_state(parts);
+  state.integrator.next_check = state.integrator.next_refresh = state.steps;
+  return taken;
+}
+
+}  // namespace pliant

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <pliant/body/internal_variables.hpp>
+#include <pliant/constraint/conditions.hpp>
+
+// The groups of a body's elements, by hand.
+namespace pliant {
+
+/// The group of each element of a type, by the user's number.
+template <Element E, class Parts>
+std::vector<Tag> user_groups(Parts const& parts) {
+  std::vector<Tag> tags;
+  parts.for_each_type([&](auto const& table, auto const& elements) {
+    if constexpr (std::same_as<typename std::remove_cvref_t<decltype(table)>::element, E>) {
+      auto const internal = download<Tag>(elements.tags);
+      tags.resize(internal.size());
+      for (std::size_t e = 0; e < tags.size(); ++e)
+        tags[static_cast<std::size_t>(table.user_element[e])] = internal[e];
+    }
+  });
+  return tags;
+}
+
+/// Puts elements of a type into a group, by the users' numbers.
+template <class F, class Parts>
+void assign_group(Parts& parts, std::vector<Index> const& elements) {
+  using E = typename F::element;
+  parts.for_each_type([&](auto& table, auto& state) {
+    using Table = std::remove_reference_t<decltype(table)>;
+    if constexpr (std::same_as<typename Table::element, E>) {
+      constexpr int group = Table::template group_of<F>;
+      static_assert(group < Table::groups, "assign<F>: this body has no Group<F>");
+      std::vector<Tag> user = user_groups<E>(parts);
+      for (Index e : elements) {
+        if (e < 0 || e >= table.count())
+          throw Error("body.assign: there is no ", E::name(), " element ", e,
+                      "; they are numbered 0 to ", table.count() - 1);
+        user[static_cast<std::size_t>(e)] = static_cast<Tag>(group);
+      }
+      std::vector<Tag> internal(user.size());
+      for (std::size_t e = 0; e < user.size(); ++e)
+        internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
+      auto const old = download<Tag>(state.tags);
+      if (internal == old) return;
+      change_by_hand(parts, [&] {
+        if (auto& statistics = state.statistics;
+            statistics.open || parts.state.steps > parts.state.record.born) {
+          if (!statistics.open)
+            statistics.start(parts.backend, table.count(), parts.state.record.born);
+          statistics.enter(old, internal, parts.state.steps);
+        }
+        auto const before = upload(parts.backend, old);
+        state.tags.upload(internal);
+        table.elements.regroup();
+        if constexpr (Table::Laws::internal_variable_count > 0)
+          parts.backend.template visit<Table::groups>(
+              table.elements,
+              CarryInternalVariables<typename Parts::T, typename Table::Laws>{table.laws,
+                                                                              before.data()},
+              parts.no_counters, parts.rest(), std::as_const(parts).u());
+      });
+    }
+  });
+}
+
+namespace detail {
+
+/// What laws read per element, for the elements of one type: (elements, values), by the user's number.
+template <Element E, class... Fs>
+std::vector<double> element_values_of(std::tuple<Group<Fs>...> const& groups,
+                                      Elastic const& material, std::size_t count) {
+  std::vector<std::vector<double>> columns;  // by value
+  auto const take = [&]<class F>(Group<F> const& group) {
+    if constexpr (std::same_as<typename F::element, E> && element_values<F> > 0) {
+      if (group.values.size() != count && group.values.size() != 1)
+        throw Error("body: a group's law reads ", element_values<F>,
+                    " values per element; give values for 1 or for all ", count, " ", E::name(),
+                    " elements, not for ", group.values.size());
+      for (std::size_t k = 0; k < element_values<F>; ++k) {
+        columns.emplace_back(count);
+        for (std::size_t e = 0; e < count; ++e) {
+          double const x = group.values[group.values.size() == 1 ? 0 : e][k];
+          if (!std::isfinite(x))
+            throw Error("body: value ", k, " of ", E::name(), " element ", e,
+                        " is not finite; mend the group's values");
+          columns.back()[e] = x;
+        }
+      }
+      auto const law = group.law_for(material);
+      for (std::size_t e = 0; e < group.values.size(); ++e) {
+        Vector<double, element_values<F>> row;
+        for (int k = 0; k < element_values<F>; ++k)
+          row[k] = group.values[e][static_cast<std::size_t>(k)];
+        detail::check_law(law.at(row), {"the law of ", E::name(), " element ", e});
+      }
+    }
+  };
+  std::apply([&](auto const&... group) { (take(group), ...); }, groups);
+  std::vector<double> values;
+  for (std::size_t e = 0; e < count; ++e)
+    for (auto const& column : columns) values.push_back(column[e]);
+  return values;
+}
+
+}  // namespace detail
+}  // namespace pliant

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace pliant {
+
+/// What an explicit integrator keeps from call to call. It stands in the body's state, so that a run that
+/// is rolled back or resumed goes on as it would have.
+struct IntegratorState {
+  bool active = false;            // an integrator has taken this state over
+  double step = 0;                // s
+  double slower = 1;              // the step is this often smaller than the stable one asks
+  double distortion = 0;          // the largest when the step was chosen
+  std::int64_t next_check = 0;    // steps
+  std::int64_t next_refresh = 0;  // steps
+  std::int64_t next_watch = 0;    // steps
+  /// Total energies less what was booked, J: at the start, and at the last check.
+  double first_energy = std::numeric_limits<double>::quiet_NaN();
+  double last_energy = std::numeric_limits<double>::quiet_NaN();
+  double scale = 0;  // the largest of strain and kinetic energy so far, J
+};
+
+}  // namespace pliant

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <pliant/body/point_visitors.hpp>
+#include <pliant/force/forces.hpp>
+
+// What quadrature points keep from step to step: their step size, committing and equilibrating them.
+namespace pliant {
+
+/// Laws with internal variables see time steps of this size, s, since they were committed.
+template <class Parts>
+void set_step_size(Parts& parts, double step) {
+  if (!Parts::has_internal_variables || step == parts.state.step_size) return;
+  parts.state.step_size = step;
+  parts.for_each_type([&](auto& table, auto&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    auto const prepare = [&]<class F>(F const*, auto& law) {
+      if constexpr (internal_variables_of<F> > 0)
+        law = prepared<F>(law_cast<typename Parts::T>(parts.template law_of<F>()), step);
+    };
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      (prepare(static_cast<typename Table::template formulation<G> const*>(nullptr),
+               std::get<G>(table.laws.laws)),
+       ...);
+    }(std::make_integer_sequence<int, Table::groups>());
+  });
+  forget_forces(parts);
+  ++parts.revision;
+}
+
+/// Laws see another time step for as long as this lives.
+template <class Parts>
+class WithStepSize {
+ public:
+  WithStepSize(Parts& parts, double step) : parts_(parts), before_(parts.state.step_size) {
+    set_step_size(parts, step);
+  }
+  WithStepSize(WithStepSize const&) = delete;
+  ~WithStepSize() { set_step_size(parts_, before_); }
+
+ private:
+  Parts& parts_;
+  double before_;
+};
+
+/// Brings internal variables up to displacements u.
+template <class Parts>
+void commit_at(Parts& parts, typename Parts::ConstField u) {
+  parts.for_each_type([&](auto& table, auto&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    if constexpr (Table::Laws::internal_variable_count > 0)
+      parts.backend.template visit<Table::groups>(
+          table.elements, CommitVisitor<typename Parts::T, typename Table::Laws>{table.laws},
+          parts.no_counters, parts.rest(), u);
+  });
+}
+
+/// Carries the internal variables of elements that were put into other groups by hand: `before` has their
+/// groups, for each element type. Null: all points come to rest where they are.
+template <class Parts>
+void carry_points(Parts& parts, std::vector<Tag const*> const& before) {
+  std::size_t which = 0;
+  parts.for_each_type([&](auto& table, auto&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    Tag const* const tags = before[which++];
+    if constexpr (Table::Laws::internal_variable_count > 0)
+      parts.backend.template visit<Table::groups>(
+          table.elements,
+          CarryInternalVariables<typename Parts::T, typename Table::Laws>{table.laws, tags},
+          parts.no_counters, parts.rest(), std::as_const(parts).u());
+  });
+}
+
+}  // namespace pliant

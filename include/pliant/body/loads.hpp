@@ -1,0 +1,76 @@
+#pragma once
+
+#include <pliant/body/parts.hpp>
+
+// Gravity, damping and nodal loads of a body.
+namespace pliant {
+
+namespace detail {
+/// Sets one row of the loads; what that adds to the potential energy, −Δload·u, is summed where it is.
+template <class T, int Dim>
+struct SetLoad {
+  NodeField<T, Dim> load;
+  NodeField<T const, Dim> u;
+  Index node;
+  Vector<T, Dim> force;
+  double* work;
+
+  PLIANT_HOST_DEVICE void operator()(Index) const {
+    double added = 0;
+    for (int k = 0; k < Dim; ++k)
+      added -= (static_cast<double>(force[k]) - static_cast<double>(load(node, k))) *
+               static_cast<double>(u(node, k));
+    load.set(node, force);
+    *work += added;
+  }
+};
+}  // namespace detail
+
+/// What pulls at nodes besides the force terms. Hands loads of slaves to their masters first, where that was
+/// not done yet; nothing waits.
+template <class Parts>
+ExternalForces<typename Parts::T, Parts::dim> external_forces(Parts& parts) {
+  using T = typename Parts::T;
+  auto& state = parts.state;
+  auto& layout = parts.layout;
+  ExternalForces<T, Parts::dim> external;
+  for (int k = 0; k < Parts::dim; ++k)
+    external.gravity[k] = static_cast<T>(state.gravity[static_cast<std::size_t>(k)]);
+  external.damping = static_cast<T>(state.damping);
+  external.load = nullptr;
+  if (state.load.size() == 0) return external;
+  external.load = layout.load.size() > 0 ? layout.load.data() : state.load.data();
+  if (!parts.loads_current && layout.load.size() > 0) {
+    detail::CopyMember<typename Parts::backend_type>{parts.backend}("", state.load, layout.load);
+    layout.interpolation.apply_transpose(parts.backend,
+                                         NodeField<T, Parts::dim>{layout.load.data()});
+  }
+  parts.loads_current = true;
+  return external;
+}
+
+/// Gives the body an array of loads, all zero, where it has none.
+template <class Parts>
+void make_loads(Parts& parts) {
+  using T = typename Parts::T;
+  if (parts.state.load.size() == 0) {
+    parts.state.load = zeros<T>(parts.backend, parts.layout.rest.size());
+    ++parts.revision;
+  }
+  if (!parts.layout.interpolation.empty() && parts.layout.load.size() == 0) {
+    parts.layout.load = zeros<T>(parts.backend, parts.layout.rest.size());
+    ++parts.revision;
+  }
+  parts.loads_current = false;
+}
+
+/// −(gravity + loads)·u, J.
+template <class Parts>
+double potential_energy_of(Parts& parts) {
+  return parts.backend.sum(
+      parts.layout.nodes,
+      PotentialEnergy<typename Parts::T, Parts::dim>{
+          std::as_const(parts).u(), parts.layout.mass.data(), external_forces(parts)});
+}
+
+}  // namespace pliant

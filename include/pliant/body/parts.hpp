@@ -1,0 +1,113 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <pliant/body/layout.hpp>
+#include <pliant/body/state.hpp>
+#include <pliant/body/timers.hpp>
+#include <pliant/constraint/driven_nodes.hpp>
+#include <pliant/force/element_groups.hpp>
+#include <pliant/force/force_term.hpp>
+#include <pliant/topology/topology_change.hpp>
+
+namespace pliant {
+
+/// What a body is made of, for integrators, solvers and adaptation. Plain data: each function on it stands
+/// with its purpose (force/, constraint/, solver/, adaptation/).
+template <Backend B, class M, class... Fs>
+struct Parts {
+  static constexpr int dim = M::dim;
+  /// Whether a law has internal variables: see LawWithInternalVariables.
+  static constexpr bool has_internal_variables = ((internal_variables_of<Fs> > 0) || ...);
+  using T = typename B::scalar;
+  using backend_type = B;
+  using mesh_type = M;
+  using layout_type = Layout<B, M, Fs...>;
+  using state_type = State<B, M, Fs...>;
+  using Field = NodeField<T, dim>;
+  using ConstField = NodeField<T const, dim>;
+  using Terms = std::vector<std::unique_ptr<AnyForceTerm<B, dim>>>;
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+  B backend;
+  Elastic material;
+  std::tuple<Group<Fs>...> groups;
+  MeshLimits limits{};
+  std::uint64_t fingerprint = 0;  // of the first mesh, the material and the laws
+
+  state_type state{};
+  layout_type layout;
+
+  Terms pressures{};  // of state.prescribed
+  /// Makes them; set once there is a pressure, so that other bodies do not compile it.
+  void (*upload_pressures)(Parts&) = nullptr;
+  Terms terms{};  // the user's own
+  /// Makes one, from the internal numbers of nodes by the user's.
+  using MakeTerm = std::function<std::unique_ptr<AnyForceTerm<B, dim>>(
+      B const&, std::vector<Index> const& internal)>;
+  std::vector<MakeTerm> term_makers{};
+  std::vector<DrivenNodes<B, dim>> driven{};
+  std::map<std::string, Motion<dim>> motions{};  // all that were ever given, by name
+  std::vector<std::function<void(TopologyChange<M> const&)>> listeners{};
+
+  bool forces_current = false;  // while they are not, the nodes' rows of layout.f are zero
+  bool loads_current = false;   // whether layout.load has state.load, those of slaves handed on
+  long revision = 0;            // changes whenever recorded kernels would no longer be right
+  std::optional<state_type> checkpoint{};
+  bool has_checkpoint = false;  // of the present mesh, with no change by hand since
+  /// The total energy, J; set by an integrator that watches it.
+  double (*watched_energy)(Parts&) = nullptr;
+  void const* integrator = nullptr;  // the one that state.integrator belongs to; null: any
+  struct Recorded {
+    typename B::Recording recording;
+    double dt;
+    long revision;
+  };
+  std::optional<Recorded> recorded{};
+  struct Scratch {
+    Array<T> u, du, f;
+  };
+  std::optional<Scratch> scratch{};
+  Array<T> row_sums{};  // (nodes, 4) and scratch rows, of the stable step
+  mutable Array<double> no_counters{};
+  AdaptationTimers<B> timers{};
+
+  Field u() { return {state.u.data()}; }
+  Field v() { return {state.v.data()}; }
+  Field f() { return {layout.f.data()}; }
+  ConstField u() const { return {state.u.data()}; }
+  ConstField v() const { return {state.v.data()}; }
+  ConstField rest() const { return {layout.rest.data()}; }
+  /// Where forces are asked: at displacements, of this body or another's arrays.
+  Placement<T, dim> at(ConstField displacements) const { return {rest(), displacements}; }
+  Placement<T, dim> here() const { return at(u()); }
+  ElementGroups<layout_type> elements() const { return ElementGroups<layout_type>(layout); }
+
+  /// visit(table, element state) for each element type.
+  template <class Visit>
+  void for_each_type(Visit const& visit) {
+    for_each(visit, layout.tables, state.elements);
+  }
+  template <class Visit>
+  void for_each_type(Visit const& visit) const {
+    for_each(visit, layout.tables, state.elements);
+  }
+  template <class F>
+  auto law_of() const {
+    return std::get<Group<F>>(groups).law_for(material);
+  }
+
+ private:
+  template <class Visit, class Tables, class States>
+  static void for_each(Visit const& visit, Tables& tables, States& states) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (visit(std::get<I>(tables), std::get<I>(states)), ...);
+    }(std::make_index_sequence<std::tuple_size_v<std::remove_cvref_t<Tables>>>());
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <pliant/body/check_field.hpp>
+#include <pliant/constraint/conditions.hpp>
+
+// What a user sets of a body's state.
+namespace pliant {
+
+/// The arrays of a state that is at rest, for the present topology, and the tags of its elements.
+template <class Parts>
+void make_arrays(Parts& parts) {
+  auto& state = parts.state;
+  state.u = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
+  state.v = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
+  state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
+  parts.no_counters = zeros<double>(parts.backend, 1);
+  parts.for_each_type([&](auto& table, auto& elements) {
+    using Table = std::remove_reference_t<decltype(table)>;
+    elements.tags = table.elements.take_tags();
+    elements.internal_variables =
+        zeros<typename Parts::T>(parts.backend, static_cast<std::size_t>(table.count()) *
+                                                    Table::Laws::internal_variable_count);
+    if constexpr (Table::Laws::reads_elements)
+      table.laws.data = {table.values.data(), elements.internal_variables.data(), table.count()};
+  });
+}
+
+namespace detail {
+/// Throws Error where a number that was handed in is not finite, in the body's precision too.
+template <class T>
+void check_number(char const* what, double value) {
+  if (!std::isfinite(static_cast<T>(value)))
+    throw Error(what, ": ", value,
+                std::isfinite(value) ? " is too large for single precision" : " is not finite");
+}
+template <class T, std::size_t Dim>
+Vector<T, int{Dim}> vector_of(std::array<double, Dim> const& x) {
+  Vector<T, int{Dim}> v;
+  for (std::size_t k = 0; k < Dim; ++k) v[static_cast<int>(k)] = static_cast<T>(x[k]);
+  return v;
+}
+}  // namespace detail
+
+/// Runs a change of loads; what it adds to the potential energy is booked as their work.
+template <class Parts, class Change>
+void change_loads(Parts& parts, Change const& change) {
+  synchronize_velocities(parts);
+  double const before = potential_energy_of(parts);
+  change();
+  ++parts.revision;
+  double const added = potential_energy_of(parts) - before;
+  if (!std::isfinite(added)) return;
+  auto work = download<double>(parts.state.work);
+  work[static_cast<std::size_t>(Work::changed_loads)] += added;
+  parts.state.work.upload(work);
+}
+
+template <class Parts>
+void set_gravity(Parts& parts, Point<Parts::dim> const& g) {
+  for (double x : g) detail::check_number<typename Parts::T>("body.set_gravity", x);
+  change_loads(parts, [&] { parts.state.gravity = g; });
+}
+
+template <class Parts>
+void set_damping(Parts& parts, double per_mass) {
+  if (!(per_mass >= 0)) throw Error("body.set_damping: ", per_mass, " 1/s; give 0 or more");
+  detail::check_number<typename Parts::T>("body.set_damping", per_mass);
+  synchronize_velocities(parts);
+  parts.state.damping = per_mass;
+  ++parts.revision;
+}
+
+template <class Parts>
+void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
+  using T = typename Parts::T;
+  if (node < 0 || node >= parts.layout.nodes)
+    throw Error("body.set_load: there is no node ", node, "; nodes are numbered 0 to ",
+                parts.layout.nodes - 1);
+  for (double x : force) detail::check_number<T>("body.set_load (a force)", x);
+  synchronize_velocities(parts);
+  make_loads(parts);
+  parts.backend.for_each(1, detail::SetLoad<T, Parts::dim>{
+                                {parts.state.load.data()},
+                                std::as_const(parts).u(),
+                                parts.layout.internal_of(node),
+                                detail::vector_of<T>(force),
+                                parts.state.work.data() + static_cast<int>(Work::changed_loads)});
+}
+
+template <class Parts>
+void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
+  detail::check_field<typename Parts::T>("body.set_loads", forces, parts.layout.nodes);
+  change_loads(parts, [&] {
+    make_loads(parts);
+    parts.state.load.upload(parts.layout.padded(forces));
+  });
+}
+
+template <class Parts>
+void set_displacements(Parts& parts, std::vector<Point<Parts::dim>> const& u) {
+  detail::check_field<typename Parts::T>("body.set_displacements", u, parts.layout.nodes);
+  change_by_hand(parts, [&] {
+    parts.state.u.upload(parts.layout.padded(u));
+    parts.layout.interpolation.apply(parts.backend, parts.u());
+  });
+}
+
+template <class Parts>
+void set_velocities(Parts& parts, std::vector<Point<Parts::dim>> const& v) {
+  detail::check_field<typename Parts::T>("body.set_velocities", v, parts.layout.nodes);
+  change_by_hand(parts, [&] {
+    parts.state.v.upload(parts.layout.padded(v));
+    stop_held(parts);
+  });
+}
+
+/// Adds a force term of the user's own: see Body::add.
+template <class Parts>
+void add_term(Parts& parts, typename Parts::MakeTerm make) {
+  auto term = make(parts.backend, parts.layout.internal_node);
+  if (!term) throw Error("body.add: there is no force term; make one");
+  change_by_hand(parts, [&] {
+    parts.terms.push_back(std::move(term));
+    parts.term_makers.push_back(std::move(make));
+    make_room_for_forces(parts);
+  });
+}
+
+/// Makes the user's force terms anew, after the numbering changed.
+template <class Parts>
+void renew_terms(Parts& parts) {
+  parts.terms.clear();
+  for (auto const& make : parts.term_makers)
+    parts.terms.push_back(make(parts.backend, parts.layout.internal_node));
+}
+
+}  // namespace pliant

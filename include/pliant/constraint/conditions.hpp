@@ -1,0 +1,247 @@
+#pragma once
+
+#include <pliant/body/velocities.hpp>
+#include <pliant/force/pressure.hpp>
+
+// What a body's conditions make of its nodes, in the backend's memory.
+namespace pliant {
+
+/// v = 0 in the directions that are held.
+template <class Parts>
+void stop_held(Parts& parts) {
+  parts.backend.for_each(parts.layout.nodes, StopHeld<typename Parts::T, Parts::dim>{
+                                                 parts.v(), parts.layout.held.data()});
+  parts.layout.interpolation.apply(parts.backend, parts.v());
+}
+
+/// Asks all motions for a time, s, reached over `over` seconds. Throws Error before anything changes.
+template <class Parts>
+void ask_motions(Parts& parts, double time, double over) {
+  for (auto& driven : parts.driven) driven.ask(time, over);
+}
+/// Puts driven nodes where their motions were asked for.
+template <class Parts>
+void place_driven_nodes(Parts& parts) {
+  if (parts.driven.empty()) return;
+  for (auto const& driven : parts.driven) driven.place(parts.backend, parts.u(), parts.v());
+  parts.layout.interpolation.apply(parts.backend, parts.u());
+}
+
+/// Which directions of each node are held or driven, by internal numbers.
+template <class Parts>
+std::vector<DirectionMask> held_directions(Parts const& parts) {
+  std::vector<DirectionMask> held(static_cast<std::size_t>(parts.layout.nodes), 0);
+  for (auto const& condition : parts.state.prescribed->conditions)
+    for (Index node : condition.nodes)
+      held[static_cast<std::size_t>(parts.layout.internal_of(node))] |= condition.directions;
+  return held;
+}
+
+/// Brings masks and lists of driven nodes up to state.prescribed.
+template <class Parts>
+void upload_conditions(Parts& parts) {
+  parts.driven.clear();
+  for (auto const& condition : parts.state.prescribed->conditions) {
+    if (!condition.motion) continue;
+    std::vector<Index> internal;
+    for (Index node : condition.nodes) internal.push_back(parts.layout.internal_of(node));
+    parts.driven.emplace_back(parts.backend, condition, internal, parts.state.topology->mesh.nodes);
+  }
+  parts.layout.held.upload(held_directions(parts));
+  ++parts.revision;
+}
+
+/// Makes the force terms of state.prescribed's pressures.
+template <class Parts>
+void upload_pressures(Parts& parts) {
+  parts.pressures.clear();
+  for (auto const& pressure : parts.state.prescribed->pressures) {
+    if (pressure.pascals == 0) continue;
+    auto internal = pressure.facets;
+    for (auto& facet : internal)
+      for (Index& node : facet) node = parts.layout.internal_of(node);
+    add_pressure_terms<typename Parts::mesh_type>(parts.backend, internal, pressure.pascals,
+                                                  parts.layout.nodes, parts.pressures);
+  }
+}
+
+/// Runs a change of the state by a user's hand: `change()`. Velocities are brought up to the present time
+/// first. Once an integrator watches the energy, what the
+/// change adds to it is booked; forces are evaluated anew, and roll-back does not cross it.
+template <class Parts, class Change>
+void change_by_hand(Parts& parts, Change const& change) {
+  synchronize_velocities(parts);
+  double const before = parts.watched_energy ? parts.watched_energy(parts) : 0;
+  change();
+  forget_forces(parts);
+  parts.has_checkpoint = false;
+  if (!parts.watched_energy) return;
+  double const added = parts.watched_energy(parts) - before;
+  if (std::isfinite(added))
+    parts.state.energy_by_hand += added;
+  else
+    parts.state.integrator.active = false;  // there is no energy to compare with
+}
+
+namespace detail {
+
+/// Throws Error where a condition names nodes that it cannot hold or drive.
+template <class Parts>
+void check_condition(Parts const& parts, Condition<Parts::dim> const& condition) {
+  Index const count = parts.layout.nodes;
+  if (condition.nodes.empty())
+    throw Error("body: a condition names no node; give the facets or nodes that it is to act on");
+  if (condition.directions == 0 || condition.directions > all_directions<Parts::dim>)
+    throw Error("body: a condition has the directions ", int{condition.directions},
+                "; set bit k for direction k, at least one of ", Parts::dim);
+  for (Index node : condition.nodes) {
+    if (node < 0 || node >= count)
+      throw Error("body: a condition names node ", node, ", but nodes are numbered 0 to ",
+                  count - 1);
+    if (parts.state.topology->interpolation.row_of(node) != nullptr)
+      throw Error("body: node ", node,
+                  " hangs between others, whom it follows; hold or drive these instead");
+  }
+  std::vector<DirectionMask> held(static_cast<std::size_t>(count), 0), driven(held);
+  for (auto const& other : parts.state.prescribed->conditions)
+    for (Index node : other.nodes)
+      (other.motion ? driven : held)[static_cast<std::size_t>(node)] |= other.directions;
+  for (Index node : condition.nodes) {
+    auto const i = static_cast<std::size_t>(node);
+    DirectionMask const others = condition.motion ? held[i] | driven[i] : driven[i];
+    if ((others & condition.directions) != 0)
+      throw Error("body: node ", node, condition.motion ? " is to be driven" : " is to be held",
+                  " in a direction in which another condition ",
+                  (driven[i] & condition.directions) != 0 ? "drives" : "holds",
+                  " it; release that one first, or leave the node or direction out");
+  }
+}
+
+/// Puts another set of conditions in force.
+template <class Parts>
+void prescribe(Parts& parts, Prescribed<Parts::dim> prescribed) {
+  parts.state.prescribed = std::make_shared<Prescribed<Parts::dim> const>(std::move(prescribed));
+}
+
+}  // namespace detail
+
+/// Adds a condition; see Body::hold and Body::drive. Facets stand for the nodes on them.
+template <class Parts>
+Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
+  if (!condition.facets.empty()) condition.nodes = nodes_of(condition.facets);
+  std::sort(condition.nodes.begin(), condition.nodes.end());
+  condition.nodes.erase(std::unique(condition.nodes.begin(), condition.nodes.end()),
+                        condition.nodes.end());
+  detail::check_condition(parts, condition);
+  auto prescribed = *parts.state.prescribed;
+  condition.handle = {prescribed.next_id++};
+  if (condition.motion) {
+    if (condition.name.empty()) condition.name = detail::message({"motion ", condition.handle.id});
+    if (parts.motions.contains(condition.name))
+      throw Error("body.drive: there is a motion called \"", condition.name,
+                  "\" already; give each a name of its own");
+    for (Index node : condition.nodes)
+      (void)detail::position_at<Parts::dim>(
+          condition.motion, parts.state.topology->mesh.nodes[static_cast<std::size_t>(node)], node,
+          parts.state.time);
+    parts.motions.emplace(condition.name, condition.motion);
+  }
+  Handle const handle = condition.handle;
+  prescribed.conditions.push_back(std::move(condition));
+  change_by_hand(parts, [&] {
+    detail::prescribe(parts, std::move(prescribed));
+    upload_conditions(parts);
+    stop_held(parts);
+    ask_motions(parts, parts.state.time, 0);
+    place_driven_nodes(parts);
+  });
+  return handle;
+}
+
+/// Ends a condition or a pressure. Nodes go on with the velocity that they have: none where they were held.
+/// Throws Error for a handle that names none.
+template <class Parts>
+void release(Parts& parts, Handle handle) {
+  auto prescribed = *parts.state.prescribed;
+  auto const same = [&](auto const& p) { return p.handle == handle; };
+  auto const gone = std::erase_if(prescribed.conditions, same);
+  auto const pressed = std::erase_if(prescribed.pressures, same);
+  if (gone + pressed == 0)
+    throw Error("body.release: handle ", handle.id,
+                " names no condition or pressure of this body; it was released before, or is of "
+                "another body");
+  change_by_hand(parts, [&] {
+    detail::prescribe(parts, std::move(prescribed));
+    upload_conditions(parts);
+    if (pressed > 0) {
+      parts.upload_pressures(parts);
+      make_room_for_forces(parts);
+    }
+  });
+}
+
+/// Adds a pressure, or gives one that acts on the same facets another value; see Body::press.
+template <class Parts>
+Handle press(Parts& parts, std::vector<Facet<Parts::dim>> const& facets, double pascals) {
+  using Scalar = typename Parts::T;
+  if (!std::isfinite(static_cast<Scalar>(pascals)))
+    throw Error("body.press: the pressure is not finite");
+  for (auto const& facet : facets)
+    for (Index node : facet)
+      if (node < 0 || node >= parts.layout.nodes)
+        throw Error("body.press: a facet names node ", node, ", but nodes are numbered 0 to ",
+                    parts.layout.nodes - 1);
+  auto prescribed = *parts.state.prescribed;
+  auto const pressed = [&](std::vector<Facet<Parts::dim>> const& as) {
+    return std::ranges::find(prescribed.pressures, as, &Pressure<Parts::dim>::facets);
+  };
+  auto same = pressed(facets);
+  if (same == prescribed.pressures.end()) {
+    auto own = detail::outer_facets(parts.state.topology->mesh, facets);
+    same = pressed(own);
+    if (same == prescribed.pressures.end()) {
+      prescribed.pressures.push_back({{prescribed.next_id++}, std::move(own), 0});
+      same = prescribed.pressures.end() - 1;
+    }
+  }
+  same->pascals = pascals;
+  Handle const handle = same->handle;
+  change_by_hand(parts, [&] {
+    detail::prescribe(parts, std::move(prescribed));
+    parts.upload_pressures = [](Parts& p) { upload_pressures(p); };
+    parts.upload_pressures(parts);
+    make_room_for_forces(parts);
+  });
+  return handle;
+}
+
+/// The forces that a condition exerts on its nodes in its directions, N: what balances internal forces, loads
+/// and gravity there. The inertia of driven nodes (their lumped mass times the motion's acceleration)
+/// is not in them.
+template <class Parts>
+std::vector<Point<Parts::dim>> reactions(Parts& parts, Handle handle) {
+  auto const& conditions = parts.state.prescribed->conditions;
+  auto const found = std::ranges::find(conditions, handle, &Condition<Parts::dim>::handle);
+  if (found == conditions.end())
+    throw Error("body.reactions: handle ", handle.id, " names no condition of this body");
+  evaluate_forces(parts);
+  auto const external = external_forces(parts);
+  auto const f = parts.layout.in_user_order(parts.layout.f);
+  std::vector<Point<Parts::dim>> load;
+  if (external.load != nullptr)
+    load = parts.layout.in_user_order(parts.layout.load.size() > 0 ? parts.layout.load
+                                                                   : parts.state.load);
+  std::vector<Point<Parts::dim>> forces;
+  for (Index node : found->nodes) {
+    auto const i = static_cast<std::size_t>(node);
+    Point<Parts::dim> force{};
+    for (std::size_t k = 0; k < Parts::dim; ++k)
+      if (found->directions >> k & 1)
+        force[k] = -(f[i][k] + parts.layout.mass_list[i] * parts.state.gravity[k] +
+                     (load.empty() ? 0.0 : load[i][k]));
+    forces.push_back(force);
+  }
+  return forces;
+}
+
+}  // namespace pliant

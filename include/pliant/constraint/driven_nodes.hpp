@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/constraint/condition.hpp>
+
+namespace pliant {
+
+namespace detail {
+
+/// Puts the nodes of a list at prescribed displacements and velocities: one for all, or a row for each.
+template <class T, int Dim>
+struct Prescribe {
+  NodeField<T, Dim> u, v;
+  Index const* nodes;
+  DirectionMask directions;
+  Vector<T, Dim> displacement, velocity;
+  T const* rows;  // (listed nodes, 2 Dim): displacement and velocity; null: the same for all
+
+  PLIANT_HOST_DEVICE void operator()(Index n) const {
+    T const* const row = rows + 2 * Dim * static_cast<std::ptrdiff_t>(n);
+    for (int k = 0; k < Dim; ++k)
+      if (directions >> k & 1) {
+        u(nodes[n], k) = rows ? row[k] : displacement[k];
+        v(nodes[n], k) = rows ? row[Dim + k] : velocity[k];
+      }
+  }
+};
+
+template <int Dim>
+Point<Dim> position_at(Motion<Dim> const& motion, Point<Dim> const& place, Index node,
+                       double time) {
+  Point<Dim> const u = motion(place, time);
+  for (double x : u)
+    if (!std::isfinite(x))
+      throw Error("body.drive: the motion of node ", node, " is ", u, " at time ", time,
+                  " s; it must be finite");
+  return u;
+}
+
+}  // namespace detail
+
+/// The nodes that one condition drives, in a backend's memory.
+template <Backend B, int Dim>
+class DrivenNodes {
+  using T = typename B::scalar;
+  using Field = NodeField<T, Dim>;
+
+ public:
+  /// `internal`: the internal numbers of the condition's nodes; `places`: where all nodes rest.
+  DrivenNodes(B const& backend, Condition<Dim> const& condition, std::vector<Index> const& internal,
+              std::vector<Point<Dim>> const& places)
+      : condition_(condition), nodes_(upload(backend, internal)) {
+    if (condition.motion.is_uniform()) return;
+    for (Index node : condition.nodes) places_.push_back(places[static_cast<std::size_t>(node)]);
+    rows_ = zeros<T>(backend, 2 * Dim * internal.size());
+    host_rows_.resize(2 * Dim * internal.size());
+  }
+
+  /// What the motion asks for at a time, reached over `over` seconds. Throws Error where it is not finite,
+  /// before anything changes; place() then puts the nodes there.
+  void ask(double time, double over) {
+    auto const ask_one = [&](Point<Dim> const& place, Index node, auto& displacement,
+                             auto& velocity) {
+      Point<Dim> const to = detail::position_at<Dim>(condition_.motion, place, node, time);
+      Point<Dim> const from =
+          over > 0 ? detail::position_at<Dim>(condition_.motion, place, node, time - over) : to;
+      for (std::size_t k = 0; k < Dim; ++k) {
+        displacement[static_cast<int>(k)] = static_cast<T>(to[k]);
+        velocity[static_cast<int>(k)] = over > 0 ? static_cast<T>((to[k] - from[k]) / over) : T(0);
+      }
+    };
+    if (condition_.nodes.empty()) return;
+    if (condition_.motion.is_uniform()) {
+      ask_one({}, condition_.nodes[0], displacement_, velocity_);
+      return;
+    }
+    for (std::size_t n = 0; n < places_.size(); ++n) {
+      T* const row = host_rows_.data() + 2 * Dim * n;
+      T* const speed = row + Dim;
+      ask_one(places_[n], condition_.nodes[n], row, speed);
+    }
+    rows_.upload(host_rows_);
+  }
+  void place(B const& backend, Field u, Field v) const {
+    backend.for_each(
+        static_cast<Index>(nodes_.size()),
+        detail::Prescribe<T, Dim>{u, v, nodes_.data(), condition_.directions, displacement_,
+                                  velocity_, rows_.size() > 0 ? rows_.data() : nullptr});
+  }
+
+ private:
+  Condition<Dim> condition_;
+  typename B::template Array<Index> nodes_;
+  std::vector<Point<Dim>> places_;  // at rest, of motions that depend on it
+  std::vector<T> host_rows_;
+  typename B::template Array<T> rows_;
+  Vector<T, Dim> displacement_{}, velocity_{};
+};
+
+}  // namespace pliant

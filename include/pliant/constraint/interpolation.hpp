@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <pliant/constraint/slave.hpp>
+
+namespace pliant {
+
+/// The map P from free nodes to all nodes: a free node has its own value, a slave the weighted sum of its
+/// masters'. Compressed rows of the slaves alone, so that a mesh without them costs nothing. On the host,
+/// in any numbering; InterpolationOn has the same in a backend's memory.
+class Interpolation {
+ public:
+  Interpolation() = default;
+  /// Masters must be free nodes (see compose), and slaves ascend.
+  explicit Interpolation(std::vector<Slave> slaves) : slaves_(std::move(slaves)) {}
+
+  std::vector<Slave> const& slaves() const { return slaves_; }
+  bool empty() const { return slaves_.empty(); }
+  /// The row of a slave; null for a free node.
+  Slave const* row_of(Index node) const {
+    auto const found = std::lower_bound(slaves_.begin(), slaves_.end(), node,
+                                        [](Slave const& s, Index n) { return s.node < n; });
+    return found != slaves_.end() && found->node == node ? &*found : nullptr;
+  }
+  /// Calls visit(free node, weight) for each entry of a node's row.
+  template <class Visit>
+  void for_each_master(Index node, Visit const& visit) const {
+    if (empty()) return visit(node, 1.0);
+    Slave const* const slave = row_of(node);
+    if (slave == nullptr) return visit(node, 1.0);
+    for (auto const& [master, weight] : slave->masters) visit(master, weight);
+  }
+
+  /// Sets slaves to their interpolated values: value(node, k) is a reference, k < components.
+  template <class Value>
+  void apply(Value const& value, int components) const {
+    for (auto const& [node, masters] : slaves_)
+      for (int k = 0; k < components; ++k) {
+        double const base = value(masters[0].first, k);  // what masters share is not rounded
+        double sum = base;
+        for (auto const& [master, weight] : masters) sum += weight * (value(master, k) - base);
+        value(node, k) = sum;
+      }
+  }
+  /// Hands what slaves hold to their masters, with the same weights, and sets slaves to zero.
+  template <class Value>
+  void apply_transpose(Value const& value, int components) const {
+    for (auto const& [node, masters] : slaves_)
+      for (int k = 0; k < components; ++k) {
+        double const own = value(node, k);
+        for (auto const& [master, weight] : masters) value(master, k) += weight * own;
+        value(node, k) = 0;
+      }
+  }
+
+ private:
+  std::vector<Slave> slaves_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <pliant/force/element_kernels.hpp>
+#include <pliant/force/force_term.hpp>
+
+namespace pliant {
+
+/// The elements of a layout, each under the law of its group, as a force term.
+template <class Layout>
+class ElementGroups {
+  using T = typename Layout::T;
+  using At = Placement<T, Layout::dim>;
+  using Field = NodeField<T, Layout::dim>;
+  using ConstField = NodeField<T const, Layout::dim>;
+
+ public:
+  explicit ElementGroups(Layout const& layout) : layout_(layout) {}
+
+  Index scratch_nodes() const {
+    Index rows = 0;
+    for_each_table(
+        [&](auto const& table) { rows = std::max(rows, table.elements.scratch_nodes()); });
+    return rows;
+  }
+  bool has_energy() const { return true; }
+
+  template <class B>
+  double energy(B const& backend, At const& at) const {
+    double total = 0;
+    for_each_table([&](auto const& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      table.with_geometry([&](auto geometry) {
+        total += backend.template sum_elements<Table::groups>(
+            table.elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws}, at.rest,
+            at.u);
+      });
+    });
+    return total;
+  }
+  template <class B>
+  void add_force(B const& backend, At const& at, Field f) const {
+    for_each_table([&](auto const& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      table.with_geometry([&](auto geometry) {
+        backend.template accumulate<Table::groups>(
+            table.elements, ForceKernel<typename Table::Laws, geometry.value>{table.laws}, f,
+            at.rest, at.u);
+      });
+    });
+  }
+  template <class B>
+  void add_tangent_product(B const& backend, T factor, At const& at, ConstField du, Field f) const {
+    for_each_table([&](auto const& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      table.with_geometry([&](auto geometry) {
+        backend.template accumulate<Table::groups>(
+            table.elements,
+            TangentKernel<T, typename Table::Laws, geometry.value>{table.laws, factor}, f, at.rest,
+            at.u, du);
+      });
+    });
+  }
+  template <class B>
+  void add_diagonal(B const& backend, At const& at, int column, Field diagonal) const {
+    for_each_table([&](auto const& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      backend.template accumulate<Table::groups>(
+          table.elements, DiagonalKernel<typename Table::Laws>{table.laws, column}, diagonal,
+          at.rest, at.u);
+    });
+  }
+  template <class B>
+  void add_row_sums(B const& backend, At const& at, Field rows) const {
+    for_each_table([&](auto const& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      backend.template accumulate<Table::groups>(
+          table.elements, RowSumKernel<typename Table::Laws>{table.laws}, rows, at.rest, at.u);
+    });
+  }
+
+ private:
+  template <class Visit>
+  void for_each_table(Visit const& visit) const {
+    std::apply([&](auto const&... table) { (visit(table), ...); }, layout_.tables);
+  }
+  Layout const& layout_;
+};
+
+}  // namespace pliant

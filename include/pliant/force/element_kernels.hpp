@@ -1,0 +1,100 @@
+#pragma once
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/body/group_laws.hpp>
+
+// The adapters between the element loops of a backend, which speak of group numbers and gathered
+// values, and the physics of a formulation.
+namespace pliant {
+
+template <class Laws, Geometry How = Geometry::isoparametric>
+struct ForceKernel {
+  static constexpr bool reads_elements = Laws::reads_elements, light = Laws::light;
+  Laws groups;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
+          return force<typename Laws::template formulation<G>, How>(law, rest, u);
+        },
+        v...);
+  }
+};
+
+/// Adds factor · ∂F/∂u · du.
+template <class T, class Laws, Geometry How = Geometry::isoparametric>
+struct TangentKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
+  Laws groups;
+  T factor;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [this](auto const& law, auto const& rest, auto const& u, auto const& du) PLIANT_INLINE {
+          return factor *
+                 tangent_product<typename Laws::template formulation<G>, How>(law, rest, u, du);
+        },
+        v...);
+  }
+};
+
+template <class Laws, Geometry How = Geometry::isoparametric>
+struct EnergyKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
+  Laws groups;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
+          return energy<typename Laws::template formulation<G>, How>(law, rest, u);
+        },
+        v...);
+  }
+};
+
+/// Row sums Σ_j |K_ij| of an element's stiffness, per node and direction.
+template <class Laws>
+struct RowSumKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
+  Laws groups;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    using F = typename Laws::template formulation<G>;
+    return groups.template apply<G>(
+        [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
+          auto const k = stiffness<F>(law, rest, u);
+          auto rows = std::remove_cvref_t<decltype(u)>::zero();
+          for (int i = 0; i < F::nodes * F::dim; ++i)
+            for (int j = 0; j < F::nodes * F::dim; ++j)
+              rows(i / F::dim, i % F::dim) = rows(i / F::dim, i % F::dim) + abs(k(i, j));
+          return rows;
+        },
+        v...);
+  }
+};
+
+/// Column `column` of each node's own block of an element's stiffness.
+template <class Laws>
+struct DiagonalKernel {
+  static constexpr bool reads_elements = Laws::reads_elements;
+  Laws groups;
+  int column;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
+    using F = typename Laws::template formulation<G>;
+    return groups.template apply<G>(
+        [this](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
+          auto blocks = std::remove_cvref_t<decltype(u)>::zero();
+          for (int a = 0; a < F::nodes; ++a) {
+            auto du = std::remove_cvref_t<decltype(u)>::zero();
+            du(a, column) = du(a, column) + 1;
+            auto const df = tangent_product<F>(law, rest, u, du);
+            for (int i = 0; i < F::dim; ++i) blocks(a, i) = -df(a, i);
+          }
+          return blocks;
+        },
+        v...);
+  }
+};
+
+}  // namespace pliant

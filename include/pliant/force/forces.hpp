@@ -1,0 +1,72 @@
+#pragma once
+
+#include <pliant/body/parts.hpp>
+
+// The sum of a body's force terms.
+namespace pliant {
+
+/// visit(term) for the element groups, the pressures and the user's own terms.
+template <class Parts, class Visit>
+void for_each_force_term(Parts const& parts, Visit const& visit) {
+  visit(parts.elements());
+  for (auto const& term : parts.pressures) visit(*term);
+  for (auto const& term : parts.terms) visit(*term);
+}
+
+/// f += all internal forces and those of terms at displacements u, N, those of slaves handed on; the
+/// slaves' own rows are left to be cleared.
+template <class Parts>
+void accumulate_forces(Parts const& parts, typename Parts::ConstField u, typename Parts::Field f) {
+  for_each_force_term(parts,
+                      [&](auto const& term) { term.add_force(parts.backend, parts.at(u), f); });
+  parts.layout.interpolation.add_transpose(parts.backend, f);
+}
+
+/// The energy of all force terms that have one, J.
+template <class Parts>
+double energy_at(Parts const& parts, typename Parts::ConstField u) {
+  double sum = 0;
+  for_each_force_term(parts,
+                      [&](auto const& term) { sum += term.energy(parts.backend, parts.at(u)); });
+  return sum;
+}
+
+/// Sets the rows of all nodes to zero.
+template <class Parts>
+void clear_rows(Parts const& parts, typename Parts::Field field) {
+  parts.backend.for_each(parts.layout.nodes, Clear<typename Parts::T>{field.data});
+}
+
+/// Forces of the present displacements are no longer right.
+template <class Parts>
+void forget_forces(Parts& parts) {
+  if (!parts.forces_current) return;
+  clear_rows(parts, parts.f());
+  parts.forces_current = false;
+}
+
+/// Brings layout.f up to the present displacements.
+template <class Parts>
+void evaluate_forces(Parts& parts) {
+  if (parts.forces_current) return;
+  accumulate_forces(parts, std::as_const(parts).u(), parts.f());
+  parts.forces_current = true;
+}
+
+/// Makes layout.f long enough for the scratch rows of all terms. The forces in it are lost.
+template <class Parts>
+void make_room_for_forces(Parts& parts) {
+  Index scratch = 0;
+  for_each_force_term(parts,
+                      [&](auto const& term) { scratch = std::max(scratch, term.scratch_nodes()); });
+  std::size_t const rows = static_cast<std::size_t>(parts.layout.nodes + scratch);
+  if (parts.layout.f.size() < node_stride * rows)
+    parts.layout.f = zeros<typename Parts::T>(parts.backend, node_stride * rows);
+  else
+    clear_rows(parts, parts.f());
+  parts.forces_current = false;
+  parts.scratch.reset();
+  ++parts.revision;
+}
+
+}  // namespace pliant

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <pliant/constraint/conditions.hpp>
+
+// The steps of central differences (leapfrog, velocity Verlet) on the parts of a body.
+namespace pliant {
+
+/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error where a motion is
+/// not finite, at the end of the last step before that.
+template <class Parts>
+void take_steps(Parts& parts, double dt, int steps) {
+  auto& state = parts.state;
+  // Steps that are not like the others.
+  auto const special = [&] {
+    return state.pending_half_kick != dt / 2 || !parts.driven.empty() || parts.forces_current ||
+           (Parts::has_internal_variables && state.step_size != dt);
+  };
+  for (; steps > 0 && special(); --steps) {
+    ask_motions(parts, state.time + dt, dt);
+    evaluate_forces(parts);
+    commit_at(parts, std::as_const(parts).u());
+    advance(parts, state.pending_half_kick, dt / 2, dt);
+    set_step_size(parts, dt);
+    state.pending_half_kick = dt / 2;
+    state.time += dt;
+    ++state.steps;
+    place_driven_nodes(parts);
+  }
+  if (steps == 0) return;
+  (void)external_forces(parts);  // hands loads on to masters, which is no part of a step
+  if (!parts.recorded || parts.recorded->dt != dt || parts.recorded->revision != parts.revision) {
+    parts.recorded =
+        typename Parts::Recorded{parts.backend.record([&parts, dt] {
+                                   accumulate_forces(parts, std::as_const(parts).u(), parts.f());
+                                   commit_at(parts, std::as_const(parts).u());
+                                   advance(parts, dt / 2, dt / 2, dt);
+                                 }),
+                                 dt, parts.revision};
+  }
+  parts.recorded->recording.replay(steps);
+  state.time += steps * dt;
+  state.steps += steps;
+}
+
+}  // namespace pliant

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <pliant/constraint/interpolation.hpp>
+#include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/hierarchy.hpp>
+
+namespace pliant {
+
+/// The cells of a body at one moment, in the user's order. Never changed: a refinement makes another.
+template <class M>
+struct Topology {
+  M mesh;                                           ///< of the elements that act
+  Interpolation interpolation;                      ///< its hanging nodes
+  std::shared_ptr<Hierarchy const> tree;            ///< null before the first refinement
+  std::vector<std::vector<double>> element_values;  ///< per type: (elements, values) that laws read
+};
+
+}  // namespace pliant
