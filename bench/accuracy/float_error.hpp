@@ -63,7 +63,7 @@ void rows(TheBackend const& backend, char const* law, Group<F> const& group = {}
         error = std::max(error, std::abs(f[i][k] - g[i][k]));
         largest = std::max(largest, std::abs(f[i][k]));
       }
-    double const w = exact.strain_energy(), w_single = single.strain_energy();
+    double const w = strain_energy(exact), w_single = strain_energy(single);
     if (!std::isfinite(w + w_single)) throw Error("float_error: an energy is not finite");
     std::printf("%s,%s,%s,%g,%.3e,%.3e\n", TheBackend::name(), E::name(), law, strain,
                 error / largest, std::abs(w_single - w) / w);

@@ -12,14 +12,14 @@ void time_regroup(benchmark::State& state, B const& backend, int cells) {
   auto& [body, before, after] = made_once([&] {
     auto b = two_laws<E>(backend, cells);
     auto const tags = [&b] {
-      return download<Tag>(b.layout().template table<E>().elements.tags());
+      return download<Tag>(b.parts().layout.template table<E>().elements.tags());
     };
     auto const old_tags = tags();
     exchange_above<E>(ratio_exceeded_by<E>(0.01, b)).now(b);
     auto const new_tags = tags();
     return std::tuple{std::move(b), old_tags, new_tags};
   });
-  auto& elements = body.layout().template table<E>().elements;
+  auto& elements = body.parts().layout.template table<E>().elements;
   bool there = true;
   for (auto _ : state) {
     elements.tags().upload(there ? before : after);

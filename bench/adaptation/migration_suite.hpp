@@ -29,7 +29,7 @@ template <class E, class TheBody>
 double ratio_exceeded_by(double share, TheBody& body) {
   auto const rule = when<Cheaper<E>>(EdgeLengthRatio{}).above(0).template become<Better<E>>();
   auto values = download<typename TheBody::scalar>(
-      pliant::detail::criterion_values(body, body.layout().template table<E>(), rule));
+      pliant::detail::criterion_values(body, body.parts().layout.template table<E>(), rule));
   auto const limit = values.begin() +
                      static_cast<std::ptrdiff_t>((1 - share) * static_cast<double>(values.size()));
   std::ranges::nth_element(values, limit);
@@ -74,8 +74,8 @@ void time_mixed_force(benchmark::State& state, B const& backend, int cells) {
     return b;
   });
   measure(state, backend, [&] {
-    body.forget_forces();
-    body.evaluate_forces();
+    forget_forces(body.parts());
+    evaluate_forces(body.parts());
   });
   report_elements(state, body);
 }

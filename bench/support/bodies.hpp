@@ -20,7 +20,7 @@ auto shaken_body(B const& backend, int cells, double size = 1) {
 template <class TheBody>
 void report_elements(benchmark::State& state, TheBody& body, int times = 1) {
   double elements = 0;
-  body.for_each_table([&](auto const& table) { elements += table.count(); });
+  body.parts().for_each_type([&](auto const& table, auto const&) { elements += table.count(); });
   state.counters["elements"] = elements;
   report_rate(state, "items_per_second", times * elements);
 }

@@ -92,7 +92,7 @@ Outcome simulate(TheBackend const& backend, Mesh<Quad4> const& mesh, Run run,
 
   Outcome outcome{};
   auto timer = backend.timer();
-  beam.measure_adaptation();
+  measure_adaptation(beam);
   double late = 0;
   auto const draw = [&](int frame) {
     auto const colour = evaluate<Quad4>(beam, largest(EdgeLengthRatio{}, AreaRatio{}));
@@ -130,8 +130,8 @@ Outcome simulate(TheBackend const& backend, Mesh<Quad4> const& mesh, Run run,
   outcome.tip = beam.displacements()[static_cast<std::size_t>(tip_node(mesh))];
   outcome.error = distance(outcome.tip, at_rest) / distance(at_rest, {0, 0});
   outcome.forces = timer.seconds();
-  outcome.criteria = beam.timers().criteria.seconds();
-  outcome.migration = beam.timers().migration.seconds();
+  outcome.criteria = beam.parts().timers.criteria.seconds();
+  outcome.migration = beam.parts().timers.migration.seconds();
   auto const share = element_steps<Quad4>(beam);
   outcome.share_of_hooke = share[0] / (share[0] + share[1]);
   outcome.ledger = ledger(beam);

@@ -24,7 +24,7 @@ pliant::picture::Frame draw(TheBody const& body, std::string caption, Colour con
     polygon.fill = colour(e);
     frame.polygons.push_back(std::move(polygon));
   }
-  for (auto const& condition : body.conditions())
+  for (auto const& condition : body.state().prescribed->conditions)
     for (auto const& facet : condition.facets) frame.clamps.push_back({at(facet[0]), at(facet[1])});
   return frame;
 }

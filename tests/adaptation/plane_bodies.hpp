@@ -48,7 +48,7 @@ using Marks = std::vector<std::vector<Index>>;
 template <class TheBody>
 Marks random_marks(TheBody const& body, Random& random, std::size_t one_in) {
   Marks marks;
-  body.for_each_table([&](auto const& table) {
+  body.parts().for_each_type([&](auto const& table, auto const&) {
     marks.emplace_back();
     for (Index e = 0; e < table.count(); ++e)
       if (random.below(one_in) == 0) marks.back().push_back(e);
@@ -57,7 +57,7 @@ Marks random_marks(TheBody const& body, Random& random, std::size_t one_in) {
     if (!list.empty()) return marks;
   std::size_t which = 0;
   bool done = false;
-  body.for_each_table([&](auto const& table) {
+  body.parts().for_each_type([&](auto const& table, auto const&) {
     if (!done && table.count() > 0) {
       marks[which].push_back(0);
       done = true;
@@ -91,7 +91,8 @@ void put(TheBody& body, Marks const& marks, Put where) {
 template <class TheBody>
 std::size_t element_count(TheBody const& body) {
   std::size_t count = 0;
-  body.for_each_table([&](auto const& table) { count += static_cast<std::size_t>(table.count()); });
+  body.parts().for_each_type(
+      [&](auto const& table, auto const&) { count += static_cast<std::size_t>(table.count()); });
   return count;
 }
 
@@ -153,14 +154,14 @@ inline double gap(std::vector<Hanging> const& hanging, FieldOf<2> const& field) 
 template <class TheBody>
 double total_mass(TheBody const& body) {
   double sum = 0;
-  for (double m : body.masses()) sum += m;
+  for (double m : body.parts().layout.mass_list) sum += m;
   return sum;
 }
 template <class TheBody>
 Point<2> momentum(TheBody& body) {
   auto p = body.velocities();
   for (std::size_t i = 0; i < p.size(); ++i)
-    for (double& x : p[i]) x *= body.masses()[i];
+    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
   return total(p);
 }
 

@@ -21,13 +21,13 @@ struct Portrait {
         u(body.displacements()),
         v(body.velocities()),
         f(body.forces()),
-        masses(body.masses()),
-        strain(body.strain_energy()),
-        kinetic(body.kinetic_energy()),
+        masses(body.parts().layout.mass_list),
+        strain(strain_energy(body)),
+        kinetic(kinetic_energy(body)),
         time(body.time()),
         steps(body.steps()),
         entries(ledger(body).size()) {
-    body.for_each_table([&](auto const& table) {
+    body.parts().for_each_type([&](auto const& table, auto const&) {
       using E = typename std::remove_cvref_t<decltype(table)>::element;
       groups.push_back(body.template groups_of<E>());
     });
@@ -60,7 +60,7 @@ TEST_CASE("a mesh that would grow beyond the capacity is an error and leaves the
     auto twin = moving_body(backend, mesh);
     Portrait const before(body);
     Marks all;
-    body.for_each_table([&](auto const& table) {
+    body.parts().for_each_type([&](auto const& table, auto const&) {
       all.emplace_back();
       for (Index e = 0; e < table.count(); ++e) all.back().push_back(e);
     });
@@ -71,9 +71,9 @@ TEST_CASE("a mesh that would grow beyond the capacity is an error and leaves the
       return static_cast<std::size_t>(grown.nodes());
     }();
 
-    body.set_capacity({.nodes = nodes - 1});
+    set_mesh_limits(body, {.nodes = nodes - 1});
     CHECK_THROWS_AS(refine(body, all), Error);
-    body.set_capacity({.elements = elements - 1});
+    set_mesh_limits(body, {.elements = elements - 1});
     CHECK_THROWS_AS(refine(body, all), Error);
 
     CHECK(Portrait(body) == before);
@@ -81,7 +81,7 @@ TEST_CASE("a mesh that would grow beyond the capacity is an error and leaves the
     step(body, 10);
     other_step(twin, 10);
     CHECK(Portrait(body) == Portrait(twin));
-    body.set_capacity({.nodes = nodes, .elements = elements});
+    set_mesh_limits(body, {.nodes = nodes, .elements = elements});
     CHECK_NOTHROW(refine(body, all));
     CHECK(element_count(body) == elements);
     CHECK(static_cast<std::size_t>(body.nodes()) == nodes);
@@ -94,7 +94,7 @@ TEST_CASE("to refine an element that is not there is an error and leaves the bod
     auto body = moving_body(backend, mesh);
     Portrait const before(body);
     std::size_t which = 0;
-    body.for_each_table([&](auto const& table) {
+    body.parts().for_each_type([&](auto const& table, auto const&) {
       for (Index wrong : {-1, table.count(), table.count() + 1000}) {
         Marks marks(before.groups.size());
         marks[0] = {0};
@@ -145,7 +145,7 @@ TEST_CASE("a state that is not finite is not refined", "[adaptation]") {
     auto const mesh = distorted_mesh<Quad4>(5);
     auto body = plane_body(backend, mesh);
     body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 10));
-    body.step(1e3, 40);
+    take_steps(body.parts(), 1e3, 40);
     REQUIRE_FALSE(std::isfinite(largest(body.displacements())));
 
     CHECK_THROWS_AS(refine(body, {{0, 1}}), Error);

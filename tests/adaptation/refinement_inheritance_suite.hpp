@@ -25,14 +25,14 @@ TEST_CASE("children are in the group of their parent", "[adaptation]") {
     for (int round = 0; round < 3; ++round) {
       M const old = body.mesh();
       std::vector<std::vector<Tag>> old_groups;
-      body.for_each_table([&](auto const& table) {
+      body.parts().for_each_type([&](auto const& table, auto const&) {
         old_groups.push_back(groups(typename std::remove_cvref_t<decltype(table)>::element{}));
       });
 
       refine(body, random_marks(body, random, 3));
 
       std::size_t which = 0;
-      body.for_each_table([&](auto const& table) {
+      body.parts().for_each_type([&](auto const& table, auto const&) {
         using E = typename std::remove_cvref_t<decltype(table)>::element;
         auto const now = groups(E{});
         auto const& elements = body.mesh().template elements<E>();
@@ -89,10 +89,10 @@ TEST_CASE("named boundaries and conditions on facets go over to the children", "
         CHECK(run * outward * (direction == 0 ? 1 : -1) > 0);
       }
     }
-    REQUIRE(body.conditions().size() == 3);
-    CHECK(body.conditions()[0].nodes == nodes_of(now.boundary("left")));
-    CHECK(body.conditions()[1].nodes == nodes_of(now.boundary("top")));
-    CHECK(body.conditions()[2].nodes == nodes_of(now.boundary("right")));
+    REQUIRE(body.state().prescribed->conditions.size() == 3);
+    CHECK(body.state().prescribed->conditions[0].nodes == nodes_of(now.boundary("left")));
+    CHECK(body.state().prescribed->conditions[1].nodes == nodes_of(now.boundary("top")));
+    CHECK(body.state().prescribed->conditions[2].nodes == nodes_of(now.boundary("right")));
 
     CentralDifference step;
     step(body, 30);
@@ -119,15 +119,15 @@ TEST_CASE("conditions and loads on nodes stay with these nodes", "[adaptation]")
 
     for (int k = 0; k < 3; ++k) refine(body, random_marks(body, random, 3));
 
-    CHECK(body.conditions()[0].nodes == held);
-    REQUIRE(body.loads().size() == static_cast<std::size_t>(body.nodes()));
-    for (std::size_t i = 0; i < body.loads().size(); ++i)
-      CHECK(body.loads()[i] == (i == 5 ? Point<2>{0.25, -0.5} : Point<2>{}));
+    CHECK(body.state().prescribed->conditions[0].nodes == held);
+    REQUIRE(nodal_loads(body).size() == static_cast<std::size_t>(body.nodes()));
+    for (std::size_t i = 0; i < nodal_loads(body).size(); ++i)
+      CHECK(nodal_loads(body)[i] == (i == 5 ? Point<2>{0.25, -0.5} : Point<2>{}));
     double const dt = 1e-4;
     CentralDifference step{{.step = dt}};
     step(body);
     CHECK(body.displacements()[5][0] ==
-          Approx(dt * dt / 2 * 0.25 / body.masses()[5]).epsilon(1e-12));
+          Approx(dt * dt / 2 * 0.25 / body.parts().layout.mass_list[5]).epsilon(1e-12));
   });
 }
 
@@ -140,13 +140,13 @@ TEST_CASE("nodes may be held between refinements, facets only before the first",
     auto const right = nodes_of(body.mesh().boundary("right"));
 
     CHECK_THROWS_AS(body.clamp(body.mesh().boundary("right")), Error);
-    CHECK(body.conditions().size() == 1);
+    CHECK(body.state().prescribed->conditions.size() == 1);
     body.clamp(right);
     refine(body, random_marks(body, random, 3));
 
-    REQUIRE(body.conditions().size() == 2);
-    CHECK(body.conditions()[0].nodes == nodes_of(body.mesh().boundary("left")));
-    CHECK(body.conditions()[1].nodes == right);
+    REQUIRE(body.state().prescribed->conditions.size() == 2);
+    CHECK(body.state().prescribed->conditions[0].nodes == nodes_of(body.mesh().boundary("left")));
+    CHECK(body.state().prescribed->conditions[1].nodes == right);
   });
 }
 
@@ -164,12 +164,12 @@ TEST_CASE("pressures stay on their facets when nodes are held between refinement
     refine(body, random_marks(body, random, 3));
 
     M const& now = body.mesh();
-    REQUIRE(body.pressures().size() == 2);
-    CHECK(body.pressures()[0].facets == now.boundary("top"));
-    CHECK(body.pressures()[0].pascals == 1);
-    CHECK(body.pressures()[1].facets == now.boundary("bottom"));
-    CHECK(body.pressures()[1].pascals == 2);
-    CHECK(body.conditions()[0].nodes == nodes_of(now.boundary("left")));
+    REQUIRE(body.state().prescribed->pressures.size() == 2);
+    CHECK(body.state().prescribed->pressures[0].facets == now.boundary("top"));
+    CHECK(body.state().prescribed->pressures[0].pascals == 1);
+    CHECK(body.state().prescribed->pressures[1].facets == now.boundary("bottom"));
+    CHECK(body.state().prescribed->pressures[1].pascals == 2);
+    CHECK(body.state().prescribed->conditions[0].nodes == nodes_of(now.boundary("left")));
   });
 }
 
@@ -187,7 +187,7 @@ TEST_CASE("element-steps go on counting over refinements", "[adaptation]") {
     }
 
     double sum = 0;
-    body.for_each_table([&](auto const& table) {
+    body.parts().for_each_type([&](auto const& table, auto const&) {
       using E = typename std::remove_cvref_t<decltype(table)>::element;
       for (double steps : element_steps<E>(body)) sum += steps;
     });

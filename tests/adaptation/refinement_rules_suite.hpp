@@ -125,7 +125,7 @@ TEST_CASE("refinement that would exceed the capacity leaves the body to go on", 
     auto const mesh = distorted_mesh<Quad4>(4);
     auto body = plane_body(backend, mesh);
     body.set_gravity({0, -1});
-    body.set_capacity({.elements = 30});
+    set_mesh_limits(body, {.elements = 30});
     Adaptation adapt{when<QuadRubber>(Constant{1}).above(0.5).refine()};
     CentralDifference step;
     step(body, 3);

@@ -44,11 +44,11 @@ TEST_CASE("forces, tangents and energies are those of the serial backend", "[bac
     double const scale = largest_element_force<F>(oracle, u);
     CHECK(largest(expected) > 1e-2 * scale);
     CHECK(difference(f, expected) < (single ? 1e-5 : 1e-13) * scale);
-    CHECK(body.strain_energy() == Approx(oracle.strain_energy()).epsilon(single ? 1e-5 : 1e-13));
+    CHECK(strain_energy(body) == Approx(strain_energy(oracle)).epsilon(single ? 1e-5 : 1e-13));
     // The tangent is of order one however small the strain: rounding alone.
     auto const df = tangent_product(oracle, u, du);
     CHECK(difference(tangent_product(body, u, du), df) < (single ? 1e-5 : 1e-13) * largest(df));
-    CHECK((body.masses() == oracle.masses()));
+    CHECK((body.parts().layout.mass_list == oracle.parts().layout.mass_list));
   });
 }
 

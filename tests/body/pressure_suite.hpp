@@ -143,12 +143,12 @@ TEST_CASE("facets to press may be told by their corners alone, from either side"
     auto body = body_of<F>(backend, mesh);
 
     body.press(corners, 2.5);
-    CHECK(body.pressures().at(0).facets == side);
+    CHECK(body.state().prescribed->pressures.at(0).facets == side);
     body.press(corners, 1.5);
     body.press(side, 0.5);
 
-    REQUIRE(body.pressures().size() == 1);
-    CHECK(body.pressures()[0].pascals == 0.5);
+    REQUIRE(body.state().prescribed->pressures.size() == 1);
+    CHECK(body.state().prescribed->pressures[0].pascals == 0.5);
   });
 }
 
@@ -162,15 +162,16 @@ TEST_CASE("pressures that are not finite or nowhere are refused", "[body][errors
                     says("nodes 1 and 4 is not on the boundary of the mesh"));
   CHECK_THROWS_WITH(body.press({Facet<2>{1}}, 1), says("is not on the boundary"));
   CHECK_THROWS_WITH(body.press({Facet<2>{0, 1}, Facet<2>{1, 0}}, 1), says("twice"));
-  CHECK(body.pressures().empty());
+  CHECK(body.state().prescribed->pressures.empty());
   body.press({Facet<2>{6, 3}}, 1);
   refine(body, {{5}});
-  CHECK_THROWS_WITH(body.press(body.mesh().boundary("left"), 1),
-                    says("before the first refinement") && says("body.pressures()[k].facets"));
-  body.press(body.pressures()[0].facets, 2);
-  REQUIRE(body.pressures().size() == 1);
-  CHECK(body.pressures()[0].facets.size() == 2);
-  CHECK(body.pressures()[0].pascals == 2);
+  CHECK_THROWS_WITH(
+      body.press(body.mesh().boundary("left"), 1),
+      says("before the first refinement") && says("body.state().prescribed->pressures[k].facets"));
+  body.press(body.state().prescribed->pressures[0].facets, 2);
+  REQUIRE(body.state().prescribed->pressures.size() == 1);
+  CHECK(body.state().prescribed->pressures[0].facets.size() == 2);
+  CHECK(body.state().prescribed->pressures[0].pascals == 2);
 }
 
 }  // namespace pliant::test

@@ -30,13 +30,13 @@ Results compute(int threads) {
   Results r;
   r.forces = forces_at(body, u);
   r.tangent = tangent_product(body, u, random.field<2>(mesh.nodes.size(), 1.0));
-  r.energy = body.strain_energy();
+  r.energy = strain_energy(body);
   r.stable = stable_step(body);
   CentralDifference step{};
   step(body, 20);
   r.moved = body.displacements();
   r.speeds = body.velocities();
-  r.kinetic = body.kinetic_energy();
+  r.kinetic = kinetic_energy(body);
   return r;
 }
 

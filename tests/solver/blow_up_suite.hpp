@@ -27,7 +27,7 @@ TEST_CASE("a step that is somewhat too large is halved and done again", "[solver
     CHECK(step.retries() <= 3);
     CHECK(step.step() < 2 * stable / 0.4);
     CHECK(finite(body));
-    CHECK(body.total_energy() < 1e-2 * body.strain_energy() + 1e-4);
+    CHECK(total_energy(body) < 1e-2 * strain_energy(body) + 1e-4);
     CHECK(body.steps() == 400);
   });
 }
@@ -44,8 +44,8 @@ TEST_CASE("time and state go back together", "[solver]") {
       double sum = 0, mass = 0;
       auto const u = body.displacements();
       for (std::size_t i = 0; i < u.size(); ++i) {
-        sum += body.masses()[i] * u[i][1];
-        mass += body.masses()[i];
+        sum += body.parts().layout.mass_list[i] * u[i][1];
+        mass += body.parts().layout.mass_list[i];
       }
       return sum / mass;
     };
@@ -99,7 +99,7 @@ TEST_CASE("what a user does to a body is not taken for a blow-up", "[solver]") {
 
     CHECK(step.retries() == 0);
     CHECK(body.steps() == 105);
-    CHECK(body.strain_energy() > 1e-4);
+    CHECK(strain_energy(body) > 1e-4);
   });
 }
 

@@ -13,7 +13,7 @@ double energy_error(B const& backend, double dt) {
   int const steps = static_cast<int>(std::lround(0.4 / dt));
   for (int k = 0; k < steps; ++k) {
     step(body);
-    error = std::max(error, std::abs(body.total_energy()));
+    error = std::max(error, std::abs(total_energy(body)));
   }
   return error;
 }

@@ -8,7 +8,7 @@ template <class TheBody>
 FieldOf<TheBody::dim> momenta(TheBody& body) {
   auto p = body.velocities();
   for (std::size_t i = 0; i < p.size(); ++i)
-    for (double& x : p[i]) x *= body.masses()[i];
+    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
   return p;
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("a free body keeps its linear and angular momentum", "[solver]") {
     if (turns)
       for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(l[k] - l0[k]) < rounding * 4);
     CHECK(largest(body.displacements()) > 0.1);
-    CHECK(body.strain_energy() > 1e-4);
+    CHECK(strain_energy(body) > 1e-4);
   });
 }
 

@@ -9,7 +9,7 @@ namespace pliant::test {
 template <class TheBody>
 double true_limit(TheBody& body) {
   std::vector<DirectionMask> held(static_cast<std::size_t>(body.nodes()), 0);
-  for (auto const& condition : body.conditions())
+  for (auto const& condition : body.state().prescribed->conditions)
     for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
   auto const squares =
       squared_frequencies(body, body.displacements(),

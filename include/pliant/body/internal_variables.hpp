@@ -54,18 +54,15 @@ void commit_at(Parts& parts, typename Parts::ConstField u) {
   });
 }
 
-/// Carries the internal variables of elements that were put into other groups by hand: `before` has their
-/// groups, for each element type. Null: all points come to rest where they are.
+/// Brings internal variables to rest: as if the body had always been where it is.
 template <class Parts>
-void carry_points(Parts& parts, std::vector<Tag const*> const& before) {
-  std::size_t which = 0;
+void equilibrate(Parts& parts) {
   parts.for_each_type([&](auto& table, auto&) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    Tag const* const tags = before[which++];
     if constexpr (Table::Laws::internal_variable_count > 0)
       parts.backend.template visit<Table::groups>(
           table.elements,
-          CarryInternalVariables<typename Parts::T, typename Table::Laws>{table.laws, tags},
+          CarryInternalVariables<typename Parts::T, typename Table::Laws>{table.laws, nullptr},
           parts.no_counters, parts.rest(), std::as_const(parts).u());
   });
 }

@@ -73,4 +73,13 @@ double potential_energy_of(Parts& parts) {
           std::as_const(parts).u(), parts.layout.mass.data(), external_forces(parts)});
 }
 
+/// The loads of all nodes, N, in the user's order; empty where none was set.
+template <class TheBody>
+auto nodal_loads(TheBody const& body) {
+  auto const& parts = body.parts();
+  std::vector<Point<TheBody::dim>> loads;
+  if (parts.state.load.size() > 0) loads = parts.layout.in_user_order(parts.state.load);
+  return loads;
+}
+
 }  // namespace pliant

@@ -63,7 +63,8 @@ void set_gravity(Parts& parts, Point<Parts::dim> const& g) {
 
 template <class Parts>
 void set_damping(Parts& parts, double per_mass) {
-  if (!(per_mass >= 0)) throw Error("body.set_damping: ", per_mass, " 1/s; give 0 or more");
+  if (!(per_mass >= 0))
+    throw Error("body.set_damping: ", per_mass, " 1/s; give a finite number that is not negative");
   detail::check_number<typename Parts::T>("body.set_damping", per_mass);
   synchronize_velocities(parts);
   parts.state.damping = per_mass;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <pliant/element/linear.hpp>
 #include <pliant/mesh/sides.hpp>
 
@@ -38,8 +40,13 @@ Mesh<E> box(BoxOptions const& o) {
     return raised<E>(box<Linear>(o));
   } else {
     auto const [nx, ny, nz] = o.cells;
-    if (nx < 1 || ny < 1 || nz < 1 || !(o.size[0] > 0) || !(o.size[1] > 0) || !(o.size[2] > 0))
-      throw Error("mesh::box: needs a positive size and at least one cell along each side");
+    bool sound = nx >= 1 && ny >= 1 && nz >= 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      sound = sound && o.size[k] > 0 && std::isfinite(o.size[k]) && std::isfinite(o.origin[k]);
+    if (!sound)
+      throw Error(
+          "mesh::box: needs a positive, finite size, a finite origin, and at least one cell along "
+          "each side");
     Mesh<E> mesh;
     auto& elements = mesh.template elements<E>();
     auto const node = [nx = nx, ny = ny](int i, int j, int k) {

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <pliant/formulation/kinematics.hpp>
+#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/mesh/sides.hpp>
 #include <pliant/quadrature/corners.hpp>
 #include <pliant/quadrature/gauss.hpp>
 
@@ -58,10 +63,114 @@ void check_elements(M const& mesh) {
   }
 }
 
+/// Throws Error where two elements of a type have the same nodes.
+template <Element E, class M>
+void check_twins(M const& mesh) {
+  auto const& elements = mesh.template elements<E>();
+  std::vector<Index> smallest(elements.size());
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    smallest[e] = *std::min_element(elements[e].begin(), elements[e].end());
+  auto const at_node = group_by_key(smallest, static_cast<Index>(mesh.nodes.size()));
+  auto const sum = [&](Index e) {
+    std::int64_t s = 0;
+    for (Index node : elements[static_cast<std::size_t>(e)]) s += node;
+    return s;
+  };
+  auto const sorted = [&](Index e) {
+    auto nodes = elements[static_cast<std::size_t>(e)];
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+  };
+  std::vector<std::int64_t> sums;
+  for (std::size_t node = 0; node < mesh.nodes.size(); ++node) {
+    auto const first = at_node.order.begin() + at_node.first[node];
+    auto const last = at_node.order.begin() + at_node.first[node + 1];
+    sums.clear();
+    for (auto i = first; i != last; ++i) {
+      sums.push_back(sum(*i));
+      for (auto j = first; j != i; ++j)
+        if (sums[static_cast<std::size_t>(j - first)] == sums.back() && sorted(*i) == sorted(*j))
+          throw Error("mesh: ", describe<E>(mesh, static_cast<std::size_t>(*i)), " is element ", *j,
+                      " again; leave one of them out");
+    }
+  }
+}
+
+/// Throws Error where a node lies inside an edge of the boundary that does not have it, between two edges
+/// that do: the mesh would come apart there.
+template <class M>
+void check_hanging(M const& mesh) {
+  using Side = Facet<M::dim>;
+  std::vector<bool> known(mesh.nodes.size(), false);
+  for (auto const& slave : mesh.slaves) known[static_cast<std::size_t>(slave.node)] = true;
+  auto const sides = mesh::outer_sides(mesh);
+  std::vector<Index> corner, side_of_corner;
+  for (std::size_t s = 0; s < sides.size(); ++s)
+    for (std::size_t c = 0; c < sides[s].corners(); ++c) {
+      corner.push_back(sides[s][c]);
+      side_of_corner.push_back(static_cast<Index>(s));
+    }
+  auto const at_node = group_by_key(corner, static_cast<Index>(mesh.nodes.size()));
+  auto const place = [&](Index node) { return mesh.nodes[static_cast<std::size_t>(node)]; };
+  auto const is_inside = [&](Index node, Index a, Index b) {
+    double along = 0, length = 0, apart = 0;
+    auto const x = place(node), p = place(a), q = place(b);
+    for (std::size_t k = 0; k < M::dim; ++k) {
+      along += (x[k] - p[k]) * (q[k] - p[k]);
+      length += (q[k] - p[k]) * (q[k] - p[k]);
+    }
+    double const share = along / length;
+    if (!(share > 1e-6 && share < 1 - 1e-6)) return false;
+    for (std::size_t k = 0; k < M::dim; ++k) {
+      double const off = x[k] - p[k] - share * (q[k] - p[k]);
+      apart += off * off;
+    }
+    return apart < 1e-18 * length;
+  };
+  auto const look_at = [&](Side const& side, Index a, Index b) {
+    auto const i = static_cast<std::size_t>(a);
+    for (Index k = at_node.first[i]; k < at_node.first[i + 1]; ++k) {
+      auto const& other = sides[static_cast<std::size_t>(
+          side_of_corner[static_cast<std::size_t>(at_node.order[static_cast<std::size_t>(k)])])];
+      for (Index node : other)
+        if (std::find(side.begin(), side.end(), node) == side.end() &&
+            !known[static_cast<std::size_t>(node)] && is_inside(node, a, b))
+          throw Error("mesh: node ", node, " at ", place(node), " hangs on the edge from node ", a,
+                      " to node ", b,
+                      "; list it in mesh.slaves with its masters, or split the element beside it");
+    }
+  };
+  for (auto const& side : sides)
+    for (std::size_t c = 0; c < side.corners(); ++c) {
+      Index const a = side[c], b = side[(c + 1) % side.corners()];
+      look_at(side, a, b);
+      look_at(side, b, a);
+    }
+}
+
+/// Throws Error where slaves name nodes that there are not, twice, or with weights that are not positive or do
+/// not add up to one.
+template <class M>
+void check_slaves(M const& mesh) {
+  auto const count = static_cast<Index>(mesh.nodes.size());
+  for (auto const& [node, masters] : mesh.slaves) {
+    double sum = 0;
+    bool good = node >= 0 && node < count && !masters.empty();
+    for (auto const& [master, weight] : masters) {
+      good = good && master >= 0 && master < count && master != node && weight > 0;
+      sum += weight;
+    }
+    if (!good || !(std::abs(sum - 1) < 1e-9))
+      throw Error("mesh: slave ", node,
+                  " needs masters among the mesh's nodes, with positive weights that add up to 1");
+  }
+}
+
 }  // namespace detail
 
-/// Throws Error when the mesh has no elements, a node that is not finite, an index out of range, or
-/// an element that is inverted or has no volume; the message names the first culprit.
+/// Throws Error when the mesh has no elements, a node that is not finite or belongs to no element, an index out
+/// of range, an element that is inverted, has no volume or is there twice, or a node that hangs on an
+/// edge and is not listed as a slave; the message names the first culprit.
 template <Element... Es>
 void check(Mesh<Es...> const& mesh) {
   if ((mesh.template elements<Es>().empty() && ...))
@@ -72,6 +181,19 @@ void check(Mesh<Es...> const& mesh) {
         throw Error("mesh: node ", i, " at ", mesh.nodes[i],
                     " is not finite; correct its coordinates");
   (detail::check_elements<Es>(mesh), ...);
+  std::vector<bool> used(mesh.nodes.size(), false);
+  auto const use = [&](auto const& elements) {
+    for (auto const& element : elements)
+      for (Index node : element) used[static_cast<std::size_t>(node)] = true;
+  };
+  (use(mesh.template elements<Es>()), ...);
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (!used[i])
+      throw Error("mesh: node ", i, " at ", mesh.nodes[i],
+                  " belongs to no element; leave it out, and number the others without it");
+  (detail::check_twins<Es>(mesh), ...);
+  detail::check_slaves(mesh);
+  detail::check_hanging(mesh);
 }
 
 }  // namespace pliant

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <pliant/element/linear.hpp>
 #include <pliant/mesh/sides.hpp>
 
@@ -23,8 +25,13 @@ Mesh<E> rectangle(RectangleOptions const& o) {
     return raised<E>(rectangle<Linear>(o));
   } else {
     auto const [nx, ny] = o.cells;
-    if (nx < 1 || ny < 1 || !(o.size[0] > 0) || !(o.size[1] > 0))
-      throw Error("mesh::rectangle: needs a positive size and at least one cell along each side");
+    bool sound = nx >= 1 && ny >= 1;
+    for (std::size_t k = 0; k < 2; ++k)
+      sound = sound && o.size[k] > 0 && std::isfinite(o.size[k]) && std::isfinite(o.origin[k]);
+    if (!sound)
+      throw Error(
+          "mesh::rectangle: needs a positive, finite size, a finite origin, and at least one cell "
+          "along each side");
     Mesh<E> mesh;
     auto const node = [nx = nx](int i, int j) { return Index{j * (nx + 1) + i}; };
     for (int j = 0; j <= ny; ++j)
