@@ -6,11 +6,6 @@
 
 #include <pliant/math/functions.hpp>
 
-// Vectors passed by value are always inlined; their calling convention does not matter.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
-
 namespace pliant {
 
 /// The widest SIMD register of the target, bytes.
@@ -22,9 +17,9 @@ inline constexpr int simd_bytes = 32;
 inline constexpr int simd_bytes = 16;
 #endif
 
-/// Lanes of a pack: a full register, and at least the four values of a padded node.
+/// Lanes of a pack: one register, no more. Compilers keep packs of several registers in memory.
 template <class T>
-inline constexpr int pack_lanes = simd_bytes / int{sizeof(T)} < 4 ? 4 : simd_bytes / int{sizeof(T)};
+inline constexpr int pack_lanes = simd_bytes / int{sizeof(T)};
 
 /// One number of several elements side by side, in the lanes of a SIMD register.
 template <class T, int Lanes = pack_lanes<T>>

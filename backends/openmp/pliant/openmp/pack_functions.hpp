@@ -134,8 +134,11 @@ PLIANT_HOST_DEVICE Pack<T, L> sqrt(Pack<T, L> const& x) {
     return root;
   }
 #elif defined(__SSE2__)
-  if constexpr (sizeof(x.v) == simd_bytes && sizeof(T) == 4) {
-    asm("sqrtps %1, %0" : "=x"(root.v) : "x"(x.v));
+  if constexpr (sizeof(x.v) == simd_bytes) {
+    if constexpr (sizeof(T) == 4)
+      asm("sqrtps %1, %0" : "=x"(root.v) : "x"(x.v));
+    else
+      asm("sqrtpd %1, %0" : "=x"(root.v) : "x"(x.v));
     return root;
   }
 #endif

@@ -7,7 +7,7 @@
 
 // Nodes are padded to four values, so four nodes and four components are 4×4 blocks. Moving them
 // between memory (a node per row) and packs (a component per register) by shuffles is faster than
-// hardware gathers and scatters.
+// hardware gathers and scatters. Packs of two lanes move half a node at a time, in 2×2 blocks.
 namespace pliant::detail {
 
 /// Lane by lane, the index of a shuffle of two registers a and b of L lanes (b's begin at L).
@@ -78,10 +78,32 @@ constexpr auto offset_sequence(std::index_sequence<I...>) {
   return std::index_sequence<Offset + I...>();
 }
 
+/// The 2×2 transpose across two registers of two lanes. Its own inverse.
+template <class Register>
+PLIANT_HOST_DEVICE void transpose_pair(Register& a, Register& b) {
+  Register const low = __builtin_shufflevector(a, b, 0, 2);
+  b = __builtin_shufflevector(a, b, 1, 3);
+  a = low;
+}
+
 /// Components 0..3 of the nodes index[0..L), a component per register.
 template <class T, int L>
 PLIANT_HOST_DEVICE void gather_nodes(T const* data, Index const (&index)[L],
-                                     typename Pack<T, L>::Register (&r)[4]) {
+                                     typename Pack<T, L>::Register (&r)[4])
+  requires(L == 2)
+{
+  for (int half = 0; half < 4; half += 2) {
+    for (int k = 0; k < 2; ++k)
+      __builtin_memcpy(&r[half + k], data + std::ptrdiff_t{node_stride} * index[k] + half,
+                       sizeof(r[0]));
+    transpose_pair(r[half], r[half + 1]);
+  }
+}
+template <class T, int L>
+PLIANT_HOST_DEVICE void gather_nodes(T const* data, Index const (&index)[L],
+                                     typename Pack<T, L>::Register (&r)[4])
+  requires(L >= 4)
+{
   for (int k = 0; k < 4; ++k) r[k] = load_nodes<T, L>(data, index + k, 4);
   transpose_blocks<T, L>(r);
 }
@@ -89,7 +111,24 @@ PLIANT_HOST_DEVICE void gather_nodes(T const* data, Index const (&index)[L],
 /// Adds components 0..3, a component per register, to the nodes index[0..count). Nodes may repeat.
 template <class T, int L>
 PLIANT_HOST_DEVICE void scatter_add_nodes(T* data, Index const (&index)[L], int count,
-                                          typename Pack<T, L>::Register (&r)[4]) {
+                                          typename Pack<T, L>::Register (&r)[4])
+  requires(L == 2)
+{
+  for (int half = 0; half < 4; half += 2) transpose_pair(r[half], r[half + 1]);
+  for (int k = 0; k < count; ++k)
+    for (int half = 0; half < 4; half += 2) {
+      T* const address = data + std::ptrdiff_t{node_stride} * index[k] + half;
+      typename Pack<T, L>::Register sum;
+      __builtin_memcpy(&sum, address, sizeof(sum));
+      sum += r[half + k];
+      __builtin_memcpy(address, &sum, sizeof(sum));
+    }
+}
+template <class T, int L>
+PLIANT_HOST_DEVICE void scatter_add_nodes(T* data, Index const (&index)[L], int count,
+                                          typename Pack<T, L>::Register (&r)[4])
+  requires(L >= 4)
+{
   transpose_blocks<T, L>(r);
   auto const add = [&]<int Block>(std::integral_constant<int, Block>) PLIANT_INLINE {
     for (int k = 0; k < 4; ++k) {
