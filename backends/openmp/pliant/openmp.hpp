@@ -11,6 +11,7 @@
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/error.hpp>
 #include <pliant/openmp/patches.hpp>
+#include <pliant/openmp/threads.hpp>
 #include <pliant/openmp/transpose.hpp>
 
 #if !defined(_OPENMP)
@@ -37,12 +38,13 @@ class OpenMP {
   static constexpr bool orders_by_group = true;
   static constexpr char const* name() { return "OpenMP"; }
 
-  OpenMP(OpenMPOptions options = {}) : threads_(options.threads) {
-    if (threads_ < 0)
-      throw Error("OpenMP: ", threads_, " threads asked for; give a positive number, or 0 for all");
-    if (threads_ == 0) threads_ = omp_get_max_threads();
+  OpenMP(OpenMPOptions options = {})
+      : threads_(options.threads == 0 ? omp_get_max_threads() : options.threads) {
+    if (options.threads < 0)
+      throw Error("OpenMP: ", options.threads,
+                  " threads asked for; give a positive number, or 0 for all");
   }
-  int threads() const { return threads_; }
+  int threads() const { return threads_.count(); }
 
   template <int Nodes>
   class Elements : public detail::Patches<Nodes> {
@@ -55,24 +57,35 @@ class OpenMP {
 
   template <class F>
   void for_each(Index n, F const& f) const {
-#pragma omp parallel for schedule(static) num_threads(threads_) if (n > small_loop)
-    for (Index i = 0; i < n; ++i) f(i);
+    threads_.for_each_part(n, small_loop, [&](Index first, Index last) {
+      F const own = f;  // a compiler sees that what f writes to is not f
+      for (Index i = first; i < last; ++i) own(i);
+    });
   }
   template <class F>
   double sum(Index n, F const& f) const {
-    return ordered_sum((n + sum_block - 1) / sum_block, [&](Index block) {
-      double total = 0;
-      Index const last = std::min(n, (block + 1) * sum_block);
-      for (Index i = block * sum_block; i < last; ++i) total += static_cast<double>(f(i));
-      return total;
-    });
+    std::vector<double> partial((static_cast<std::size_t>(n) + sum_block - 1) / sum_block);
+    auto const sum_of_blocks = [&](Index first, Index last) {
+      for (Index b = first; b < last; ++b) {
+        double total = 0;
+        Index const end = std::min(n, (b + 1) * sum_block);
+        for (Index i = b * sum_block; i < end; ++i) total += static_cast<double>(f(i));
+        partial[static_cast<std::size_t>(b)] = total;
+      }
+    };
+    threads_.for_each_part(static_cast<Index>(partial.size()), small_loop / sum_block,
+                           sum_of_blocks);
+    return sum_in_order(partial);
   }
   template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
-#pragma omp parallel for schedule(static) num_threads(threads_) if (n > small_loop) \
-    reduction(max : largest)
-    for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));
+    threads_.for_each_part(n, small_loop, [&](Index first, Index last) {
+      double mine = -std::numeric_limits<double>::infinity();
+      for (Index i = first; i < last; ++i) mine = std::max(mine, static_cast<double>(f(i)));
+#pragma omp critical(pliant_maximum)
+      largest = std::max(largest, mine);
+    });
     return largest;
   }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
@@ -82,44 +95,30 @@ class OpenMP {
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
                   Fields const&... fields) const {
-#pragma omp parallel num_threads(threads_) if (elements.patch_count() > 1)
-    {
-#pragma omp for schedule(dynamic)
-      for (Index p = 0; p < elements.patch_count(); ++p) {
-        auto const [first, last] = elements.scratch_of(p);
-        std::fill(&out(first, 0), &out(first, 0) + std::ptrdiff_t{node_stride} * (last - first),
-                  T(0));
-        for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
-          auto const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
-          for (int a = 0; a < Nodes; ++a) {
-            Index rows[Scalar::lanes];
-            for (int l = 0; l < Scalar::lanes; ++l) rows[l] = elements.targets(m.element[l])[a];
-            typename Scalar::Register r[4] = {};
-            for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
-            detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
-          }
-        });
-      }
-#pragma omp for schedule(static)
-      for (Index k = 0; k < elements.folded_count(); ++k) {
-        auto const f = elements.folded(k);
-        for (Index row : f.rows)
-          for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
-      }
-    }
+    auto const accumulate_in = [&](Index p) {
+      accumulate_patch<Groups>(elements, p, kernel, out, fields...);
+    };
+    threads_.for_each_block(elements.patch_count(), accumulate_in, elements.folded_count(),
+                            [&](Index k) {
+                              auto const f = elements.folded(k);
+                              for (Index row : f.rows)
+                                for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
+                            });
   }
 
   template <int Groups, int Nodes, class Kernel, class... Fields>
   double sum_elements(Elements<Nodes> const& elements, Kernel const& kernel,
                       Fields const&... fields) const {
-    return ordered_sum(elements.patch_count(), [&](Index p) {
+    std::vector<double> partial(static_cast<std::size_t>(elements.patch_count()));
+    threads_.for_each_block(elements.patch_count(), [&](Index p) {
       double total = 0;
       for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
         Scalar const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
         for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
       });
-      return total;
+      partial[static_cast<std::size_t>(p)] = total;
     });
+    return sum_in_order(partial);
   }
 
   template <int Groups, int Nodes, class Visitor, class... Fields>
@@ -127,15 +126,15 @@ class OpenMP {
              Fields const&... fields) const {
     std::vector<std::array<double, Visitor::counters>> partial(
         static_cast<std::size_t>(elements.patch_count()));
-#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (elements.patch_count() > 1)
-    for (Index p = 0; p < elements.patch_count(); ++p)
+    threads_.for_each_block(elements.patch_count(), [&](Index p) {
       partial[static_cast<std::size_t>(p)] = visit_patch<Groups>(elements, p, visitor, fields...);
+    });
     for (auto const& mine : partial)
       for (std::size_t k = 0; k < mine.size(); ++k) counters.data()[k] += mine[k];
   }
 
  private:
-  static constexpr Index small_loop = 4096;  // below, waking threads costs more than the loop
+  static constexpr Index small_loop = 16384;  // to here, waking threads costs more than the loop
   static constexpr Index sum_block = 4096;
 
   /// The elements in the lanes of one pack; behind `count` the last one repeats.
@@ -169,6 +168,23 @@ class OpenMP {
         m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
       f(GroupNumber<Group>{}, m);
     }
+  }
+
+  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
+  static void accumulate_patch(Elements<Nodes> const& elements, Index patch, Kernel const& kernel,
+                               NodeField<T, C> out, Fields const&... fields) {
+    auto const [first, last] = elements.scratch_of(patch);
+    std::fill(&out(first, 0), &out(first, 0) + std::ptrdiff_t{node_stride} * (last - first), T(0));
+    for_each_pack<Groups>(elements, patch, [&](auto group, PackMembers const& m) {
+      auto const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
+      for (int a = 0; a < Nodes; ++a) {
+        Index rows[Scalar::lanes];
+        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = elements.targets(m.element[l])[a];
+        typename Scalar::Register r[4] = {};
+        for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
+        detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
+      }
+    });
   }
 
   template <int Groups, int Nodes, class Visitor, class... Fields>
@@ -209,18 +225,13 @@ class OpenMP {
     return own;
   }
 
-  /// Sums f(block) over blocks in their order, whatever thread computed each.
-  template <class F>
-  double ordered_sum(Index blocks, F const& f) const {
-    std::vector<double> partial(static_cast<std::size_t>(blocks));
-#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (blocks > 1)
-    for (Index b = 0; b < blocks; ++b) partial[static_cast<std::size_t>(b)] = f(b);
+  static double sum_in_order(std::vector<double> const& partial) {
     double total = 0;
     for (double x : partial) total += x;
     return total;
   }
 
-  int threads_;
+  detail::Threads threads_;
 };
 
 }  // namespace pliant
