@@ -1,5 +1,22 @@
 #pragma once
 
+// A file that is not there ends the compilation: what else an earlier standard lacks is not listed.
+#if __cplusplus < 202002L
+#error "Pliant needs C++20: compile with -std=c++20."
+#include "C++20"
+#endif
+
+// Without infinities and NaN no check for finite values ever fails, and sums in another order lose
+// small strains (the logarithm of 1 + 1e-12 its fifth digit). nvcc's --use_fast_math does neither: it
+// rounds single precision on the device more coarsely and flushes numbers below 1e-38 to zero.
+#if !defined(PLIANT_ALLOW_FAST_MATH) && \
+    (defined(__FAST_MATH__) || __FINITE_MATH_ONLY__ > 0 || defined(__ASSOCIATIVE_MATH__))
+#error \
+    "-ffast-math (-Ofast, -ffinite-math-only, -fassociative-math) switches off Pliant's checks for \
+finite values: put -fno-finite-math-only -fno-associative-math behind it. -DPLIANT_ALLOW_FAST_MATH \
+compiles without these checks."
+#endif
+
 #include <cstdint>
 
 /// Stands between the parameters and the body of a lambda in a kernel: out of line it would take packs

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <pliant/config.hpp>
+
 namespace pliant {
 
 namespace detail {

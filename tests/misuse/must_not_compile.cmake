@@ -5,8 +5,16 @@ if(NOT first_line MATCHES "^// expect: (.+)$")
 endif()
 set(expected "${CMAKE_MATCH_1}")
 
+# With flags of its own it is compiled to assembly: some diagnostics come only then.
+set(mode -fsyntax-only)
+file(STRINGS "${SOURCE}" flags LIMIT_COUNT 1 REGEX "^// flags: ")
+if(flags)
+  string(REPLACE "// flags: " "" flags "${flags}")
+  separate_arguments(mode UNIX_COMMAND "${flags} -S -o /dev/null")
+endif()
+
 list(TRANSFORM INCLUDE PREPEND -I)
-set(command "${COMPILER}" -std=c++20 -fsyntax-only ${INCLUDE} "${SOURCE}")
+set(command "${COMPILER}" -std=c++20 ${mode} ${INCLUDE} "${SOURCE}")
 
 execute_process(COMMAND ${command} RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
 if(NOT failed)
