@@ -15,6 +15,6 @@ configure_package_config_file(cmake/pliantConfig.cmake.in pliantConfig.cmake
 write_basic_package_version_file(pliantConfigVersion.cmake COMPATIBILITY SameMinorVersion
                                  ARCH_INDEPENDENT)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/pliantConfig.cmake"
-              "${CMAKE_CURRENT_BINARY_DIR}/pliantConfigVersion.cmake"
+              "${CMAKE_CURRENT_BINARY_DIR}/pliantConfigVersion.cmake" cmake/simd_message.cmake
         DESTINATION "${package_folder}")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -24,6 +24,12 @@ target_link_libraries(pliant INTERFACE Eigen3::Eigen)
 pliant_add_headers(pliant_openmp backends/openmp)
 set_target_properties(pliant_openmp PROPERTIES EXPORT_NAME openmp)
 target_link_libraries(pliant_openmp INTERFACE pliant OpenMP::OpenMP_CXX)
+# Projects are told of AVX when they are configured, not by each compilation.
+target_compile_definitions(pliant_openmp INTERFACE PLIANT_WITHOUT_AVX)
+if(NOT PROJECT_IS_TOP_LEVEL)
+  include("${CMAKE_CURRENT_LIST_DIR}/simd_message.cmake")
+  pliant_simd_message()
+endif()
 # g++ 12 crashes in this pass on the largest kernels of packs; packs are vectors already and gain
 # nothing from it.
 target_compile_options(

@@ -13,6 +13,7 @@
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/threads.hpp>
 #include <pliant/openmp/transpose.hpp>
+#include <pliant/openmp/without_avx.hpp>
 
 #if !defined(_OPENMP)
 #error "pliant/openmp.hpp needs OpenMP: link pliant::openmp, or compile with -fopenmp."
@@ -25,7 +26,10 @@ struct OpenMPOptions {
 };
 
 /// Threads over patches of elements, SIMD lanes over the elements of a patch. The results have the
-/// same bits for any number of threads.
+/// same bits for any number of threads. Threads that wait keep their cores busy for a while; where other
+/// programs want these, every loop then waits for its slowest thread: ask for fewer threads than
+/// idle cores, or start the program with OMP_WAIT_POLICY=passive in its environment. An exception that a
+/// functor throws leaves the verb; what the verb wrote until then is unspecified.
 template <std::floating_point T>
 class OpenMP {
  public:
