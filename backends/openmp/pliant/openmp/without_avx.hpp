@@ -9,7 +9,7 @@
 #pragma clang diagnostic warning "-W#pragma-messages"  // no error under -Werror
 #endif
 #pragma message( \
-        "Pliant computes elements in SSE registers; -march=native takes a half to a quarter of the time. -DPLIANT_WITHOUT_AVX silences this.")
+        "Pliant computes elements in SSE registers; with -march=native AVX2 takes about 0.6, AVX-512 a third of the time. -DPLIANT_WITHOUT_AVX silences this.")
 #if defined(__clang__)
 #pragma clang diagnostic pop
 #endif
