@@ -1,7 +1,7 @@
 #pragma once
 
-#include <pliant/law/per_element.hpp>
-#include <pliant/law/viscosity.hpp>
+#include <pliant/law/decorators/per_element.hpp>
+#include <pliant/law/decorators/viscosity.hpp>
 
 #include "support/formulations.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <pliant/law/decorators/per_element.hpp>
 #include <pliant/law/guccione.hpp>
-#include <pliant/law/per_element.hpp>
 #include <pliant/solver/assemble.hpp>
 
 #include "support/flat.hpp"

@@ -1,4 +1,4 @@
-#include <pliant/law/per_element.hpp>
+#include <pliant/law/decorators/per_element.hpp>
 
 #include "law/sheets.hpp"
 

@@ -1,4 +1,4 @@
-#include <pliant/law/plane_stress.hpp>
+#include <pliant/law/decorators/plane_stress.hpp>
 
 #include "support/laws.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/law/plane_stress.hpp>
+#include <pliant/law/decorators/plane_stress.hpp>
 
 #include "support/difference_quotient.hpp"
 #include "support/laws.hpp"

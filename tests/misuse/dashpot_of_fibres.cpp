@@ -1,9 +1,9 @@
 // expect: KelvinVoigt takes laws of solids without values per element: .*laws of fibres
 #include <pliant/element/linear.hpp>
 #include <pliant/formulation/formulation.hpp>
+#include <pliant/law/decorators/viscosity.hpp>
 #include <pliant/law/guccione.hpp>
 #include <pliant/law/neo_hookean.hpp>
-#include <pliant/law/viscosity.hpp>
 #include <pliant/quadrature/gauss.hpp>
 
 using namespace pliant;

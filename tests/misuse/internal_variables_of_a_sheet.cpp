@@ -1,9 +1,9 @@
 // expect: Prony takes laws of solids without values per element: not PlaneStress
 #include <pliant/element/linear.hpp>
 #include <pliant/formulation/formulation.hpp>
+#include <pliant/law/decorators/plane_stress.hpp>
+#include <pliant/law/decorators/viscosity.hpp>
 #include <pliant/law/neo_hookean.hpp>
-#include <pliant/law/plane_stress.hpp>
-#include <pliant/law/viscosity.hpp>
 #include <pliant/quadrature/gauss.hpp>
 
 using namespace pliant;

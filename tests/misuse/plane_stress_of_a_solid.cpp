@@ -1,6 +1,6 @@
 // expect: this law is that of a plane body
+#include <pliant/law/decorators/plane_stress.hpp>
 #include <pliant/law/neo_hookean.hpp>
-#include <pliant/law/plane_stress.hpp>
 
 using namespace pliant;
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <pliant/element/element.hpp>
+#include <pliant/formulation/scheme/f_bar.hpp>
 #include <pliant/law/law.hpp>
-#include <pliant/quadrature/f_bar.hpp>
 
 namespace pliant {
 

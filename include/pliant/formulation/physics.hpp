@@ -1,9 +1,9 @@
 #pragma once
 
-#include <pliant/formulation/hourglass.hpp>
 #include <pliant/formulation/mass.hpp>
-#include <pliant/formulation/mean_dilatation.hpp>
-#include <pliant/formulation/pointwise.hpp>
+#include <pliant/formulation/scheme/hourglass.hpp>
+#include <pliant/formulation/scheme/mean_dilatation.hpp>
+#include <pliant/formulation/scheme/pointwise.hpp>
 
 // The physics of one element, as functions of its nodal values: positions at rest X and
 // displacements u. Values in, values out; the scalar S may be float, double, a pack of elements or

@@ -4,12 +4,12 @@
 #include <type_traits>
 
 #include <pliant/law/elastic.hpp>
-#include <pliant/law/fibre_invariants.hpp>
-#include <pliant/law/green_strain.hpp>
-#include <pliant/law/invariants.hpp>
-#include <pliant/law/isochoric_invariants.hpp>
+#include <pliant/law/invariants/fibre_invariants.hpp>
+#include <pliant/law/invariants/green_strain.hpp>
+#include <pliant/law/invariants/invariants.hpp>
+#include <pliant/law/invariants/isochoric_invariants.hpp>
+#include <pliant/law/invariants/principal_stretches.hpp>
 #include <pliant/law/parameters.hpp>
-#include <pliant/law/principal_stretches.hpp>
 
 // A law is an aggregate template of its parameters, all of type T, with its strain energy density
 // written once:

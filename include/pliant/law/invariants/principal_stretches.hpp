@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/law/invariants.hpp>
+#include <pliant/law/invariants/invariants.hpp>
 #include <pliant/math/spectrum.hpp>
 
 namespace pliant {

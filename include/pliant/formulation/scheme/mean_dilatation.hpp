@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pliant/formulation/kinematics.hpp>
-#include <pliant/quadrature/f_bar.hpp>
+#include <pliant/formulation/scheme/f_bar.hpp>
 
 namespace pliant {
 

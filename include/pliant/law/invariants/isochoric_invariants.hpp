@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/law/invariants.hpp>
+#include <pliant/law/invariants/invariants.hpp>
 
 // Invariants with I₂, and those of the isochoric part F̄ = J^(−1/3) F of a deformation.
 namespace pliant {

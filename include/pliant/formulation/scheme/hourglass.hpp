@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pliant/formulation/kinematics.hpp>
-#include <pliant/quadrature/one_point.hpp>
+#include <pliant/formulation/scheme/one_point.hpp>
 
 namespace pliant {
 

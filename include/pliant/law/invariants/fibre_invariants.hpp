@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <pliant/law/invariants.hpp>
+#include <pliant/law/invariants/invariants.hpp>
 
 // Sets of invariants in which a law with fibres may write its energy. Its point has `fibres`, an array
 // of what stands for each: a direction, a unit vector or 0, unless the set says otherwise. The energies
