@@ -82,7 +82,7 @@ struct CompressibleMooney {
   T c1, c2;
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalInvariants<S> const& i) const {
-    return c1 * i.I1_minus_3() + c2 * i.I2_3() - (2 * c1 + 4 * c2) * log1p(i.J_minus_1);
+    return c1 * i.I1_minus_3() + c2 * i.I2_minus_3() - (2 * c1 + 4 * c2) * log1p(i.J_minus_1);
   }
 };
 static_assert(EnergyIn<CompressibleMooney<double>, PrincipalInvariants>);

@@ -13,7 +13,7 @@ struct MooneyRivlin {
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(MooneyInvariants<S> const& i) const {
-    return c1 * i.I1_minus_3 + c2 * i.I2_3 + bulk / 2 * square(i.J_minus_1);
+    return c1 * i.I1_minus_3 + c2 * i.I2_minus_3 + bulk / 2 * square(i.J_minus_1);
   }
   /// `share` of the shear modulus is that of Ī₂: between 0.1 and 0.3 for most rubbers.
   static MooneyRivlin from(Elastic const& m, double share = 0.25) {

@@ -15,7 +15,7 @@ struct PrincipalInvariants {
   S J_minus_1;  // J − 1
 
   PLIANT_HOST_DEVICE S I1_minus_3() const { return D1 + (J_minus_1 + J_minus_1); }  // I₁ − 3
-  PLIANT_HOST_DEVICE S I2_3() const { return D2 + 4 * J_minus_1; }                  // I₂ − 3
+  PLIANT_HOST_DEVICE S I2_minus_3() const { return D2 + 4 * J_minus_1; }            // I₂ − 3
 
   template <class T>
   using rebind = PrincipalInvariants<T>;
@@ -41,8 +41,9 @@ struct PrincipalInvariants {
   PLIANT_HOST_DEVICE static Tensor<S, Dim> stress(PrincipalInvariants const& w,
                                                   Tensor<S, Dim> const& h) {
     if constexpr (Dim == 2) {
-      S const j_1 = determinant_less_one(h);
-      return CauchyGreenInvariants<S>::stress({w.D1 + w.D2, w.J_minus_1 + (w.D2 + w.D2) * j_1}, h);
+      S const J_minus_1 = determinant_less_one(h);
+      return CauchyGreenInvariants<S>::stress(
+          {w.D1 + w.D2, w.J_minus_1 + (w.D2 + w.D2) * J_minus_1}, h);
     } else {
       Tensor<S, 3> m = builtin_scalar<S>(-1) * GreenInvariants<S>::strain(h);
       S const t = -pliant::trace(m);
@@ -112,16 +113,16 @@ template <class S>
 struct MooneyInvariants {
   static constexpr int count = 3;
   S I1_minus_3;  // Ī₁ − 3
-  S I2_3;        // Ī₂ − 3
+  S I2_minus_3;  // Ī₂ − 3
   S J_minus_1;   // J − 1
 
   template <class T>
   using rebind = MooneyInvariants<T>;
   PLIANT_HOST_DEVICE S& operator[](int k) {
-    return k == 0 ? I1_minus_3 : k == 1 ? I2_3 : J_minus_1;
+    return k == 0 ? I1_minus_3 : k == 1 ? I2_minus_3 : J_minus_1;
   }
   PLIANT_HOST_DEVICE S const& operator[](int k) const {
-    return k == 0 ? I1_minus_3 : k == 1 ? I2_3 : J_minus_1;
+    return k == 0 ? I1_minus_3 : k == 1 ? I2_minus_3 : J_minus_1;
   }
 
   /// Ī₂ is the Ī₁ of cof F, whose determinant is J².
@@ -141,7 +142,8 @@ struct MooneyInvariants {
                                                   Tensor<S, Dim> const& h) {
     auto const i = PrincipalInvariants<S>::of(h);
     detail::PowersOfJ<S> const J(i.J_minus_1);
-    S const by_D1 = w.I1_minus_3 * J.inverse_square, by_D2 = w.I2_3 * square(J.inverse_square);
+    S const by_D1 = w.I1_minus_3 * J.inverse_square,
+            by_D2 = w.I2_minus_3 * square(J.inverse_square);
     S const by_J = builtin_scalar<S>(2.0 / 3) * J.inverse *
                    (by_D1 * (i.J_minus_1 - i.D1) - 2 * by_D2 * (i.J_minus_1 + i.D2));
     return PrincipalInvariants<S>::stress({by_D1, by_D2, w.J_minus_1 + by_J}, h);
