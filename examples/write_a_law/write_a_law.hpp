@@ -8,7 +8,7 @@
 namespace write_a_law {
 using namespace pliant;
 /// Foamed rubber with ν = 1/4 (Blatz and Ko 1962): W = μ/2 (I₂/J² + 2 J − 5). In invariants that vanish
-/// at rest small strains keep their digits: with D₂ = I₂ − 3 − 4 j and j = J − 1 the bracket is this.
+/// at rest small strains keep their digits: with D₂ = I₂ − 3 − 4 j and j = J − 1 the bracket is this. For J > 0.
 template <class T>
 struct BlatzKo {
   T mu;  // shear modulus, Pa
@@ -16,7 +16,7 @@ struct BlatzKo {
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalInvariants<S> const& i) const {
     S const j = i.J_minus_1;
-    return mu / 2 * (i.D2 + j * j + 2 * j * j * j) / square(1 + j);
+    return mu / 2 * (i.D2 + j * j + 2 * j * j * j) / square(positive_or_nan(1 + j));
   }
 };
 

@@ -39,6 +39,10 @@ struct Formulation {
   using law = L<T>;
   static constexpr int dim = E::dim, nodes = E::nodes;
   static constexpr int points = Tabulation<E, Q, double>::count;
+  /// As its law does; F-bar asks J of all points of an element to have one sign.
+  static constexpr bool takes_inversion =
+      pliant::takes_inversion<L<double>> &&
+      (!has_mean_dilatation<Q> || EnergyIn<L<double>, StrainInvariants>);
 };
 
 }  // namespace pliant

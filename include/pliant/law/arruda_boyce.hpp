@@ -15,6 +15,8 @@ struct ArrudaBoyce {
   T locking;  // λₘ
   T bulk;     // κ, Pa
 
+  static constexpr bool takes_inversion = false;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     // Σ aₖ (uᵏ − u₀ᵏ) = (u − u₀) Σ eₘ uᵐ with eₘ = aₘ₊₁ + u₀ eₘ₊₁, which is 0 for m = 5

@@ -6,13 +6,15 @@ namespace pliant {
 
 /// Corotated linear: W = μ |F − R|² + λ/2 (tr(RᵀF − I))² with the rotation R of the polar
 /// decomposition F = R U. Hooke's law without its error under rotation, and no more than that: a
-/// finite energy resists inversion. Where J < 0, R stays a rotation, and U has one negative
+/// finite energy resists inversion. Defined for every F. Where J < 0, R stays a rotation, and U has one negative
 /// eigenvalue; R jumps where two eigenvalues add up to 0, the mirrored states, about which the
 /// energy is good to 1%. (Chao, Pinkall, Sanan and Schröder, A simple geometric model for elastic
 /// deformations, ACM Trans. Graph. 29, 2010.)
 template <class T>
 struct Corotated {
   T lambda, mu;  // Lamé's parameters, Pa
+
+  static constexpr bool takes_inversion = true;
 
   /// In tr U: |F − R|² = I₁ + 3 − 2 tr U and tr(RᵀF − I) = tr U − 3.
   template <class S>

@@ -6,12 +6,15 @@ namespace pliant {
 
 /// Fung's law of soft tissue, isotropic: W = μ/(2b) (e^Q − 1), Q = b (2 tr E² + λ/μ (tr E)²) with
 /// the Green strain E = (FᵀF − I)/2. Stiffens as its exponent grows, and softens under compression
-/// as Saint Venant-Kirchhoff does, which it is for b → 0. (Fung, Biomechanics: Mechanical
+/// as Saint Venant-Kirchhoff does, which it is for b → 0, and as blind to inversion. Defined for every F.
+/// (Fung, Biomechanics: Mechanical
 /// Properties of Living Tissues, section 7.11.)
 template <class T>
 struct Fung {
   T lambda, mu;  // Lamé's parameters at rest, Pa; μ not 0
   T exponent;    // b, not 0
+
+  static constexpr bool takes_inversion = true;
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(GreenInvariants<S> const& E) const {

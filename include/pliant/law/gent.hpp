@@ -13,6 +13,8 @@ struct Gent {
   T limit;  // Jₘ, the Ī₁ − 3 that is never reached
   T bulk;   // κ, Pa
 
+  static constexpr bool takes_inversion = false;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     return -mu * limit / 2 * log1p(-i.I1_minus_3 / limit) + bulk / 2 * square(i.J_minus_1);

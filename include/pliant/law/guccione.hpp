@@ -8,7 +8,7 @@ namespace pliant {
 /// Q = b_f E_ff² + b_t (E_ss² + E_nn² + 2 E_sn²) + 2 b_fs (E_fs² + E_fn²) in the components of the
 /// Green strain along the fibre f and any two directions across. The fibre is the value of an
 /// element: three components, of any length; none where they are 0, and then Q = b_t E:E. Softens
-/// under compression; κ far above c makes muscle nearly incompressible. (Guccione, McCulloch and
+/// under compression; κ far above c makes muscle nearly incompressible. Defined for every F. (Guccione, McCulloch and
 /// Waldman, Journal of Biomechanical Engineering 113 (1991) 42.)
 template <class T>
 struct Guccione {
@@ -17,12 +17,15 @@ struct Guccione {
   T bulk;                         // κ, Pa
 
   static constexpr int element_values = 3;
+  static constexpr bool takes_inversion = true;
 
   /// The law of an element with its direction.
   template <class S>
   struct Along {
     Guccione law;
     Vector<S, 3> fibres[1];
+
+    static constexpr bool takes_inversion = Guccione::takes_inversion;
 
     template <class V>
     PLIANT_HOST_DEVICE V energy(FibreStrain<V> const& E) const {

@@ -21,6 +21,7 @@ struct HolzapfelGasserOgden {
   T bulk;        // κ, Pa
 
   static constexpr int element_values = 6;
+  static constexpr bool takes_inversion = false;
 
   void check() const { detail::demand(k2 != 0, "Holzapfel-Gasser-Ogden's k2", k2, "not be 0"); }
   /// The law of an element with its directions.
@@ -29,6 +30,8 @@ struct HolzapfelGasserOgden {
     HolzapfelGasserOgden law;
     T scale;  // k₁/(2 k₂), Pa
     Tensor<S, 3> fibres[2];
+
+    static constexpr bool takes_inversion = HolzapfelGasserOgden::takes_inversion;
 
     template <class V>
     PLIANT_HOST_DEVICE V energy(IsochoricInvariants<V> const& i) const {

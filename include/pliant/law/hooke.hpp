@@ -5,10 +5,13 @@
 namespace pliant {
 
 /// Hooke's law of linear elasticity: W = λ/2 (tr e)² + μ e:e with e = sym H. Cheap, and wrong as
-/// soon as elements rotate: a rotation by θ makes a strain of cos θ − 1.
+/// soon as elements rotate: a rotation by θ makes a strain of cos θ − 1. Defined for every F, inverted
+/// and flattened too.
 template <class T>
 struct Hooke {
   T lambda, mu;  // Lamé's parameters, Pa
+
+  static constexpr bool takes_inversion = true;
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(StrainInvariants<S> const& e) const {

@@ -5,11 +5,13 @@
 namespace pliant {
 
 /// Neo-Hookean, split into change of shape and of volume: W = μ/2 (Ī₁ − 3) + κ/2 (J − 1)². For
-/// J > 0, but blind to it: the energy stays finite where J goes to 0. (Bonet and Wood, Nonlinear
+/// J > 0; under pressure alone the energy stays finite where J goes to 0. (Bonet and Wood, Nonlinear
 /// Continuum Mechanics for Finite Element Analysis, section 6.5.)
 template <class T>
 struct IsochoricNeoHookean {
   T mu, bulk;  // shear modulus and bulk modulus κ, Pa
+
+  static constexpr bool takes_inversion = false;
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {

@@ -10,6 +10,7 @@
 #include <pliant/law/invariants/isochoric_invariants.hpp>
 #include <pliant/law/invariants/principal_stretches.hpp>
 #include <pliant/law/parameters.hpp>
+#include <pliant/law/takes_inversion.hpp>
 
 // A law is an aggregate template of its parameters, all of type T, with its strain energy density
 // written once:
@@ -26,6 +27,7 @@
 // S may be T, a pack of elements or a dual number of either: write `select`, never `if`, on values,
 // and integers or T(0.5) for constants. `from` is needed only where the law takes its parameters
 // from an `Elastic`, `void check() const` only where some parameters are impossible: it throws Error.
+// `static constexpr bool takes_inversion = true` says that it is defined for J ≤ 0 too.
 // Stress and tangent follow by differentiation.
 namespace pliant {
 
@@ -90,10 +92,10 @@ template <class L>
 concept LawPerElement = requires(L const& law, Vector<double, L::element_values> const& values) {
   { law.at(values) } -> PointLaw;
 };
-/// A law whose quadrature points keep internal variables, `internal_variables<d>` each in d dimensions. `over(step)` is what
-/// a time step (s) makes of it; then `after(internal)` is the law at a point with that internal, and
-/// `advanced(internal, H)` what the point keeps once it has come to H, and `equilibrated(H)` what it
-/// keeps if it has always been there. See KelvinVoigt and Prony.
+/// A law whose quadrature points keep internal variables, `internal_variables<d>` each in d dimensions.
+/// `over(step)` is what a time step (s) makes of it; then `after(internal)` is the law at a point with
+/// those, `advanced(internal, H)` what the point keeps once it has come to H, and `equilibrated(H)` what
+/// it keeps if it has always been there. See KelvinVoigt and Prony.
 template <class L>
 concept LawWithInternalVariables =
     requires(L const& law, Vector<double, L::template internal_variables<3>> const& internal,

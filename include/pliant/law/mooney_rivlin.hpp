@@ -11,6 +11,8 @@ template <class T>
 struct MooneyRivlin {
   T c1, c2, bulk;  // Pa
 
+  static constexpr bool takes_inversion = false;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(MooneyInvariants<S> const& i) const {
     return c1 * i.I1_minus_3 + c2 * i.I2_minus_3 + bulk / 2 * square(i.J_minus_1);

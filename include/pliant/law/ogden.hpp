@@ -14,6 +14,8 @@ struct Ogden {
   T alpha[3];  // αₚ
   T bulk;      // κ, Pa
 
+  static constexpr bool takes_inversion = false;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(PrincipalStretches<S> const& l) const {
     S const log_1 = log1p(l[0]), log_2 = log1p(l[1]), log_3 = log1p(l[2]);

@@ -5,10 +5,13 @@
 namespace pliant {
 
 /// Saint Venant-Kirchhoff: W = λ/2 (tr E)² + μ tr E² with the Green strain E = (FᵀF − I)/2. Exact
-/// under rotation; softens under compression (uniaxial stress: beyond the stretch 1/√3).
+/// under rotation; softens under compression (uniaxial stress: beyond the stretch 1/√3). Defined for every
+/// F, but blind to inversion: a mirror image at rest has no energy.
 template <class T>
 struct SaintVenantKirchhoff {
   T lambda, mu;  // Lamé's parameters, Pa
+
+  static constexpr bool takes_inversion = true;
 
   template <class S>
   PLIANT_HOST_DEVICE S energy(GreenInvariants<S> const& E) const {

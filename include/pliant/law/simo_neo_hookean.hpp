@@ -11,6 +11,8 @@ template <class T>
 struct SimoNeoHookean {
   T mu, bulk;  // shear modulus and bulk modulus κ, Pa
 
+  static constexpr bool takes_inversion = false;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     return mu / 2 * i.I1_minus_3 +

@@ -12,6 +12,8 @@ template <class T>
 struct StableNeoHookean {
   T lambda, mu;  // Lamé's parameters, Pa
 
+  static constexpr bool takes_inversion = true;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(CauchyGreenInvariants<S> const& i) const {
     return mu / 2 * i.D + (lambda + mu) / 2 * square(i.J_minus_1);

@@ -11,6 +11,8 @@ template <class T>
 struct Yeoh {
   T c1, c2, c3, bulk;  // Pa
 
+  static constexpr bool takes_inversion = false;
+
   template <class S>
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     return i.I1_minus_3 * (c1 + i.I1_minus_3 * (c2 + i.I1_minus_3 * c3)) +

@@ -157,6 +157,11 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N> square_of_positive(Dual<T, N> const& x) 
   return x.chain(part * part, part + part);
 }
 template <class T, int N>
+PLIANT_HOST_DEVICE constexpr Dual<T, N> positive_or_nan(Dual<T, N> x) {
+  x.value = positive_or_nan(x.value);
+  return x;
+}
+template <class T, int N>
 PLIANT_HOST_DEVICE constexpr Dual<T, N> sqrt(Dual<T, N> const& x) {
   T const root = sqrt(x.value);
   return x.chain(root, T(1) / (T(2) * root));

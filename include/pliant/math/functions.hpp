@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <type_traits>
 
 #include <pliant/config.hpp>
@@ -12,6 +13,14 @@ namespace pliant {
 
 template <class T>
 concept Arithmetic = std::is_arithmetic_v<T>;
+
+/// The scalar in which a value's parts are stored: `float` for a pack of floats or their duals.
+template <class T>
+struct BuiltinScalar {
+  using type = T;
+};
+template <class T>
+using builtin_scalar = typename BuiltinScalar<T>::type;
 
 template <std::floating_point T>
 PLIANT_HOST_DEVICE T sqrt(T x) {
@@ -79,6 +88,18 @@ PLIANT_HOST_DEVICE T square_of_positive(T const& x) {
   return square(max(x, T(0)));
 }
 
+template <class T>
+PLIANT_HOST_DEVICE T not_a_number() {
+  constexpr auto nan = std::numeric_limits<builtin_scalar<T>>::quiet_NaN();
+  return T(nan);
+}
+/// x where it is positive, NaN elsewhere: for what is defined for positive numbers only, such as an
+/// energy with 1/J². All that is computed from it is NaN then, derivatives included.
+template <class T>
+PLIANT_HOST_DEVICE T positive_or_nan(T const& x) {
+  return select(T(0) < x, x, not_a_number<T>());
+}
+
 /// x − ln(1 + x), without the cancellation that the plain difference suffers for small x.
 template <class T>
 PLIANT_HOST_DEVICE T excess_of_log1p(T const& x) {
@@ -96,13 +117,5 @@ PLIANT_HOST_DEVICE T excess_of_expm1(T const& x) {
   for (int k = 16; k >= 3; --k) series = T(1) + T(1) / T(k) * x * series;
   return select(abs(x) < T(0.5), x * x / T(2) * series, expm1(x) - x);
 }
-
-/// The scalar in which a value's parts are stored: `float` for a pack of floats or their duals.
-template <class T>
-struct BuiltinScalar {
-  using type = T;
-};
-template <class T>
-using builtin_scalar = typename BuiltinScalar<T>::type;
 
 }  // namespace pliant

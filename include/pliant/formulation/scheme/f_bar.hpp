@@ -10,7 +10,7 @@ namespace pliant {
 /// Quad9, Hex20 and Hex27 the mean is the linear function of ξ nearest to J, and they keep their order;
 /// on all others it is a constant. One Tri6 or Tet10 has one pressure (Tet10 with Gauss<3>: four points
 /// would leave deformations free, and one Tet10 by itself three in any case). Forces derive from the
-/// energy at F̄.
+/// energy at F̄, which is NaN where J and J̄ differ in sign.
 template <class Q>
 struct FBar {
   using points = Q;

@@ -12,6 +12,7 @@ struct PerElement {
   template <class T>
   struct law {
     static constexpr int element_values = static_cast<int>(parameter_count<L<T>, T>);
+    static constexpr bool takes_inversion = pliant::takes_inversion<L<T>>;
 
     template <class S>
     PLIANT_HOST_DEVICE auto at(Vector<S, element_values> const& values) const {

@@ -11,8 +11,10 @@ template <class L>
 struct Sheet {
   L solid;
 
+  static constexpr bool takes_inversion = false;
+
   void check() const { detail::check_parameters(solid); }
-  /// F₃₃ − 1 at the in-plane displacement gradient h, by Newton's method on ln F₃₃. It starts from
+  /// F₃₃ − 1 at the in-plane displacement gradient h, by Newton's method on ln F₃₃; NaN for J₂ ≤ 0. It starts from
   /// F₃₃ = J₂^(−r), J₂ = det F in the plane, r the law's own ratio at rest, which is exact for
   /// λ/2 (ln J)² and in the limit of incompressibility. After 6 steps all laws here are exact to
   /// rounding at stretches of 0.6 to 1.6; after 8 to 1e-9 at 0.37 to 2.7, up to ν = 0.4995.
@@ -23,13 +25,14 @@ struct Sheet {
     S const ratio = (at_rest(0, 0).derivative[0] + at_rest(1, 1).derivative[0]) /
                     (2 * at_rest(2, 2).derivative[0]);
     S const flattest = S(builtin_scalar<S>(-0.95));  // what a flattened element starts from
-    S z = expm1(-ratio * log1p(max(determinant_less_one(h), flattest)));
+    S const J2_minus_1 = determinant_less_one(h);
+    S z = expm1(-ratio * log1p(max(J2_minus_1, flattest)));
     for (int step = 0; step < steps; ++step) {
       Dual<S, 1> const p33 = stress(solid, thickness_varies(h, z))(2, 2);
       S const F33 = 1 + z, slope = p33.value + F33 * p33.derivative[0];
       z = z + F33 * expm1(-p33.value / slope);
     }
-    return z;
+    return select(S(0) < 1 + J2_minus_1, z, not_a_number<S>());
   }
   /// One more step makes the derivative: ∂F₃₃/∂F = −(∂P₃₃/∂F)/(∂P₃₃/∂F₃₃).
   template <class U, int N>
@@ -80,6 +83,9 @@ template <class T>
 struct Sheet<Hooke<T>> {
   Hooke<T> solid;
 
+  static constexpr bool takes_inversion = true;
+
+  void check() const { detail::check_parameters(solid); }
   template <class S>
   PLIANT_HOST_DEVICE S thickening(Tensor<S, 2> const& h) const {
     return -solid.lambda / (solid.lambda + 2 * solid.mu) * trace(h);
@@ -103,6 +109,7 @@ template <LawPerElement L>
 struct Sheet<L> {
   L solid;
   static constexpr int element_values = L::element_values;
+  static constexpr bool takes_inversion = false;
 
   void check() const { detail::check_parameters(solid); }
   template <class S>
@@ -117,7 +124,7 @@ struct Sheet<L> {
 /// strain: Formulation<Quad4, Gauss<2>, PlaneStress<NeoHookean>::law>. Forces are per thickness at
 /// rest. Of any law in whose state h₁₃ = h₂₃ = 0 there is no out-of-plane shear stress: isotropic
 /// ones, and those of fibres within the plane or normal to it. Costs 9 tangent products of the law,
-/// Hooke's none. Where no F₃₃ > 0 makes P₃₃ = 0 (Saint Venant-Kirchhoff, Fung and corotated sheets
+/// Hooke's none. For J > 0 in the plane, whatever the law, but for Hooke's. Where no F₃₃ > 0 makes P₃₃ = 0 (Saint Venant-Kirchhoff, Fung and corotated sheets
 /// at large stretch) the result means nothing.
 template <template <class> class L>
 struct PlaneStress {

@@ -56,6 +56,8 @@ struct KelvinVoigt {
     L<T> elastic;
     T viscosity;  // η, Pa s
 
+    static constexpr bool takes_inversion = pliant::takes_inversion<L<T>>;
+
     void check() const { detail::check_parameters(elastic); }
 
     template <int Dim>
@@ -106,7 +108,7 @@ struct KelvinVoigt {
 /// A Prony series of Maxwell branches beside the elastic law L, which is what remains when all are
 /// relaxed: S = S_L + Σ_i Q_i with dQ_i/dt + Q_i/τ_i = β_i dS_L/dt. With one branch the standard linear
 /// solid. Integrated exactly for a stress S_L that is linear in time over a step (Taylor, Pister and
-/// Goudreau 1970; Simo 1987).
+/// Goudreau 1970; Simo 1987). S_L = F⁻¹ P grows beyond bounds where J goes to 0, and is NaN there.
 template <template <class> class L, int Branches = 1>
 struct Prony {
   template <class T>
@@ -117,6 +119,8 @@ struct Prony {
     L<T> elastic;
     T share[Branches];       // β_i: stiffness of a branch over that of L
     T relaxation[Branches];  // τ_i, s
+
+    static constexpr bool takes_inversion = pliant::takes_inversion<L<T>>;
 
     void check() const {
       detail::check_parameters(elastic);

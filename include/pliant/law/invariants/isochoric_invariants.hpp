@@ -57,13 +57,15 @@ struct PrincipalInvariants {
 
 namespace detail {
 
-/// Powers of J; neither the root nor the division waits for the other.
+/// Powers of J, NaN where J ≤ 0; neither the root nor the division waits for the other.
 template <class S>
 struct PowersOfJ {
   S x, inverse, inverse_square;  // J^(1/3), 1/J, J^(−2/3)
 
   PLIANT_HOST_DEVICE explicit PowersOfJ(S const& J_minus_1)
-      : x(cbrt(1 + J_minus_1)), inverse(1 / (1 + J_minus_1)), inverse_square(x * inverse) {}
+      : x(cbrt(1 + J_minus_1)),
+        inverse(1 / positive_or_nan(1 + J_minus_1)),
+        inverse_square(x * inverse) {}
   /// J^(1/3) − 1
   PLIANT_HOST_DEVICE S less_one(S const& J_minus_1) const {
     return J_minus_1 / (square(x) + x + 1);
@@ -72,7 +74,7 @@ struct PowersOfJ {
 
 }  // namespace detail
 
-/// Of the isochoric part of a deformation, Ī₁ − 3 with Ī₁ = J^(−2/3) I₁, and J − 1. For J > 0.
+/// Of the isochoric part of a deformation, Ī₁ − 3 with Ī₁ = J^(−2/3) I₁, and J − 1. NaN for J ≤ 0.
 template <class S>
 struct IsochoricInvariants {
   static constexpr int count = 2;
@@ -107,8 +109,8 @@ struct IsochoricInvariants {
   }
 };
 
-/// Of the isochoric part of a deformation, Ī₁ − 3 and Ī₂ − 3 with Ī₂ = J^(−4/3) I₂, and J − 1. For
-/// J > 0.
+/// Of the isochoric part of a deformation, Ī₁ − 3 and Ī₂ − 3 with Ī₂ = J^(−4/3) I₂, and J − 1. NaN
+/// for J ≤ 0.
 template <class S>
 struct MooneyInvariants {
   static constexpr int count = 3;
