@@ -64,4 +64,15 @@ TEST_CASE("law_cast changes the precision of every parameter", "[law]") {
   CHECK(fibres.stiffness == 1);
 }
 
+TEST_CASE("law_cast refuses parameters that the precision cannot hold", "[law]") {
+  for (double value : {1e39, 1e300, -1e300, 1e-60}) {
+    CHECK_THROWS_WITH(
+        law_cast<float>(NeoHookean<double>{3, value}),
+        says("law_cast: parameter 1 of a law is ") && says("which 32 bits cannot hold"));
+    CHECK(law_cast<double>(NeoHookean<double>{3, value}).mu == value);
+  }
+  CHECK_THROWS_WITH(law_cast<double>(NeoHookean<double>{INFINITY, 2}), says("parameter 0"));
+  CHECK(law_cast<float>(NeoHookean<double>{0, 3e38}).mu == 3e38f);
+}
+
 }  // namespace pliant::test

@@ -11,9 +11,9 @@ namespace pliant {
 /// of the Mechanics and Physics of Solids 41 (1993) 389.)
 template <class T>
 struct ArrudaBoyce {
-  T mu;       // μ₀ = nkT, less than the shear modulus at rest, Pa
-  T locking;  // λₘ
-  T bulk;     // κ, Pa
+  T mu;       // μ₀ = nkT, less than the shear modulus at rest, Pa: positive
+  T locking;  // λₘ, above 1
+  T bulk;     // κ, Pa: positive
 
   static constexpr bool takes_inversion = false;
 
@@ -31,7 +31,9 @@ struct ArrudaBoyce {
     return mu * i.I1_minus_3 * sum + bulk / 2 * square(i.J_minus_1);
   }
   void check() const {
-    detail::demand(locking > 0, "Arruda-Boyce's locking stretch", locking, "be positive");
+    detail::demand(mu > 0, "Arruda-Boyce's mu", mu, "be positive (in Pa)");
+    detail::demand(locking > 1, "Arruda-Boyce's locking stretch", locking, "be above 1");
+    detail::demand(bulk > 0, "Arruda-Boyce's bulk modulus", bulk, "be positive (in Pa)");
   }
   /// Unless known, λₘ is 7.
   static ArrudaBoyce from(Elastic const& m, double locking = 7) {

@@ -12,7 +12,7 @@ namespace pliant {
 /// deformations, ACM Trans. Graph. 29, 2010.)
 template <class T>
 struct Corotated {
-  T lambda, mu;  // Lamé's parameters, Pa
+  T lambda, mu;  // Lamé's parameters, Pa: μ > 0, 3λ + 2μ > 0
 
   static constexpr bool takes_inversion = true;
 
@@ -22,6 +22,7 @@ struct Corotated {
     S const s = trace_beyond_volume(i);  // tr U − 3 − (J − 1)
     return mu * (i.D1 - 2 * s) + lambda / 2 * square(i.J_minus_1 + s);
   }
+  void check() const { detail::demand_lame("the corotated law", lambda, mu); }
   static Corotated from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 
  private:

@@ -2,22 +2,9 @@
 
 #include <cmath>
 
-#include <pliant/error.hpp>
+#include <pliant/law/ranges.hpp>
 
 namespace pliant {
-
-namespace detail {
-/// Throws Error about a parameter unless the condition holds.
-template <class T>
-void demand(bool holds, char const* what, T value, char const* must) {
-  if (!holds) throw Error(what, " is ", value, "; it must ", must);
-}
-/// Throws Error where a law finds its parameters impossible.
-template <class L>
-void check_parameters(L const& law) {
-  if constexpr (requires { law.check(); }) law.check();
-}
-}  // namespace detail
 
 /// What an engineer knows of an isotropic material. Laws take their parameters from it such that
 /// all agree with Hooke's law at small strain.

@@ -11,8 +11,8 @@ namespace pliant {
 /// Properties of Living Tissues, section 7.11.)
 template <class T>
 struct Fung {
-  T lambda, mu;  // Lamé's parameters at rest, Pa; μ not 0
-  T exponent;    // b, not 0
+  T lambda, mu;  // Lamé's parameters at rest, Pa: μ > 0, 3λ + 2μ > 0
+  T exponent;    // b, positive
 
   static constexpr bool takes_inversion = true;
 
@@ -22,8 +22,8 @@ struct Fung {
     return mu / (2 * exponent) * expm1(Q);
   }
   void check() const {
-    detail::demand(mu != 0, "Fung's mu", mu, "not be 0");
-    detail::demand(exponent != 0, "Fung's exponent", exponent, "not be 0");
+    detail::demand_lame("Fung", lambda, mu);
+    detail::demand(exponent > 0, "Fung's exponent", exponent, "be positive");
   }
   /// Unless known, b is 1.
   static Fung from(Elastic const& m, double exponent = 1) {

@@ -9,9 +9,9 @@ namespace pliant {
 /// (Gent, Rubber Chemistry and Technology 69 (1996) 59.)
 template <class T>
 struct Gent {
-  T mu;     // shear modulus at rest, Pa
-  T limit;  // Jₘ, the Ī₁ − 3 that is never reached
-  T bulk;   // κ, Pa
+  T mu;     // shear modulus at rest, Pa: positive
+  T limit;  // Jₘ, the Ī₁ − 3 that is never reached: positive
+  T bulk;   // κ, Pa: positive
 
   static constexpr bool takes_inversion = false;
 
@@ -19,7 +19,11 @@ struct Gent {
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     return -mu * limit / 2 * log1p(-i.I1_minus_3 / limit) + bulk / 2 * square(i.J_minus_1);
   }
-  void check() const { detail::demand(limit > 0, "Gent's limit", limit, "be positive"); }
+  void check() const {
+    detail::demand(mu > 0, "Gent's mu", mu, "be positive (in Pa)");
+    detail::demand(limit > 0, "Gent's limit", limit, "be positive");
+    detail::demand(bulk > 0, "Gent's bulk modulus", bulk, "be positive (in Pa)");
+  }
   /// Unless known, Jₘ is 97.2, what fits Treloar's rubber: a uniaxial stretch of 10.
   static Gent from(Elastic const& m, double limit = 97.2) {
     return {T(m.lame_mu()), T(limit), T(m.bulk())};

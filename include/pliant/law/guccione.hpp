@@ -12,13 +12,20 @@ namespace pliant {
 /// Waldman, Journal of Biomechanical Engineering 113 (1991) 42.)
 template <class T>
 struct Guccione {
-  T c;                            // Pa
-  T fibre, transverse, shearing;  // b_f, b_t, b_fs
-  T bulk;                         // κ, Pa
+  T c;                            // Pa: positive
+  T fibre, transverse, shearing;  // b_f, b_t, b_fs: positive
+  T bulk;                         // κ, Pa: not negative
 
   static constexpr int element_values = 3;
   static constexpr bool takes_inversion = true;
 
+  void check() const {
+    detail::demand(c > 0, "Guccione's c", c, "be positive (in Pa)");
+    detail::demand(fibre > 0, "Guccione's exponent along fibres", fibre, "be positive");
+    detail::demand(transverse > 0, "Guccione's exponent across fibres", transverse, "be positive");
+    detail::demand(shearing > 0, "Guccione's exponent of shear", shearing, "be positive");
+    detail::demand(bulk >= 0, "Guccione's bulk modulus", bulk, "not be negative (in Pa)");
+  }
   /// The law of an element with its direction.
   template <class S>
   struct Along {

@@ -14,16 +14,23 @@ namespace pliant {
 /// there. (Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15.)
 template <class T>
 struct HolzapfelGasserOgden {
-  T mu;          // shear modulus of the matrix, Pa
-  T k1;          // stiffness of a family, Pa
-  T k2;          // its stiffening, not 0
+  T mu;          // shear modulus of the matrix, Pa: positive
+  T k1;          // stiffness of a family, Pa: not negative
+  T k2;          // its stiffening, positive
   T dispersion;  // d: 0 where all fibres are parallel, 1/3 where they have no direction
-  T bulk;        // κ, Pa
+  T bulk;        // κ, Pa: positive
 
   static constexpr int element_values = 6;
   static constexpr bool takes_inversion = false;
 
-  void check() const { detail::demand(k2 != 0, "Holzapfel-Gasser-Ogden's k2", k2, "not be 0"); }
+  void check() const {
+    detail::demand(mu > 0, "Holzapfel-Gasser-Ogden's mu", mu, "be positive (in Pa)");
+    detail::demand(k1 >= 0, "Holzapfel-Gasser-Ogden's k1", k1, "not be negative (in Pa)");
+    detail::demand(k2 > 0, "Holzapfel-Gasser-Ogden's k2", k2, "be positive");
+    detail::demand(dispersion >= 0 && dispersion <= T(1.0 / 3),
+                   "Holzapfel-Gasser-Ogden's dispersion", dispersion, "be in [0, 1/3]");
+    detail::demand(bulk > 0, "Holzapfel-Gasser-Ogden's bulk modulus", bulk, "be positive (in Pa)");
+  }
   /// The law of an element with its directions.
   template <class S>
   struct Along {

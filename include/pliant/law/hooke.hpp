@@ -9,7 +9,7 @@ namespace pliant {
 /// and flattened too.
 template <class T>
 struct Hooke {
-  T lambda, mu;  // Lamé's parameters, Pa
+  T lambda, mu;  // Lamé's parameters, Pa: μ > 0, 3λ + 2μ > 0
 
   static constexpr bool takes_inversion = true;
 
@@ -17,6 +17,7 @@ struct Hooke {
   PLIANT_HOST_DEVICE S energy(StrainInvariants<S> const& e) const {
     return lambda / 2 * square(e.trace) + mu * e.squares;
   }
+  void check() const { detail::demand_lame("Hooke", lambda, mu); }
   static Hooke from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 };
 

@@ -10,7 +10,7 @@ namespace pliant {
 /// Continuum Mechanics for Finite Element Analysis, section 6.4.3.)
 template <class T>
 struct NeoHookean {
-  T lambda, mu;  // Lamé's parameters, Pa
+  T lambda, mu;  // Lamé's parameters, Pa: μ > 0, 3λ + 2μ > 0
 
   static constexpr bool takes_inversion = false;
 
@@ -19,6 +19,7 @@ struct NeoHookean {
     return mu / 2 * i.D + mu * excess_of_log1p(i.J_minus_1) +
            lambda / 2 * square(log1p(i.J_minus_1));
   }
+  void check() const { detail::demand_lame("the neo-Hookean law", lambda, mu); }
   static NeoHookean from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 };
 

@@ -12,7 +12,7 @@ template <class T>
 struct Ogden {
   T mu[3];     // μₚ, Pa
   T alpha[3];  // αₚ
-  T bulk;      // κ, Pa
+  T bulk;      // κ, Pa: positive
 
   static constexpr bool takes_inversion = false;
 
@@ -28,6 +28,10 @@ struct Ogden {
   void check() const {
     for (T a : alpha)
       detail::demand(a != 0, "an alpha of Ogden", a, "not be 0, even where its mu is");
+    T const shear = (mu[0] * alpha[0] + mu[1] * alpha[1] + mu[2] * alpha[2]) / 2;
+    detail::demand(shear > 0, "Ogden's shear modulus, half the sum of mu alpha,", shear,
+                   "be positive (in Pa)");
+    detail::demand(bulk > 0, "Ogden's bulk modulus", bulk, "be positive (in Pa)");
   }
   /// With the exponents and the proportions of Treloar's rubber (Ogden 1972).
   static Ogden from(Elastic const& m) {

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
+
+#include <pliant/error.hpp>
 
 namespace pliant {
 
@@ -36,7 +39,8 @@ auto parameters(L<T> const& law) {
   }
 }
 
-/// The same law with its parameters in another precision.
+/// The same law with its parameters in another precision. Throws Error where that cannot hold one of them:
+/// where it is not finite, or 0 while the parameter is not.
 template <class To, template <class> class L, class From>
 L<To> law_cast(L<From> const& law) {
   auto const from = parameters(law);
@@ -44,7 +48,12 @@ L<To> law_cast(L<From> const& law) {
     return {};
   } else {
     std::array<To, from.size()> to;
-    for (std::size_t k = 0; k < from.size(); ++k) to[k] = static_cast<To>(from[k]);
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      to[k] = static_cast<To>(from[k]);
+      if (!std::isfinite(to[k]) || (to[k] == 0 && from[k] != 0))
+        throw Error("law_cast: parameter ", k, " of a law is ", from[k], ", which ", 8 * sizeof(To),
+                    " bits cannot hold; take double, or other units");
+    }
     static_assert(sizeof(L<To>) == sizeof(to), "a law L<T> has the same members for each T");
     return std::bit_cast<L<To>>(to);
   }

@@ -9,7 +9,7 @@ namespace pliant {
 /// F, but blind to inversion: a mirror image at rest has no energy.
 template <class T>
 struct SaintVenantKirchhoff {
-  T lambda, mu;  // Lamé's parameters, Pa
+  T lambda, mu;  // Lamé's parameters, Pa: μ > 0, 3λ + 2μ > 0
 
   static constexpr bool takes_inversion = true;
 
@@ -17,6 +17,7 @@ struct SaintVenantKirchhoff {
   PLIANT_HOST_DEVICE S energy(GreenInvariants<S> const& E) const {
     return lambda / 2 * square(E.trace) + mu * E.squares;
   }
+  void check() const { detail::demand_lame("Saint Venant-Kirchhoff", lambda, mu); }
   static SaintVenantKirchhoff from(Elastic const& m) {
     return {T(m.lame_lambda()), T(m.lame_mu())};
   }

@@ -9,7 +9,7 @@ namespace pliant {
 /// Mechanics and Engineering 66 (1988) 199.)
 template <class T>
 struct SimoNeoHookean {
-  T mu, bulk;  // shear modulus and bulk modulus κ, Pa
+  T mu, bulk;  // shear modulus and bulk modulus κ, Pa: positive
 
   static constexpr bool takes_inversion = false;
 
@@ -17,6 +17,10 @@ struct SimoNeoHookean {
   PLIANT_HOST_DEVICE S energy(IsochoricInvariants<S> const& i) const {
     return mu / 2 * i.I1_minus_3 +
            bulk / 4 * (square(i.J_minus_1) + 2 * excess_of_log1p(i.J_minus_1));
+  }
+  void check() const {
+    detail::demand(mu > 0, "Simo's neo-Hookean mu", mu, "be positive (in Pa)");
+    detail::demand(bulk > 0, "Simo's neo-Hookean bulk modulus", bulk, "be positive (in Pa)");
   }
   static SimoNeoHookean from(Elastic const& m) { return {T(m.lame_mu()), T(m.bulk())}; }
 };

@@ -10,7 +10,7 @@ namespace pliant {
 /// so that these are Lamé's parameters.
 template <class T>
 struct StableNeoHookean {
-  T lambda, mu;  // Lamé's parameters, Pa
+  T lambda, mu;  // Lamé's parameters, Pa: μ > 0, 3λ + 2μ > 0
 
   static constexpr bool takes_inversion = true;
 
@@ -18,6 +18,7 @@ struct StableNeoHookean {
   PLIANT_HOST_DEVICE S energy(CauchyGreenInvariants<S> const& i) const {
     return mu / 2 * i.D + (lambda + mu) / 2 * square(i.J_minus_1);
   }
+  void check() const { detail::demand_lame("the stable neo-Hookean law", lambda, mu); }
   static StableNeoHookean from(Elastic const& m) { return {T(m.lame_lambda()), T(m.lame_mu())}; }
 };
 

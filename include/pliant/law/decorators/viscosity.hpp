@@ -54,11 +54,15 @@ struct KelvinVoigt {
                   "KelvinVoigt takes laws of solids without values per element: not PlaneStress, "
                   "PerElement, or laws of fibres");
     L<T> elastic;
-    T viscosity;  // η, Pa s
+    T viscosity;  // η, Pa s: not negative
 
     static constexpr bool takes_inversion = pliant::takes_inversion<L<T>>;
 
-    void check() const { detail::check_parameters(elastic); }
+    void check() const {
+      detail::check_parameters(elastic);
+      detail::demand(viscosity >= 0, "Kelvin-Voigt's viscosity", viscosity,
+                     "not be negative (in Pa s)");
+    }
 
     template <int Dim>
     static constexpr int internal_variables = Dim * (Dim + 1) / 2;  // E
@@ -117,13 +121,14 @@ struct Prony {
                   "Prony takes laws of solids without values per element: not PlaneStress, "
                   "PerElement, or laws of fibres");
     L<T> elastic;
-    T share[Branches];       // β_i: stiffness of a branch over that of L
-    T relaxation[Branches];  // τ_i, s
+    T share[Branches];       // β_i: stiffness of a branch over that of L, not negative
+    T relaxation[Branches];  // τ_i, s: positive
 
     static constexpr bool takes_inversion = pliant::takes_inversion<L<T>>;
 
     void check() const {
       detail::check_parameters(elastic);
+      for (T beta : share) detail::demand(beta >= 0, "a share of Prony", beta, "not be negative");
       for (T tau : relaxation)
         detail::demand(tau > 0, "a relaxation time of Prony", tau, "be positive (in s)");
     }
