@@ -227,6 +227,36 @@ void arteries(Table& table) {
                             {0, 1, 0, 0, 0, 0});
 }
 
+/// An element with one corner pushed through it: an energy for laws that take inversion, none for the others.
+void pushed_through(Table& table) {
+  auto const row = [&]<template <class> class L>(L<double> const& parameters) {
+    using F = Formulation<Tet4, Gauss<1>, L>;
+    Mesh<Tet4> mesh;
+    mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.elements<Tet4>() = {{0, 1, 2, 3}};
+    Body body{Reference<double>{}, mesh, Elastic{1, 0, 1}, Group<F>{parameters}};
+    std::vector<Point<3>> u(4);
+    u[3] = {0, 0, -1.5};
+    body.set_displacements(u);
+    double const finite = std::isfinite(body.strain_energy()) ? 1 : 0;
+    table.compare({"6, a corner pushed through, W is finite", name_of<F>(), "one element"}, finite,
+                  takes_inversion<F> ? Printed{1, 0, "1"} : Printed{0, 0, "0"});
+  };
+  row(Hooke<double>{lambda, mu});
+  row(SaintVenantKirchhoff<double>{lambda, mu});
+  row(StableNeoHookean<double>{lambda, mu});
+  row(Corotated<double>{lambda, mu});
+  row(Fung<double>{lambda, mu, 1});
+  row(NeoHookean<double>{lambda, mu});
+  row(IsochoricNeoHookean<double>{mu, bulk});
+  row(SimoNeoHookean<double>{mu, bulk});
+  row(MooneyRivlin<double>{0.75, 0.25, bulk});
+  row(Yeoh<double>{1, 0.2, 0.1, bulk});
+  row(Gent<double>{mu, 97.2, bulk});
+  row(ArrudaBoyce<double>{mu, 7, bulk});
+  row(Ogden<double>{{1.5, 0.2, -0.4}, {1.3, 5, -2}, bulk});
+}
+
 }  // namespace pliant::verification
 
 #if !defined(ROWS_OF_MUTANTS)
@@ -238,6 +268,7 @@ int main(int argc, char** argv) {
   ogden(table);
   others(table);
   arteries(table);
+  pushed_through(table);
   return table.finish();
 }
 #endif

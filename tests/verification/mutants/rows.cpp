@@ -1,6 +1,7 @@
 // The rows that a mutant is asked, by the definition that tests/verification/mutate gives.
 #define ROWS_OF_MUTANTS
-#if defined(ROWS_PRINTED) || defined(ROWS_RUBBER) || defined(ROWS_OTHERS) || defined(ROWS_ARTERIES)
+#if defined(ROWS_PRINTED) || defined(ROWS_RUBBER) || defined(ROWS_OTHERS) || \
+    defined(ROWS_ARTERIES) || defined(ROWS_INVERTED)
 #include "verification/homogeneous.cpp"
 #elif defined(ROWS_TENSOR) || defined(ROWS_PLANE_SIMPLEX)
 #include "verification/same_mesh_plane.cpp"
@@ -35,6 +36,8 @@ int main(int argc, char** argv) {
   others(table);
 #elif defined(ROWS_ARTERIES)
   arteries(table);
+#elif defined(ROWS_INVERTED)
+  pushed_through(table);
 #elif defined(ROWS_TENSOR)
   beam<Quad4, NeoHookean>(table, -1.429046662200e-01, -4.848132827220e-01);
   beam<Quad8, NeoHookean>(table, -1.734827007617e-01, -5.291982295399e-01);
