@@ -1,4 +1,8 @@
-#include "backend/verbs_suite.hpp"
+#include <limits>
+
+#include <pliant/backend/host_array.hpp>
+
+#include "support/catch.hpp"
 
 namespace pliant::test {
 

@@ -1,1 +1,0 @@
-#include "adaptation/combined_criteria_suite.hpp"

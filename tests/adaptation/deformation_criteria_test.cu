@@ -1,1 +1,0 @@
-#include "adaptation/deformation_criteria_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/endurance_suite.hpp"

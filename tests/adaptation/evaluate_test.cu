@@ -1,1 +1,0 @@
-#include "adaptation/evaluate_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/force_intensity_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/hanging_nodes_suite.hpp"

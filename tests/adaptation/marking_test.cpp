@@ -1,1 +1,0 @@
-#include "adaptation/marking_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/other_elements_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/refinement_errors_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/refinement_inheritance_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/refinement_internal_variables_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/refinement_rules_suite.hpp"

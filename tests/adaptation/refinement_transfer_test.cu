@@ -1,1 +1,0 @@
-#include "adaptation/refinement_transfer_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/rotation_criterion_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/shape_criteria_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/switching_agreement_suite.hpp"

@@ -1,1 +1,0 @@
-#include "adaptation/switching_suite.hpp"

@@ -1,1 +1,0 @@
-#include "backend/agreement_suite.hpp"

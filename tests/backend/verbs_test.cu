@@ -1,1 +1,0 @@
-#include "backend/verbs_suite.hpp"

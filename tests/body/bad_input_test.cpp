@@ -1,1 +1,0 @@
-#include "body/bad_input_suite.hpp"

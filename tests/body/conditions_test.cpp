@@ -1,1 +1,0 @@
-#include "body/conditions_suite.hpp"

@@ -1,1 +1,0 @@
-#include "body/element_values_suite.hpp"

@@ -1,1 +1,0 @@
-#include "body/embedding_suite.hpp"

@@ -1,1 +1,0 @@
-#include "body/groups_suite.hpp"

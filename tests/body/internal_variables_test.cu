@@ -1,1 +1,0 @@
-#include "body/internal_variables_suite.hpp"

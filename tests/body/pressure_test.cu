@@ -1,1 +1,0 @@
-#include "body/pressure_suite.hpp"

@@ -1,1 +1,0 @@
-#include "body/state_suite.hpp"

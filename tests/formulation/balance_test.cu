@@ -1,1 +1,0 @@
-#include "formulation/balance_suite.hpp"

@@ -1,1 +1,0 @@
-#include "formulation/derivatives_suite.hpp"

@@ -1,1 +1,0 @@
-#include "formulation/patch_suite.hpp"

@@ -1,1 +1,0 @@
-#include "formulation/rigid_motion_suite.hpp"

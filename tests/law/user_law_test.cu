@@ -1,1 +1,0 @@
-#include "law/user_law_suite.hpp"

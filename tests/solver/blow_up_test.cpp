@@ -1,1 +1,0 @@
-#include "solver/blow_up_suite.hpp"

@@ -1,1 +1,0 @@
-#include "solver/damping_suite.hpp"

@@ -1,1 +1,0 @@
-#include "solver/energy_suite.hpp"

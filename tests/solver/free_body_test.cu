@@ -1,1 +1,0 @@
-#include "solver/free_body_suite.hpp"

@@ -1,1 +1,0 @@
-#include "solver/lumped_bar_suite.hpp"

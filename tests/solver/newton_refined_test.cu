@@ -1,1 +1,0 @@
-#include "solver/newton_refined_suite.hpp"

@@ -1,1 +1,0 @@
-#include "solver/newton_suite.hpp"

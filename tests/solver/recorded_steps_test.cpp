@@ -1,1 +1,0 @@
-#include "solver/recorded_steps_suite.hpp"

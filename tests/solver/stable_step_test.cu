@@ -1,1 +1,0 @@
-#include "solver/stable_step_suite.hpp"

@@ -1,1 +1,0 @@
-#include "solver/trajectory_suite.hpp"
