@@ -1,6 +1,6 @@
 # Catch2, version 2 or 3, as the target Catch2::Catch2 whose one header is <catch2/catch.hpp>.
 pliant_find_headers(Catch2 TARGET Catch2::Catch2 FOLDER PLIANT_CATCH2_INCLUDE HEADER
-                    catch2/catch.hpp)
+                    catch2/catch.hpp MINIMUM 2.13)
 if(NOT TARGET Catch2::Catch2)
   message(FATAL_ERROR "The tests need Catch2 2.13 or newer, which was not found. Install it (on "
                       "Debian and Ubuntu: apt-get install catch2), pass -DPLIANT_CATCH2_INCLUDE=<folder "
