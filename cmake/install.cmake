@@ -1,12 +1,20 @@
 # Installs the headers, and a CMake package with a component for each target:
 #   find_package(pliant REQUIRED COMPONENTS openmp)
+#
+# A project that exports targets which link Pliant's needs these exports to exist, whether or not it
+# installs Pliant too: without PLIANT_INSTALL the rules are there, and no installation follows them.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(package_folder "${CMAKE_INSTALL_DATADIR}/cmake/pliant")
+set(rule COMPONENT pliant)
+if(NOT PLIANT_INSTALL)
+  list(APPEND rule EXCLUDE_FROM_ALL)
+endif()
 
 foreach(target IN ITEMS pliant pliant_openmp pliant_cuda)
-  install(TARGETS ${target} EXPORT ${target} FILE_SET HEADERS)
-  install(EXPORT ${target} NAMESPACE pliant:: DESTINATION "${package_folder}")
+  install(TARGETS ${target} EXPORT ${target} FILE_SET HEADERS ${rule})
+  install(EXPORT ${target} NAMESPACE pliant:: DESTINATION "${package_folder}" ${rule})
+  export(EXPORT ${target} NAMESPACE pliant:: FILE "${PROJECT_BINARY_DIR}/exports/${target}.cmake")
 endforeach()
 
 configure_package_config_file(cmake/pliantConfig.cmake.in pliantConfig.cmake
@@ -16,5 +24,11 @@ write_basic_package_version_file(pliantConfigVersion.cmake COMPATIBILITY SameMin
                                  ARCH_INDEPENDENT)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/pliantConfig.cmake"
               "${CMAKE_CURRENT_BINARY_DIR}/pliantConfigVersion.cmake" cmake/simd_message.cmake
-        DESTINATION "${package_folder}")
-install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+        DESTINATION "${package_folder}" ${rule})
+# The folder of documents that a project above has set is for its own licence.
+if(PROJECT_IS_TOP_LEVEL)
+  set(document_folder "${CMAKE_INSTALL_DOCDIR}")
+else()
+  set(document_folder "${CMAKE_INSTALL_DATAROOTDIR}/doc/pliant")
+endif()
+install(FILES LICENSE DESTINATION "${document_folder}" ${rule})

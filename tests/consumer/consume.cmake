@@ -1,13 +1,6 @@
 # Builds and runs the project in SOURCE, which gets Pliant in the WAY that CMakeLists.txt beside this
 # file passes with the other variables.
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
-  if(failed)
-    string(REPLACE ";" " " command "${ARGN}")
-    message(FATAL_ERROR "${command}\nfailed:\n${said}")
-  endif()
-  set(said "${said}" PARENT_SCOPE)
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
 file(REMOVE_RECURSE "${BUILD}")
 if(WAY STREQUAL find_package)
