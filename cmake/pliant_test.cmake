@@ -2,7 +2,9 @@
 #             [DEFINE <definition>...])
 # One program and one test, labelled with its area. OPENMP and CUDA mark tests that need this
 # backend; they are left out where it is missing. The others get every CPU backend that this build
-# has: the serial one always, <pliant/openmp.hpp> where _OPENMP is defined.
+# has: the serial one always, <pliant/openmp.hpp> where _OPENMP is defined. The target pliant_tests builds
+# all of them, and nothing else.
+add_custom_target(pliant_tests)
 function(pliant_test)
   cmake_parse_arguments(PARSE_ARGV 0 arg "OPENMP;CUDA" "NAME" "SOURCES;LINK;DEFINE")
   if((arg_OPENMP AND NOT pliant_has_openmp) OR (arg_CUDA AND NOT pliant_has_cuda))
@@ -31,6 +33,7 @@ function(pliant_test)
                          PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:${level}>)
 
   set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")
+  add_dependencies(pliant_tests ${target})
   add_test(NAME ${arg_NAME} COMMAND ${target})
   # Tests run side by side: threads that wait must not keep the cores from those that work.
   set_tests_properties(
