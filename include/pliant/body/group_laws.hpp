@@ -65,9 +65,8 @@ struct GroupLaws {
   }
   static constexpr int internal_variable_count = std::max({0, internal_variables_of<Fs>...});
   static constexpr bool reads_elements = value_count > 0 || internal_variable_count > 0;
-  /// Whether a kernel of forces needs few registers.
-  static constexpr bool light =
-      sizeof...(Fs) == 1 && (is_light<typename Fs::template law<T>> && ...);
+  /// Whether forces take few operations per element.
+  static constexpr bool few_operations = (has_two_invariants<typename Fs::template law<T>> && ...);
 
   std::tuple<decltype(prepared<Fs>(std::declval<typename Fs::template law<T>>(), 0.0))...> laws;
   ElementData<T> data{};

@@ -9,7 +9,8 @@ namespace pliant {
 
 template <class Laws, Geometry How = Geometry::isoparametric>
 struct ForceKernel {
-  static constexpr bool reads_elements = Laws::reads_elements, light = Laws::light;
+  static constexpr bool reads_elements = Laws::reads_elements;
+  static constexpr bool few_operations = Laws::few_operations;
   Laws groups;
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {

@@ -200,11 +200,12 @@ inline constexpr bool without_roots<SetList<Set<V>>> =
     std::same_as<Set<V>, GreenInvariants<V>>;
 }  // namespace detail
 
-/// Whether the stress takes few registers: the energy is in one set of two polynomials in H.
+/// Whether the energy is a function of one set of two polynomials in H, so that the stress takes few
+/// operations.
 template <class L>
-inline constexpr bool is_light = false;
+inline constexpr bool has_two_invariants = false;
 template <PointLaw L>
-inline constexpr bool is_light<L> = detail::without_roots<detail::sets_of<L, 3>>;
+inline constexpr bool has_two_invariants<L> = detail::without_roots<detail::sets_of<L, 3>>;
 
 /// Strain energy per rest volume (J/m³) at the displacement gradient h.
 template <PointLaw L, class S, int Dim>

@@ -4,6 +4,7 @@
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/node_rows.cuh>
+#include <pliant/cuda/patch_loop.cuh>
 
 namespace pliant::detail {
 
@@ -68,13 +69,14 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   Index const threads = static_cast<Index>(blockDim.x);
   PatchNode const* const nodes =
       patches.nodes + static_cast<std::ptrdiff_t>(patch) * patches.node_capacity;
-  Index const last = ::min(patches.count, (patch + 1) * patches.patch_size);
   Index e = patch * patches.patch_size + thread;
+  PatchLoop loop(patches.rounds);
+  auto const is_element = [&] { return loop.has_rounds() && e < patches.count; };
 
   // What does not depend on each other is loaded early: memory is far.
   using Places = Packed<PatchRow<Nodes>>;
   Places places;
-  if (e < last) places = Places::load(patches.rows + e);
+  if (is_element()) places = Places::load(patches.rows + e);
 #pragma unroll 1
   for (Index d = thread; d < patches.diagonal_capacity; d += threads)
     memory.diagonals[d] =
@@ -89,36 +91,38 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
     ((load_node(fields, node, row + offset), offset += Fields::components), ...);
     memory.rows.store(r, row);
   }
-  Tag tag = e < last ? patches.tags[e] : no_group;
+  if (is_element()) loop.set_tag(patches.tags[e]);
   __syncthreads();
 
-  bool any = false;
 #pragma unroll 1
-  while (e < last) {
+  while (is_element()) {
     Places const own = places;
-    Tag const own_tag = tag;
+    Tag const own_tag = loop.tag();
     T values[Nodes][M];
 #pragma unroll
     for (int a = 0; a < Nodes; ++a) memory.rows.load(own.unpacked().local[a], values[a]);
     Index const own_element = e;
     e += threads;
+    loop.next_round(own_tag < Groups);
     auto const load_next = [&] {
-      if (e >= last) return;
+      if (!is_element()) return;
       places = Places::load(patches.rows + e);
-      tag = patches.tags[e];
+      loop.set_tag(patches.tags[e]);
     };
     if constexpr (tuning.prefetch) load_next();
-    auto shares = Matrix<T, Nodes, C>::zero();
-    dispatch<Groups>(own_tag, [&](auto group) {
-      shares = call_on_rows<Fields::components...>(kernel, group, own_element, values);
-      any = true;
-    });
+    auto const store = [&](Matrix<T, Nodes, C> const& shares) {
 #pragma unroll
-    for (int a = 0; a < Nodes; ++a)
-      store_values<C>(memory.staging + C * own.unpacked().slot[a], shares.entries[a]);
+      for (int a = 0; a < Nodes; ++a)
+        store_values<C>(memory.staging + C * own.unpacked().slot[a], shares.entries[a]);
+    };
+    dispatch<Groups>(own_tag, [&](auto group) {
+      store(call_on_rows<Fields::components...>(opaque<LightKernel<Kernel>>(kernel), group,
+                                                own_element, values));
+    });
+    if (own_tag >= Groups) store(Matrix<T, Nodes, C>::zero());
     if constexpr (!tuning.prefetch) load_next();
   }
-  if (!__syncthreads_or(any)) return;  // no element of the patch acts
+  if (!__syncthreads_or(loop.acted())) return;  // no element of the patch acts
 
 #pragma unroll 1
   for (Index r = thread; r < patches.node_capacity; r += threads) {

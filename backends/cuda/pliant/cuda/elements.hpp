@@ -27,8 +27,8 @@ struct ElementView {
 /// The patches of an element table as kernels see them.
 template <int Nodes>
 struct PatchView {
-  Index count;  // elements
-  int patch_size, node_capacity, diagonal_capacity;
+  Index count;                                               // elements
+  int patch_size, rounds, node_capacity, diagonal_capacity;  // rounds of the block's threads
   Tag const* tags;
   PatchRow<Nodes> const* rows;     // (elements)
   PatchNode const* nodes;          // (patches, node_capacity)
@@ -47,10 +47,14 @@ class CudaElements {
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                int /* groups */, std::vector<Tag> const& tags, Index nodes)
       : CudaElements(backend, connectivity, tags, nodes, tuned(connectivity.size())) {}
-  /// With patches of a given size and threads per block, for tuning.
+  /// With patches of a given size and threads per block, for tuning. Throws Error when the size is no
+  /// multiple of the threads.
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads)
       : count_(static_cast<Index>(connectivity.size())), threads_(size_and_threads[1]) {
+    if (threads_ < 1 || size_and_threads[0] % threads_ != 0)
+      throw Error("patches of ", size_and_threads[0], " elements for ", threads_,
+                  " threads; give a multiple of the threads");
     backend.make_current();
     detail::check_nodes<Nodes>(connectivity, nodes);
     tags_ = uploaded(tags);
@@ -71,8 +75,9 @@ class CudaElements {
   int threads() const { return threads_; }
   View view() const { return {count_, connectivity_.data(), tag_data_}; }
   detail::PatchView<Nodes> patch_view() const {
-    return {count_,       patch_size_,  node_capacity_, diagonal_capacity_,
-            tag_data_,    rows_.data(), nodes_.data(),  diagonals_.data()};
+    return {count_,         patch_size_,        patch_size_ / threads_,
+            node_capacity_, diagonal_capacity_, tag_data_,
+            rows_.data(),   nodes_.data(),      diagonals_.data()};
   }
 
  private:

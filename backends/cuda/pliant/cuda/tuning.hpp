@@ -38,9 +38,9 @@ constexpr PatchTuning patch_tuning() {
   return {64, 4, false, 64, 64, 64, 0};
 }
 
-/// A kernel that says that it needs few registers.
+/// Kernels of few operations need few registers.
 template <class Kernel>
-concept LightKernel = requires { requires Kernel::light; };
+concept LightKernel = requires { requires Kernel::few_operations; };
 
 /// Blocks that fit a multiprocessor: others than light kernels spill registers under the bound that suits
 /// those. Most lose more by it (up to a third of their time) than by having fewer threads; isochoric
