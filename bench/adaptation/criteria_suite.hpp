@@ -33,8 +33,8 @@ template <class F, class Criterion, class B>
 void time_criterion(benchmark::State& state, B const& backend, int cells) {
   using T = typename B::scalar;
   auto& p = Problem<B, typename F::element>::of(backend, cells);
-  typename B::template Array<T> values(static_cast<std::size_t>(p.elements.count()));
-  typename B::template Array<double> counters(1);
+  auto values = zeros<T>(backend, static_cast<std::size_t>(p.elements.count()));
+  auto counters = zeros<double>(backend, 1);
   CriterionVisitor<T, F, Criterion> const visitor{soft_laws<T, F>(), {}, values.data()};
   measure(state, backend,
           [&] { backend.template visit<1>(p.elements, visitor, counters, p.rest(), p.u()); });

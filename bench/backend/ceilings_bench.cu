@@ -13,7 +13,7 @@ namespace pliant::bench {
 void time_copy(benchmark::State& state, Cuda<float> const& backend) {
   using Row = pliant::detail::Piece<float, 4>;
   constexpr Index count = 1 << 26;
-  DeviceArray<Row> from(count), to(count);
+  auto from = zeros<Row>(backend, count), to = zeros<Row>(backend, count);
   measure(state, backend, [&] { backend.for_each(count, Copy<Row>{from.data(), to.data()}); });
   report_rate(state, "bytes_per_second", 2.0 * count * sizeof(Row));
 }
@@ -42,7 +42,7 @@ struct MultiplyAdds {
 template <class T>
 void time_multiply_adds(benchmark::State& state, Cuda<T> const& backend) {
   constexpr Index calls = 1 << 22;
-  DeviceArray<T> sink(1);
+  auto sink = zeros<T>(backend, 1);
   measure(state, backend, [&] {
     backend.for_each(calls, MultiplyAdds<T>{sink.data(), T(0.999), T(0.001)});
   });
@@ -68,7 +68,7 @@ struct AddToRandomNode {
 template <class T>
 void time_node_adds(benchmark::State& state, Cuda<T> const& backend) {
   constexpr Index calls = 1 << 24;
-  DeviceArray<T> values(std::size_t{node_stride} * AddToRandomNode<T>::nodes);
+  auto values = zeros<T>(backend, std::size_t{node_stride} * AddToRandomNode<T>::nodes);
   measure(state, backend, [&] { backend.for_each(calls, AddToRandomNode<T>{{values.data()}}); });
   report_rate(state, "items_per_second", calls);
 }

@@ -14,15 +14,11 @@ struct UserArrays {
   typename TheBody::backend_type::template Array<T> u, du, f;
 
   explicit UserArrays(TheBody const& body)
-      : u(size_for(body)), du(size_for(body)), f(size_for(body)) {
-    u.upload(flat(shaken(body.mesh().nodes, 1)));
-    du.upload(flat(shaken(body.mesh().nodes, 2)));
-  }
+      : u(upload(body.backend(), flat(shaken(body.mesh().nodes, 1)))),
+        du(upload(body.backend(), flat(shaken(body.mesh().nodes, 2)))),
+        f(zeros<T>(body.backend(), u.size())) {}
 
  private:
-  static std::size_t size_for(TheBody const& body) {
-    return TheBody::dim * body.mesh().nodes.size();
-  }
   static std::vector<T> flat(std::vector<Point<TheBody::dim>> const& field) {
     std::vector<T> values;
     for (auto const& row : field)

@@ -51,7 +51,8 @@ struct Problem {
         rest_values(upload(backend, padded(ordered, ordered.mesh.nodes))),
         u_values(upload(backend, padded(ordered, shaken(ordered.mesh.nodes, 1)))),
         du_values(upload(backend, padded(ordered, shaken(ordered.mesh.nodes, 2)))),
-        f_values(node_stride * static_cast<std::size_t>(nodes + elements.scratch_nodes())) {}
+        f_values(zeros<T>(
+            backend, node_stride * static_cast<std::size_t>(nodes + elements.scratch_nodes()))) {}
 
   ConstField rest() const { return {rest_values.data()}; }
   ConstField u() const { return {u_values.data()}; }

@@ -98,7 +98,7 @@ TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     static_assert(Backend<B>);
     static_assert(BackendArray<typename B::template Array<Index>, Index>);
-    typename B::template Array<float> array(1000);
+    auto array = zeros<float>(backend, 1000);
     CHECK(download<float>(array) == std::vector<float>(1000, 0.0f));
     std::vector<float> numbers(1000);
     std::iota(numbers.begin(), numbers.end(), 1.0f);
@@ -110,13 +110,17 @@ TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
     CHECK(download<float>(moved) == numbers);
     CHECK(download<float>(copy) == numbers);
     CHECK(moved.size() == 1000);
-    CHECK(typename B::template Array<double>(0).size() == 0);
+    typename B::template Array<float> empty;
+    CHECK(empty.size() == 0);
+    empty = upload(backend, numbers);
+    CHECK(download<float>(empty) == numbers);
+    CHECK(zeros<double>(backend, 0).size() == 0);
   });
 }
 
 TEST_CASE("copies beyond the end of an array are refused", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const&) {
-    typename B::template Array<float> array(1000);
+  on_each_backend<AllBackends>([](auto const& backend) {
+    auto array = zeros<float>(backend, 1000);
     std::vector<float> numbers(1001, 1.0f);
 
     CHECK_THROWS_WITH(array.upload(numbers), says("copy of 1001 values, but the array holds 1000"));
@@ -131,7 +135,7 @@ TEST_CASE("node loops see every node once", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     for (Index n : {0, 1, 31, 4096, 4097, 100000}) {
       INFO(n << " nodes");
-      typename B::template Array<double> seen(static_cast<std::size_t>(n));
+      auto seen = zeros<double>(backend, static_cast<std::size_t>(n));
 
       backend.for_each(n, AddOne<double>{seen.data()});
 
@@ -147,7 +151,7 @@ TEST_CASE("node loops see every node once", "[backend]") {
 
 TEST_CASE("a recording does again what was recorded", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
-    typename B::template Array<double> seen(3);
+    auto seen = zeros<double>(backend, 3);
 
     auto const recording =
         backend.record([&] { backend.for_each(3, AddOne<double>{seen.data()}); });
@@ -238,7 +242,7 @@ TEST_CASE("a table without elements does nothing", "[backend]") {
     auto const x = upload(backend, std::vector<T>(16, T(1)));
     auto out = upload(
         backend, std::vector<T>(static_cast<std::size_t>(16 + 4 * elements.scratch_nodes()), T(3)));
-    typename B::template Array<double> counters(2);
+    auto counters = zeros<double>(backend, 2);
     NodeField<T const, 2> const field{x.data()};
 
     backend.template accumulate<2>(elements, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
