@@ -148,11 +148,11 @@ Outcome outcome(B const& backend, Scene<typename First::element> const& scene) {
                                                 scene.nodes);
   auto rest = upload(backend, cast<T>(scene.rest));
   auto displacement = upload(backend, cast<T>(scene.displacement));
-  typename B::template Array<T> out(
-      static_cast<std::size_t>(node_stride * (scene.nodes + elements.scratch_nodes())));
-  typename B::template Array<T> energies(scene.connectivity.size());
-  typename B::template Array<T> first_values(scene.connectivity.size());
-  typename B::template Array<double> counters(3);
+  auto out = zeros<T>(
+      backend, static_cast<std::size_t>(node_stride * (scene.nodes + elements.scratch_nodes())));
+  auto energies = zeros<T>(backend, scene.connectivity.size());
+  auto first_values = zeros<T>(backend, scene.connectivity.size());
+  auto counters = zeros<double>(backend, 3);
   NodeField<T const, dim> const x{rest.data()}, u{displacement.data()};
 
   backend.template accumulate<2>(elements, Force<L>{laws}, NodeField<T, dim>{out.data()}, x, u);
@@ -261,7 +261,7 @@ TEST_CASE("node loops reach every node once", "[cuda]") {
 
 TEST_CASE("a recording does nothing until it is replayed", "[cuda]") {
   Cuda<double> const backend;
-  Cuda<double>::Array<double> array(1000);
+  auto array = zeros<double>(backend, 1000);
   auto const recording = backend.record([&] { backend.for_each(1000, AddOne{array.data()}); });
   CHECK(download<double>(array) == std::vector<double>(1000, 0));
   recording.replay(3);
@@ -271,10 +271,128 @@ TEST_CASE("a recording does nothing until it is replayed", "[cuda]") {
   CHECK(download<double>(array) == std::vector<double>(1000, 4));
 }
 
+TEST_CASE("backends of two GPUs take turns in one thread", "[cuda]") {
+  int devices = 0;
+  REQUIRE(cudaGetDeviceCount(&devices) == cudaSuccess);
+  if (devices < 2) return;  // which half of it holds on one GPU, the next test checks
+  using F = Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>;
+  Scene<Tet4> const scene(6);
+  auto const expected = outcome<F, F>(Reference<double>{}, scene);
+  Cuda<double> const backends[] = {CudaOptions{.device = 0}, CudaOptions{.device = 1}};
+  auto first = zeros<double>(backends[0], 100), second = zeros<double>(backends[1], 100);
+  for (int round = 0; round < 3; ++round) {
+    backends[0].for_each(100, AddOne{first.data()});
+    backends[1].for_each(100, AddOne{second.data()});
+    backends[1].for_each(100, AddOne{second.data()});
+    for (auto const& backend : backends) {
+      auto forces = outcome<F, F>(backend, scene).forces;
+      check_equal(forces, expected.forces, 1e-13);
+    }
+  }
+  CHECK(backends[0].sum(100, Square{first.data()}) == 900);
+  CHECK(backends[1].sum(100, Square{second.data()}) == 3600);
+  CHECK(download<double>(first) == std::vector<double>(100, 3));
+  CHECK(download<double>(second) == std::vector<double>(100, 6));
+}
+
+TEST_CASE("verbs leave the current device of the thread as it was", "[cuda]") {
+  int devices = 0, before = -1;
+  REQUIRE(cudaGetDeviceCount(&devices) == cudaSuccess);
+  for (int own = 0; own < std::min(devices, 2); ++own)
+    for (int current = 0; current < std::min(devices, 2); ++current) {
+      REQUIRE(cudaSetDevice(current) == cudaSuccess);
+      auto const unchanged = [&] {
+        return cudaGetDevice(&before) == cudaSuccess && before == current;
+      };
+      {
+        Cuda<float> const backend{CudaOptions{.device = own}};
+        CHECK(backend.device() == own);
+        CHECK(unchanged());
+        auto array = upload(backend, std::vector<double>(10, 1.0));
+        CHECK(unchanged());
+        auto const recording = backend.record([&] { backend.for_each(10, AddOne{array.data()}); });
+        auto timer = backend.timer();
+        timer.start();
+        recording.replay(2);
+        timer.stop();
+        CHECK(unchanged());
+        CHECK(timer.seconds() > 0);
+        CHECK(backend.sum(10, Square{array.data()}) == 90);
+        CHECK(unchanged());
+        cudaPointerAttributes where{};
+        REQUIRE(cudaPointerGetAttributes(&where, array.data()) == cudaSuccess);
+        CHECK(where.device == own);
+        CHECK(download<double>(array)[9] == 3);
+      }
+      CHECK(unchanged());
+    }
+  REQUIRE(cudaSetDevice(0) == cudaSuccess);
+}
+
+/// Keeps the GPU busy for a while, then writes.
+struct WriteLate {
+  double* x;
+  double value;
+  __device__ void operator()(Index i) const {
+    long long const begin = clock64();
+    while (clock64() - begin < 20'000'000) {
+    }
+    x[i] = value;
+  }
+};
+
+TEST_CASE("copies come after the work of their backend and wait for no other stream", "[cuda]") {
+  Cuda<double> const backend, other;
+  auto array = zeros<double>(backend, 1), busy = zeros<double>(other, 1);
+  // Long enough that a copy which waited for it would find it done.
+  for (int k = 0; k < 50; ++k) other.for_each(1, WriteLate{busy.data(), 1});
+  backend.for_each(1, WriteLate{array.data(), 7});
+
+  CHECK(download<double>(array)[0] == 7);
+  CHECK(cudaStreamQuery(other.stream()) == cudaErrorNotReady);
+  array.upload(std::vector<double>{3});
+  CHECK(backend.sum(1, Square{array.data()}) == 9);
+  CHECK(cudaStreamQuery(other.stream()) == cudaErrorNotReady);
+  cudaGetLastError();
+  CHECK(download<double>(busy)[0] == 1);
+}
+
+TEST_CASE("a backend queues its work on the stream that it is given", "[cuda]") {
+  cudaStream_t stream = nullptr;
+  REQUIRE(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking) == cudaSuccess);
+  {
+    Cuda<double> const backend{CudaOptions{.stream = stream}};
+    CHECK(backend.stream() == stream);
+    auto array = zeros<double>(backend, 1);
+    backend.for_each(1, WriteLate{array.data(), 7});
+    double value = 0;
+    cudaMemcpyAsync(&value, array.data(), sizeof value, cudaMemcpyDeviceToHost, stream);
+    REQUIRE(cudaStreamSynchronize(stream) == cudaSuccess);
+    CHECK(value == 7);
+  }
+  CHECK(cudaStreamDestroy(stream) == cudaSuccess);  // the backend left it alone
+}
+
+TEST_CASE("timers add what they measured, however many measurements there were", "[cuda]") {
+  Cuda<double> const backend;
+  auto array = zeros<double>(backend, 1);
+  auto all = backend.timer(), each = backend.timer();
+  all.start();
+  for (int k = 0; k < 600; ++k) {
+    each.start();
+    backend.for_each(1, AddOne{array.data()});
+    each.stop();
+  }
+  all.stop();
+  CHECK(each.seconds() > 0);
+  CHECK(each.seconds() <= all.seconds());
+  CHECK(each.seconds() == each.seconds());
+}
+
 TEST_CASE("too large an array is refused with the numbers of bytes", "[cuda]") {
   std::string message;
   try {
-    DeviceArray<double> const array(std::size_t{1} << 45);
+    zeros<double>(Cuda<float>{}, std::size_t{1} << 45);
   } catch (Error const& error) {
     message = error.what();
   }

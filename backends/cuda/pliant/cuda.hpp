@@ -10,6 +10,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/cuda/accumulate.cuh>
+#include <pliant/cuda/context.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
@@ -29,9 +30,11 @@ __global__ void __launch_bounds__(node_threads)
 }
 }  // namespace detail
 
-/// One NVIDIA GPU. Verbs are queued on a stream; those that return a value wait for it. Sums over
-/// elements and nodes have the same bits each time; accumulation adds in no fixed order. Copies
-/// share the stream; use them from one thread at a time. Throws Error when there is no GPU.
+/// One NVIDIA GPU. Verbs are queued on a stream; those that return a value wait for it and for no
+/// other (CudaOptions tells how it orders with a caller's). Sums over elements and nodes have the
+/// same bits each time; accumulation adds in no fixed order. Copies share the stream; use them from
+/// one thread at a time. Backends of several GPUs may take turns in one thread: every call leaves
+/// the thread's current device as it was. Throws Error when there is no GPU.
 template <std::floating_point T>
 class Cuda {
  public:
@@ -48,12 +51,15 @@ class Cuda {
   Cuda(CudaOptions const& options = {})
       : context_(std::make_shared<detail::CudaContext>(options)) {}
 
-  cudaStream_t stream() const { return context_->stream(); }
-  /// Makes the backend's device the one of the calling thread; arrays are made there.
-  void make_current() const { context_->make_current(); }
-  void synchronize() const { context_->synchronize(); }
-  Timer timer() const { return Timer(context_); }
-  Recording record(std::function<void()> const& f) const { return {context_, f}; }
+  int device() const { return context_->stream()->device(); }
+  cudaStream_t stream() const { return context_->stream()->get(); }
+  void synchronize() const { context_->stream()->synchronize(); }
+  Timer timer() const { return Timer(context_->stream()); }
+  Recording record(std::function<void()> const& f) const { return {context_->stream(), f}; }
+  template <class U>
+  Array<U> array(std::size_t count) const {
+    return {context_->stream(), count};
+  }
 
   template <class F>
   void for_each(Index n, F const& f) const {
@@ -116,7 +122,7 @@ class Cuda {
   template <class... Parameters, class... Arguments>
   void launch(char const* verb, detail::LaunchShape const& shape, void (*kernel)(Parameters...),
               Arguments const&... arguments) const {
-    context_->make_current();
+    auto const device = context_->stream()->enter();
     detail::launch(detail::Start::early, verb, shape, stream(), kernel, arguments...);
   }
   template <class Reduction, class F>
@@ -128,7 +134,7 @@ class Cuda {
            partials);
     launch(verb, {1, detail::CudaContext::max_partials}, detail::reduce_partials<Reduction>, count,
            partials, context_->result());
-    context_->synchronize();
+    synchronize();
     return *context_->result();
   }
 

@@ -92,6 +92,10 @@ class OpenMP {
     });
     return largest;
   }
+  template <class U>
+  Array<U> array(std::size_t count) const {
+    return Array<U>(count);
+  }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
   void synchronize() const {}
   Timer timer() const { return {}; }

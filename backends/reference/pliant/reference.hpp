@@ -66,6 +66,10 @@ class Reference {
     for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));
     return largest;
   }
+  template <class U>
+  Array<U> array(std::size_t count) const {
+    return Array<U>(count);
+  }
   Recording record(std::function<void()> f) const { return HostRecording(std::move(f)); }
   void synchronize() const {}
   Timer timer() const { return {}; }

@@ -10,9 +10,13 @@
 // of mechanics; mechanics calls these verbs and knows nothing of threads. `Reference` is the
 // shortest model, and the oracle of the others.
 //
-// Arrays        Array<U> owns memory where the loops run.
-//   Array<U>(count)            zeroed; throws Error when memory runs out
+// Arrays        Array<U> owns memory where the loops run. A backend makes it; without one it is empty
+//               and can be assigned to.
+//   array<U>(count)            zeroed; throws Error when memory runs out. `zeros<U>(backend, count)`
+//                              and `upload(backend, vector)` below call it.
 //   .data() .size() .upload(span<U const>) .download(span<U>)
+//                              upload and download come after what was asked of the backend before,
+//                              and wait for that
 //
 // Node loops    f is a functor marked for host and device, called once for each i in [0, n).
 //   for_each(n, f)             f(i)
@@ -58,7 +62,7 @@ inline constexpr Tag no_group = 255;
 
 /// An owning array in a backend's memory.
 template <class A, class U>
-concept BackendArray = std::constructible_from<A, std::size_t> && std::movable<A> &&
+concept BackendArray = std::default_initializable<A> && std::movable<A> &&
                        requires(A a, A const& c, std::span<U const> in, std::span<U> out) {
                          { a.data() } -> std::same_as<U*>;
                          { c.size() } -> std::convertible_to<std::size_t>;
@@ -83,6 +87,9 @@ concept Backend =
       { b.sum(n, f) } -> std::same_as<double>;
       { b.maximum(n, f) } -> std::same_as<double>;
       { b.record(f) } -> std::same_as<typename B::Recording>;
+      {
+        b.template array<typename B::scalar>(std::size_t{})
+      } -> std::same_as<typename B::template Array<typename B::scalar>>;
       b.synchronize();
       { B::orders_by_group } -> std::convertible_to<bool>;
       { B::name() } -> std::convertible_to<char const*>;
@@ -91,13 +98,13 @@ concept Backend =
 
 /// An array of zeros, made by a backend.
 template <class U, Backend B>
-auto zeros(B const&, std::size_t count) {
-  return typename B::template Array<U>(count);
+auto zeros(B const& backend, std::size_t count) {
+  return backend.template array<U>(count);
 }
 /// The array with the values of a vector.
 template <Backend B, class U>
-typename B::template Array<U> upload(B const&, std::vector<U> const& values) {
-  typename B::template Array<U> array(values.size());
+auto upload(B const& backend, std::vector<U> const& values) {
+  auto array = zeros<U>(backend, values.size());
   array.upload(values);
   return array;
 }

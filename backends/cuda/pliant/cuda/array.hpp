@@ -4,29 +4,38 @@
 #include <span>
 #include <utility>
 
-#include <pliant/cuda/check.hpp>
+#include <pliant/cuda/stream.hpp>
 
 namespace pliant {
 
-/// An owning, movable array in the memory of the thread's current device.
+/// An owning, movable array in the memory of the device of the backend that made it. What copies to
+/// and from it is queued on that backend's stream.
 template <class U>
 class DeviceArray {
  public:
+  /// Without values; assign to it what a backend made.
   DeviceArray() = default;
-  /// Zeroed. Throws Error when the device has not enough memory.
-  explicit DeviceArray(std::size_t count) : size_(count) {
+  /// Zeroed, in the order of the stream. Throws Error when the device has not enough memory.
+  DeviceArray(detail::SharedStream stream, std::size_t count)
+      : stream_(std::move(stream)), size_(count) {
     if (count == 0) return;
+    auto const device = stream_->enter();
     allocate();
-    // Other streams do not wait for the legacy stream that zeroes.
-    cudaError_t status = cudaMemsetAsync(data_, 0, count * sizeof(U), cudaStreamLegacy);
-    if (status == cudaSuccess) status = cudaStreamSynchronize(cudaStreamLegacy);
+    cudaError_t const status = cudaMemsetAsync(data_, 0, count * sizeof(U), stream_->get());
     if (status != cudaSuccess) cudaFree(data_);
-    detail::check(status, "cudaMemset");
+    detail::check(status, "cudaMemsetAsync");
   }
-  ~DeviceArray() { cudaFree(data_); }
+  ~DeviceArray() {
+    if (data_ == nullptr) return;
+    detail::DeviceGuard const device(stream_->device(), std::nothrow);
+    cudaFree(data_);  // waits for the work that uses it
+  }
   DeviceArray(DeviceArray&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+      : stream_(std::move(other.stream_)),
+        data_(std::exchange(other.data_, nullptr)),
+        size_(std::exchange(other.size_, 0)) {}
   DeviceArray& operator=(DeviceArray&& other) noexcept {
+    std::swap(stream_, other.stream_);
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     return *this;
@@ -36,11 +45,13 @@ class DeviceArray {
   U const* data() const { return data_; }
   std::size_t size() const { return size_; }
 
-  /// Overwrites the first values, after all work that was launched before.
+  /// Overwrites the first values, after all that was queued on the backend's stream before, and
+  /// waits for it.
   void upload(std::span<U const> values) {
     copy(data_, values.data(), values.size(), cudaMemcpyHostToDevice);
   }
-  /// Reads the first values, after all work that was launched before.
+  /// Reads the first values, after all that was queued on the backend's stream before, and waits
+  /// for it.
   void download(std::span<U> values) const {
     copy(values.data(), data_, values.size(), cudaMemcpyDeviceToHost);
   }
@@ -61,13 +72,13 @@ class DeviceArray {
       throw Error("CUDA: copy of ", count, " values, but the array holds ", size_,
                   "; make the array larger");
     if (count == 0) return;
-    // An array does not know which streams use it, so it waits for all.
-    detail::check(cudaDeviceSynchronize(), "cudaDeviceSynchronize");
-    detail::check(cudaMemcpyAsync(to, from, count * sizeof(U), kind, cudaStreamLegacy),
+    auto const device = stream_->enter();
+    detail::check(cudaMemcpyAsync(to, from, count * sizeof(U), kind, stream_->get()),
                   "cudaMemcpyAsync");
-    detail::check(cudaStreamSynchronize(cudaStreamLegacy), "cudaMemcpyAsync");
+    stream_->synchronize();
   }
 
+  detail::SharedStream stream_;
   U* data_ = nullptr;
   std::size_t size_ = 0;
 };

@@ -55,12 +55,12 @@ class CudaElements {
     if (threads_ < 1 || size_and_threads[0] % threads_ != 0)
       throw Error("patches of ", size_and_threads[0], " elements for ", threads_,
                   " threads; give a multiple of the threads");
-    backend.make_current();
     detail::check_nodes<Nodes>(connectivity, nodes);
-    tags_ = uploaded(tags);
+    tags_ = uploaded(backend, tags);
     tag_data_ = tags_.data();
-    connectivity_ = padded(connectivity);
-    if constexpr (!detail::scatters<T, Nodes>) plan(connectivity, nodes, size_and_threads[0]);
+    connectivity_ = padded(backend, connectivity);
+    if constexpr (!detail::scatters<T, Nodes>)
+      plan(backend, connectivity, nodes, size_and_threads[0]);
   }
 
   Index count() const { return count_; }
@@ -75,22 +75,21 @@ class CudaElements {
   int threads() const { return threads_; }
   View view() const { return {count_, connectivity_.data(), tag_data_}; }
   detail::PatchView<Nodes> patch_view() const {
-    return {count_,         patch_size_,        patch_size_ / threads_,
-            node_capacity_, diagonal_capacity_, tag_data_,
-            rows_.data(),   nodes_.data(),      diagonals_.data()};
+    return {count_,    patch_size_,  patch_size_ / threads_, node_capacity_,   diagonal_capacity_,
+            tag_data_, rows_.data(), nodes_.data(),          diagonals_.data()};
   }
 
  private:
-  void plan(std::vector<std::array<Index, Nodes>> const& connectivity, Index nodes,
-            int patch_size) {
+  void plan(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
+            Index nodes, int patch_size) {
     auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size).plan();
     patch_size_ = plan.patch_size;
     patches_ = plan.patches;
     node_capacity_ = plan.node_capacity;
     diagonal_capacity_ = plan.diagonal_capacity;
-    rows_ = uploaded(plan.rows);
-    nodes_ = uploaded(plan.nodes);
-    diagonals_ = uploaded(plan.diagonals);
+    rows_ = uploaded(backend, plan.rows);
+    nodes_ = uploaded(backend, plan.nodes);
+    diagonals_ = uploaded(backend, plan.diagonals);
   }
   static std::array<int, 2> tuned(std::size_t count) {
     constexpr auto t = detail::patch_tuning<T, Nodes>();
@@ -98,16 +97,17 @@ class CudaElements {
     return {t.patch_size, t.threads};
   }
   template <class U>
-  static DeviceArray<U> uploaded(std::vector<U> const& values) {
-    DeviceArray<U> array(values.size());
+  static DeviceArray<U> uploaded(Cuda<T> const& backend, std::vector<U> const& values) {
+    auto array = backend.template array<U>(values.size());
     array.upload(values);
     return array;
   }
-  static DeviceArray<Index> padded(std::vector<std::array<Index, Nodes>> const& connectivity) {
+  static DeviceArray<Index> padded(Cuda<T> const& backend,
+                                   std::vector<std::array<Index, Nodes>> const& connectivity) {
     std::vector<Index> rows(connectivity.size() * View::width);
     for (std::size_t e = 0; e < connectivity.size(); ++e)
       for (std::size_t a = 0; a < Nodes; ++a) rows[e * View::width + a] = connectivity[e][a];
-    return uploaded(rows);
+    return uploaded(backend, rows);
   }
 
   Index count_ = 0, patches_ = 0;

@@ -4,35 +4,36 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/cuda/context.hpp>
+#include <pliant/cuda/stream.hpp>
 
 namespace pliant {
 
 /// Measures on the GPU, by pairs of events on the backend's stream: neither start() nor stop()
-/// waits.
+/// waits, unless the GPU is `most_running` measurements behind.
 class CudaTimer {
  public:
-  explicit CudaTimer(std::shared_ptr<detail::CudaContext> context) : context_(std::move(context)) {}
+  explicit CudaTimer(detail::SharedStream stream) : stream_(std::move(stream)) {}
 
-  void start() { running_.emplace_back(record(), nullptr); }
-  void stop() {
-    running_.back().second = record();
-    if (running_.size() == most_running) collect();
+  void start() {
+    if (running_.size() == most_running) collect(0);
+    if (running_.size() == most_running) collect(1);
+    running_.emplace_back(record(), nullptr);
   }
+  void stop() { running_.back().second = record(); }
   /// Waits for what was measured.
   double seconds() {
-    collect();
+    collect(running_.size());
     return seconds_;
   }
 
  private:
-  static constexpr std::size_t most_running = 4096;
+  static constexpr std::size_t most_running = 256;
   using Event = std::shared_ptr<CUevent_st>;
 
   Event record() {
-    context_->make_current();
     Event event;
     if (idle_.empty()) {
+      auto const device = stream_->enter();
       cudaEvent_t made = nullptr;
       detail::check(cudaEventCreate(&made), "cudaEventCreate");
       event.reset(made, [](cudaEvent_t e) { cudaEventDestroy(e); });
@@ -40,24 +41,33 @@ class CudaTimer {
       event = std::move(idle_.back());
       idle_.pop_back();
     }
-    detail::check(cudaEventRecord(event.get(), context_->stream()), "cudaEventRecord");
+    detail::check(cudaEventRecord(event.get(), stream_->get()), "cudaEventRecord");
     return event;
   }
-  void collect() {
-    for (auto& [from, to] : running_) {
+  /// Waits for the first `waited` measurements; adds them and those after them that are finished.
+  void collect(std::size_t waited) {
+    std::size_t done = 0;
+    for (; done < running_.size(); ++done) {
+      auto& [from, to] = running_[done];
+      cudaError_t const status =
+          done < waited ? cudaEventSynchronize(to.get()) : cudaEventQuery(to.get());
+      if (status == cudaErrorNotReady) {
+        cudaGetLastError();
+        break;
+      }
+      detail::check(status, "cudaEventSynchronize");
       float milliseconds = 0;
-      detail::check(cudaEventSynchronize(to.get()), "cudaEventSynchronize");
       detail::check(cudaEventElapsedTime(&milliseconds, from.get(), to.get()),
                     "cudaEventElapsedTime");
       seconds_ += 1e-3 * static_cast<double>(milliseconds);
       idle_.push_back(std::move(from));
       idle_.push_back(std::move(to));
     }
-    running_.clear();
+    running_.erase(running_.begin(), running_.begin() + static_cast<std::ptrdiff_t>(done));
   }
 
-  std::shared_ptr<detail::CudaContext> context_;
-  std::vector<std::pair<Event, Event>> running_;
+  detail::SharedStream stream_;
+  std::vector<std::pair<Event, Event>> running_;  // oldest first
   std::vector<Event> idle_;
   double seconds_ = 0;
 };

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include <pliant/cuda/device_guard.hpp>
+
+namespace pliant {
+
+/// Which GPU, and where on it work is queued.
+///
+/// By default a backend makes a stream of its own, which neither waits for the legacy default stream
+/// (stream 0) nor is waited for by it. Work of a caller's own that a backend's verbs read has to be
+/// finished before they are called, or ordered by an event: `cudaStreamWaitEvent(backend.stream(),
+/// event)`; and the other way round after `backend.synchronize()` or an event recorded on
+/// `backend.stream()`. A caller who passes `stream`, one of `device`, has his work and the backend's in
+/// one order without any of this. He destroys it after the backend, its copies and all that they
+/// made; it must not be a legacy default stream if `record` is used, which CUDA cannot capture.
+struct CudaOptions {
+  int device = 0;
+  cudaStream_t stream = nullptr;  // nullptr: the backend makes its own
+};
+
+namespace detail {
+
+/// A device and a stream of it. All that a backend makes shares it and keeps it alive.
+class DeviceStream {
+ public:
+  explicit DeviceStream(CudaOptions const& options)
+      : device_(checked(options.device)), stream_(options.stream) {
+    if (stream_ != nullptr) return;
+    auto const guard = enter();
+    check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+    owns_stream_ = true;
+  }
+  ~DeviceStream() {
+    if (owns_stream_) cudaStreamDestroy(stream_);
+  }
+  DeviceStream(DeviceStream const&) = delete;
+  DeviceStream& operator=(DeviceStream const&) = delete;
+
+  int device() const { return device_; }
+  cudaStream_t get() const { return stream_; }
+  /// The device is the calling thread's current one while what this returns lives.
+  [[nodiscard]] DeviceGuard enter() const { return DeviceGuard(device_); }
+  void synchronize() const { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+ private:
+  static int checked(int device) {
+    int count = 0;
+    cudaError_t const status = cudaGetDeviceCount(&count);
+    if (status != cudaSuccess || count == 0) {
+      cudaGetLastError();
+      throw Error("CUDA: no usable GPU (",
+                  cudaGetErrorString(status == cudaSuccess ? cudaErrorNoDevice : status),
+                  "). Run on a machine with one, or build for OpenMP.");
+    }
+    if (device < 0 || device >= count)
+      throw Error("CUDA: device ", device, " asked for, but there are ", count,
+                  "; give a number from 0 to ", count - 1);
+    return device;
+  }
+
+  int device_;
+  cudaStream_t stream_;
+  bool owns_stream_ = false;
+};
+
+using SharedStream = std::shared_ptr<DeviceStream const>;
+
+}  // namespace detail
+}  // namespace pliant
