@@ -12,23 +12,51 @@ namespace pliant {
 /// number of components, so that a node is one aligned vector.
 inline constexpr int node_stride = 4;
 
+namespace detail {
+
+/// The first values of a padded row as a GPU moves them: all of them, and the padding behind three, by
+/// as few accesses as its alignment allows.
+template <class T, int Components>
+struct alignas(sizeof(T) * Components > 8 ? 16 : sizeof(T) * Components) PaddedRow {
+  static constexpr int width = Components == 3 ? 4 : Components;
+  T values[width];
+};
+
+}  // namespace detail
+
 /// A view of vectors per node in a backend's memory, `Components` of each read or written.
 template <class T, int Components>
 struct NodeField {
   static constexpr int components = Components;
+  using value_type = std::remove_const_t<T>;
   T* data;  // (nodes, 4)
 
-  PLIANT_HOST_DEVICE T& operator()(Index node, int k) const {
-    return data[static_cast<std::ptrdiff_t>(node_stride) * node + k];
-  }
+  PLIANT_HOST_DEVICE T& operator()(Index node, int k) const { return row(node)[k]; }
   PLIANT_HOST_DEVICE auto at(Index node) const {
-    Vector<std::remove_const_t<T>, Components> v;
+    Vector<value_type, Components> v;
+#if defined(__CUDA_ARCH__)
+    auto const all = *reinterpret_cast<Row const*>(row(node));
+    for (int k = 0; k < Components; ++k) v[k] = all.values[k];
+#else
     for (int k = 0; k < Components; ++k) v[k] = (*this)(node, k);
+#endif
     return v;
   }
-  PLIANT_HOST_DEVICE void set(Index node,
-                              Vector<std::remove_const_t<T>, Components> const& v) const {
+  /// What is behind three values may become zero.
+  PLIANT_HOST_DEVICE void set(Index node, Vector<value_type, Components> const& v) const {
+#if defined(__CUDA_ARCH__)
+    Row all{};
+    for (int k = 0; k < Components; ++k) all.values[k] = v[k];
+    *reinterpret_cast<Row*>(row(node)) = all;
+#else
     for (int k = 0; k < Components; ++k) (*this)(node, k) = v[k];
+#endif
+  }
+
+ private:
+  using Row = detail::PaddedRow<value_type, Components>;
+  PLIANT_HOST_DEVICE T* row(Index node) const {
+    return data + static_cast<std::ptrdiff_t>(node_stride) * node;
   }
 };
 

@@ -29,23 +29,28 @@ struct Advance {
   T lag, kick, drift;  // s
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    // All is read before the first write, which the compiler must take for one of what is read.
     auto const force = f.at(i);
-    if (drift != T(0)) f.set(i, Vector<T, Dim>::zero());
+    auto velocity = v.at(i), displacement = u.at(i);
     T const m = mass[i];
-    if (!(m > T(0))) return;  // slaves follow their masters; nodes of no element rest
     DirectionMask const mask = held[i];
+    auto load = Vector<T, Dim>::zero();
+    if (external.load) load = NodeField<T const, Dim>{external.load}.at(i);
+    if (drift != T(0)) f.set(i, Vector<T, Dim>::zero());
+    if (!(m > T(0))) return;  // slaves follow their masters; nodes of no element rest
     T const inverse_mass = T(1) / m;
     T const release = T(1) / (T(1) + external.damping * lag);
     for (int k = 0; k < Dim; ++k) {
       if (mask >> k & 1) continue;
       T a = force[k] * inverse_mass + external.gravity[k];
-      if (external.load)
-        a += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k] * inverse_mass;
-      T speed = (v(i, k) + lag * a) * release;
+      if (external.load) a += load[k] * inverse_mass;
+      T speed = (velocity[k] + lag * a) * release;
       speed = speed * (T(1) - external.damping * kick) + kick * a;
-      v(i, k) = speed;
-      u(i, k) += drift * speed;
+      velocity[k] = speed;
+      displacement[k] += drift * speed;
     }
+    v.set(i, velocity);
+    u.set(i, displacement);
   }
 };
 
@@ -85,13 +90,22 @@ struct Copy {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
+/// Sets row `row` of a field. Values travel with the functor, so `for_each(1, SetRow{...})` neither
+/// allocates nor waits.
+template <class T, int Dim>
+struct SetRow {
+  NodeField<T, Dim> to;
+  Index row;
+  Vector<T, Dim> values;
+  PLIANT_HOST_DEVICE void operator()(Index) const { to.set(row, values); }
+};
+
 /// Sets the rows [0, nodes) of a field to zero.
 template <class T>
 struct Clear {
   T* data;  // (nodes, 4)
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    for (int k = 0; k < node_stride; ++k)
-      data[node_stride * static_cast<std::ptrdiff_t>(i) + k] = T(0);
+    NodeField<T, node_stride>{data}.set(i, Vector<T, node_stride>::zero());
   }
 };
 
@@ -131,8 +145,10 @@ struct FromUser {
   int stride;
   Index const* user_node;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Vector<T, Dim> row;
     for (int k = 0; k < Dim; ++k)
-      to(i, k) = from[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k];
+      row[k] = from[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k];
+    to.set(i, row);
   }
 };
 template <class T, int Dim>
@@ -142,8 +158,9 @@ struct AddToUser {
   int stride;
   Index const* user_node;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    auto const row = from.at(i);
     for (int k = 0; k < Dim; ++k)
-      to[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k] += from(i, k);
+      to[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k] += row[k];
   }
 };
 
