@@ -149,6 +149,49 @@ TEST_CASE("node loops see every node once", "[backend]") {
   });
 }
 
+/// Copies the rows of a field, or sets them to zero.
+template <class T, int C>
+struct MoveRows {
+  NodeField<T const, C> from;
+  NodeField<T, C> to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    to.set(i, i % 3 == 0 ? Vector<T, C>::zero() : from.at(i));
+  }
+};
+
+template <int C, class B>
+void check_rows(B const& backend) {
+  using T = typename B::scalar;
+  constexpr Index nodes = 1000;
+  std::vector<T> numbers(node_stride * nodes);
+  std::iota(numbers.begin(), numbers.end(), T(1));
+  auto const from = upload(backend, numbers);
+  auto to = upload(backend, std::vector<T>(numbers.size(), T(-1)));
+
+  // The first row and the last stay as they are.
+  backend.for_each(nodes - 2,
+                   MoveRows<T, C>{{from.data() + node_stride}, {to.data() + node_stride}});
+  backend.for_each(1, SetRow<T, C>{{to.data()}, 7, Vector<T, C>::zero()});
+
+  auto const moved = download<T>(to);
+  for (Index i = 0; i < nodes; ++i)
+    for (int k = 0; k < C; ++k) {
+      INFO("row " << i << ", component " << k << " of " << C);
+      auto const at = static_cast<std::size_t>(node_stride * i + k);
+      bool const ends = i == 0 || i == nodes - 1, cleared = i == 7 || (i - 1) % 3 == 0;
+      REQUIRE(moved[at] == (ends ? T(-1) : cleared ? T(0) : numbers[at]));
+    }
+}
+
+TEST_CASE("fields read and write their components of a row", "[backend]") {
+  on_each_backend<AllBackends>([](auto const& backend) {
+    check_rows<1>(backend);
+    check_rows<2>(backend);
+    check_rows<3>(backend);
+    check_rows<4>(backend);
+  });
+}
+
 TEST_CASE("a recording does again what was recorded", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto seen = zeros<double>(backend, 3);
@@ -232,6 +275,119 @@ TEST_CASE("loops over elements see each element of a group once", "[backend]") {
     elements.tags().upload(fan.tags);
     elements.regroup();
     check();
+  });
+}
+
+/// What verbs over elements give, with forces in whole numbers.
+template <class T>
+struct Swept {
+  std::vector<T> sums, values;
+  std::vector<double> counters;
+  double total;
+  bool operator==(Swept const&) const = default;
+};
+template <class B, class Table>
+auto sweep(B const& backend, Fan<B> const& fan, Index scratch_nodes, Table const& table) {
+  using T = typename B::scalar;
+  auto const x = upload(backend, fan.x);
+  auto out = zeros<T>(backend, static_cast<std::size_t>(node_stride * (fan.nodes + scratch_nodes)));
+  auto values = zeros<T>(backend, 2 * fan.connectivity.size());
+  auto counters = zeros<double>(backend, 2);
+  NodeField<T const, 2> const field{x.data()};
+  // Twice: what a loop leaves behind is not added by the next.
+  for (int round = 0; round < 2; ++round)
+    backend.template accumulate<2>(table, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
+  backend.template visit<2>(table, Record<T>{values.data()}, counters, field);
+  double const total = backend.template sum_elements<2>(table, SumOfNodes{}, field);
+  auto sums = download<T>(out);
+  sums.resize(static_cast<std::size_t>(node_stride * fan.nodes));
+  return Swept<T>{sums, download<T>(values), download<double>(counters), total};
+}
+
+TEST_CASE("loops over a list of patches pass over the elements of the others", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    Fan<B> fan;
+    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
+    Index const scratch = elements.scratch_nodes(), patches = elements.patch_count();
+    REQUIRE(patches > 2);
+    REQUIRE(patches == (fan.elements_count + elements.patch_size() - 1) / elements.patch_size());
+    // Lists: none, one, the last, every second one, all; -1 stands behind the list's end.
+    std::vector<std::vector<Index>> const lists = {
+        {0, -1},
+        {1, 1, -1},
+        {1, patches - 1, -1},
+        [&] {
+          std::vector<Index> all{0};
+          for (Index p = 0; p < patches; p += 2) all.push_back(p);
+          all[0] = static_cast<Index>(all.size()) - 1;
+          return all;
+        }(),
+        [&] {
+          std::vector<Index> all(static_cast<std::size_t>(patches) + 1);
+          std::iota(all.begin() + 1, all.end(), 0);
+          all[0] = patches;
+          return all;
+        }()};
+    for (auto const& list : lists) {
+      INFO(list[0] << " of " << patches << " patches");
+      auto tags = std::vector<Tag>(fan.tags.size(), no_group);
+      for (Index k = 1; k <= list[0]; ++k) {
+        Index const first = list[static_cast<std::size_t>(k)] * elements.patch_size();
+        for (Index e = first; e < std::min(fan.elements_count, first + elements.patch_size()); ++e)
+          tags[static_cast<std::size_t>(e)] = fan.tags[static_cast<std::size_t>(e)];
+      }
+      typename B::template Elements<3> const tagged{backend, fan.connectivity, 2, tags, fan.nodes};
+      auto const numbers = upload(backend, list);
+
+      auto const got = sweep(backend, fan, scratch, over(elements, numbers));
+
+      CHECK(got == sweep(backend, fan, scratch, tagged));
+      CHECK((got.total != 0) == (list[0] > 0));
+    }
+    CHECK_THROWS_WITH(over(elements, zeros<Index>(backend, 0)), says("list of patches"));
+  });
+}
+
+TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    Fan<B> fan;
+    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
+    auto const x = upload(backend, fan.x);
+    NodeField<T const, 2> const field{x.data()};
+    auto const rows = static_cast<std::size_t>(fan.nodes + elements.scratch_nodes());
+    auto out = zeros<T>(backend, node_stride * rows);
+    auto values = zeros<T>(backend, 2 * fan.connectivity.size());
+    auto counters = zeros<double>(backend, 2), ticks = zeros<double>(backend, 1);
+    auto list = upload(backend, std::vector<Index>{1, 0, 0});
+
+    auto const recording = backend.record([&] {
+      for (int step = 0; step < 8; ++step) {
+        backend.for_each(fan.nodes, Clear<T>{out.data()});
+        backend.template accumulate<2>(over(elements, list), WeightedSum{},
+                                       NodeField<T, 2>{out.data()}, field);
+        backend.for_each(1, AddOne<double>{ticks.data()});
+      }
+      backend.template visit<2>(over(elements, list), Record<T>{values.data()}, counters, field);
+    });
+    CHECK(download<double>(ticks)[0] == 0);
+    recording.replay(1);
+    list.upload(std::vector<Index>{2, 0, 1});
+    recording.replay(2);
+    auto const forces = download<T>(out);
+
+    CHECK(download<double>(ticks)[0] == 24);
+    auto expected = zeros<T>(backend, node_stride * rows);
+    backend.template accumulate<2>(over(elements, list), WeightedSum{},
+                                   NodeField<T, 2>{expected.data()}, field);
+    auto const once = download<T>(expected);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(node_stride * fan.nodes); ++i)
+      REQUIRE(forces[i] == once[i]);
+    double visits = 0;
+    for (Index e = 0; e < 2 * elements.patch_size(); ++e)
+      if (fan.factor(e) != T(0)) visits += e < elements.patch_size() ? 3 : 2;
+    auto const counts = download<double>(counters);
+    CHECK(counts[0] + counts[1] == visits);
   });
 }
 

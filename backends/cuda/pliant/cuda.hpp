@@ -9,6 +9,7 @@
 #include <memory>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/kernel.hpp>
 #include <pliant/cuda/accumulate.cuh>
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/launch.hpp>
@@ -77,46 +78,64 @@ class Cuda {
                   : reduce<detail::Maximum>("maximum", n, f);
   }
 
-  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
-  void accumulate(CudaElements<T, Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
+  template <int Groups, class Table, class Kernel, int C, class... Fields>
+  void accumulate(Table const& table, Kernel const& kernel, NodeField<T, C> out,
                   Fields const&... fields) const {
     static_assert((std::same_as<std::remove_const_t<decltype(*fields.data + 0)>, T> && ...),
                   "the fields of accumulate have the backend's scalar");
-    if (elements.count() == 0) return;
-    if constexpr (detail::scatters<T, Nodes>) {
-      void (*const scatter)(detail::ElementView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
-          detail::scatter_elements<Groups, Nodes, T, C, Kernel, Fields...>;
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, Matrix<T, nodes, C>, Groups, OneElement, Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
+    if (active.most <= 0) return;
+    if constexpr (detail::scatters<T, nodes>) {
+      void (*const scatter)(detail::ElementView<nodes>, Kernel, NodeField<T, C>, Fields...) =
+          detail::scatter_elements<Groups, nodes, T, C, Kernel, Fields...>;
       launch("accumulate",
-             {blocks(elements.count(), detail::scatter_threads), detail::scatter_threads}, scatter,
-             elements.view(), kernel, out, fields...);
+             {blocks(element_count(active), detail::scatter_threads), detail::scatter_threads},
+             scatter, active.elements.view({active.list}), kernel, out, fields...);
     } else {
-      using Memory = detail::PatchMemory<T, Nodes, C, (Fields::components + ... + 0)>;
-      void (*const by_patch)(detail::PatchView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
-          detail::accumulate_patches<Groups, Nodes, T, C, Kernel, Fields...>;
-      auto const patches = elements.patch_view();
-      launch("accumulate", {elements.patches(), elements.threads(), Memory::bytes(patches)},
+      using Memory = detail::PatchMemory<T, nodes, C, (Fields::components + ... + 0)>;
+      void (*const by_patch)(detail::PatchView<nodes>, Kernel, NodeField<T, C>, Fields...) =
+          detail::accumulate_patches<Groups, nodes, T, C, Kernel, Fields...>;
+      auto const patches = active.elements.patch_view({active.list});
+      launch("accumulate", {active.most, active.elements.threads(), Memory::bytes(patches)},
              by_patch, patches, kernel, out, fields...);
     }
   }
-  template <int Groups, int Nodes, class Kernel, class... Fields>
-  double sum_elements(CudaElements<T, Nodes> const& elements, Kernel const& kernel,
-                      Fields const&... fields) const {
-    if (elements.count() == 0) return 0;
-    return reduce<detail::Sum>("sum_elements", elements.count(),
-                               detail::ElementTerm<Groups, Nodes, Kernel, Fields...>{
-                                   elements.view(), kernel, {fields...}});
+  template <int Groups, class Table, class Kernel, class... Fields>
+  double sum_elements(Table const& table, Kernel const& kernel, Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
+    if (active.most <= 0) return 0;
+    return reduce<detail::Sum>("sum_elements", element_count(active),
+                               detail::ElementTerm<Groups, nodes, Kernel, Fields...>{
+                                   active.elements.view({active.list}), kernel, {fields...}});
   }
-  template <int Groups, int Nodes, class Visitor, class... Fields>
-  void visit(CudaElements<T, Nodes> const& elements, Visitor const& visitor,
-             DeviceArray<double>& counters, Fields const&... fields) const {
-    if (elements.count() == 0) return;
-    void (*const visit_kernel)(detail::ElementView<Nodes>, Visitor, double*, Fields...) =
-        detail::visit_elements<Groups, Nodes, Visitor, Fields...>;
-    launch("visit", {blocks(elements.count(), detail::visit_threads), detail::visit_threads},
-           visit_kernel, elements.view(), visitor, counters.data(), fields...);
+  template <int Groups, class Table, class Visitor, class... Fields>
+  void visit(Table const& table, Visitor const& visitor, DeviceArray<double>& counters,
+             Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_visitor<Visitor, T, Gather<nodes, Fields...>, Groups, OneElement,
+                    Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
+    if (active.most <= 0) return;
+    void (*const visit_kernel)(detail::ElementView<nodes>, Visitor, double*, Fields...) =
+        detail::visit_elements<Groups, nodes, Visitor, Fields...>;
+    launch("visit", {blocks(element_count(active), detail::visit_threads), detail::visit_threads},
+           visit_kernel, active.elements.view({active.list}), visitor, counters.data(), fields...);
   }
 
  private:
+  template <int Nodes, class Field>
+  using Values = Matrix<T, Nodes, Field::components>;
+
+  /// How many elements a loop looks at, at most.
+  template <class Active>
+  static Index element_count(Active const& active) {
+    return active.list == nullptr ? active.elements.count()
+                                  : active.most * active.elements.patch_size();
+  }
   static Index blocks(Index n, int threads) { return n / threads + (n % threads != 0); }
 
   template <class... Parameters, class... Arguments>

@@ -10,6 +10,8 @@
 #include <pliant/backend/host_array.hpp>
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/backend/host_timer.hpp>
+#include <pliant/backend/kernel.hpp>
+#include <pliant/backend/patch_list.hpp>
 
 namespace pliant {
 
@@ -28,6 +30,7 @@ class Reference {
   template <int Nodes>
   class Elements {
    public:
+    static constexpr int nodes_per_element = Nodes;
     Elements() = default;
     Elements(Reference const&, std::vector<std::array<Index, Nodes>> connectivity, int,
              std::vector<Tag> const& tags, Index /* nodes */)
@@ -37,6 +40,8 @@ class Reference {
     }
     Index count() const { return static_cast<Index>(connectivity_.size()); }
     Index scratch_nodes() const { return 0; }
+    static constexpr Index patch_size() { return 512; }
+    Index patch_count() const { return (count() + patch_size() - 1) / patch_size(); }
     HostArray<Tag>& tags() { return tags_; }
     HostArray<Tag> const& tags() const { return tags_; }
     HostArray<Tag> take_tags() { return std::move(tags_); }
@@ -74,43 +79,55 @@ class Reference {
   void synchronize() const {}
   Timer timer() const { return {}; }
 
-  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
-  void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
+  template <int Groups, class Table, class Kernel, int C, class... Fields>
+  void accumulate(Table const& table, Kernel const& kernel, NodeField<T, C> out,
                   Fields const&... fields) const {
-    loop<Groups>(elements, [&](auto group, Index e) {
-      Index const* nodes = elements.nodes(e);
-      auto const values = call(kernel, group, OneElement{e}, gather<Nodes>(fields, nodes)...);
-      for (int a = 0; a < Nodes; ++a)
-        for (int k = 0; k < C; ++k) out(nodes[a], k) += values(a, k);
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, Matrix<T, nodes, C>, Groups, OneElement, Values<nodes, Fields>...>();
+    loop<Groups>(table, [&](auto group, Index e, Index const* row) {
+      auto const values = call(kernel, group, OneElement{e}, gather<nodes>(fields, row)...);
+      for (int a = 0; a < nodes; ++a)
+        for (int k = 0; k < C; ++k) out(row[a], k) += values(a, k);
     });
   }
-  template <int Groups, int Nodes, class Kernel, class... Fields>
-  double sum_elements(Elements<Nodes> const& elements, Kernel const& kernel,
-                      Fields const&... fields) const {
+  template <int Groups, class Table, class Kernel, class... Fields>
+  double sum_elements(Table const& table, Kernel const& kernel, Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();
     double total = 0;
-    loop<Groups>(elements, [&](auto group, Index e) {
-      total += static_cast<double>(
-          call(kernel, group, OneElement{e}, gather<Nodes>(fields, elements.nodes(e))...));
+    loop<Groups>(table, [&](auto group, Index e, Index const* row) {
+      total +=
+          static_cast<double>(call(kernel, group, OneElement{e}, gather<nodes>(fields, row)...));
     });
     return total;
   }
-  template <int Groups, int Nodes, class Visitor, class... Fields>
-  void visit(Elements<Nodes> const& elements, Visitor const& visitor, HostArray<double>& counters,
+  template <int Groups, class Table, class Visitor, class... Fields>
+  void visit(Table const& table, Visitor const& visitor, HostArray<double>& counters,
              Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    using Again = Gather<nodes, Fields...>;
+    require_visitor<Visitor, T, Again, Groups, OneElement, Values<nodes, Fields>...>();
     auto const tally = [&counters](int k, double x) { counters.data()[k] += x; };
-    loop<Groups>(elements, [&](auto group, Index e) {
-      auto const values =
-          evaluate_at(visitor, group, OneElement{e}, gather<Nodes>(fields, elements.nodes(e))...);
-      visitor.finish(group, e, values, Gather<Nodes, Fields...>{elements.nodes(e), {fields...}},
-                     tally);
+    loop<Groups>(table, [&](auto group, Index e, Index const* row) {
+      auto const values = evaluate_at(visitor, group, OneElement{e}, gather<nodes>(fields, row)...);
+      visitor.finish(group, e, values, Again{row, {fields...}}, tally);
     });
   }
 
  private:
-  template <int Groups, int Nodes, class F>
-  static void loop(Elements<Nodes> const& elements, F const& f) {
-    for (Index e = 0; e < elements.count(); ++e)
-      dispatch<Groups>(elements.tag(e), [&](auto group) { f(group, e); });
+  template <int Nodes, class Field>
+  using Values = Matrix<T, Nodes, Field::components>;
+
+  template <int Groups, class Table, class F>
+  static void loop(Table const& table, F const& f) {
+    auto const active = detail::active(table);
+    auto const& elements = active.elements;
+    for (Index k = 0; k < active.patch_count(); ++k) {
+      Index const first = elements.patch_size() * active.patch(k);
+      Index const last = std::min(elements.count(), first + elements.patch_size());
+      for (Index e = first; e < last; ++e)
+        dispatch<Groups>(elements.tag(e), [&](auto group) { f(group, e, elements.nodes(e)); });
+    }
   }
 };
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <span>
 #include <vector>
 
 #include <pliant/backend/field.hpp>
+#include <pliant/backend/patch_list.hpp>
 
 // What a backend must offer: arrays, loops over nodes, loops over elements. A backend knows nothing
 // of mechanics; mechanics calls these verbs and knows nothing of threads. `Reference` is the
@@ -39,6 +41,8 @@
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run
+//   .patch_size() .patch_count()  a patch is a run of patch_size() consecutive elements (the last one may
+//                              be shorter), as large as suits the backend
 //   .scratch_nodes()           rows that a field to accumulate into needs behind its nodes
 //   accumulate<Groups>(elements, kernel, out, fields...)
 //                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`
@@ -50,6 +54,8 @@
 //                              element, again, tally), where again() gathers its v... as plain
 //                              numbers and tally(k, x) adds x to counters[k] of the array counters,
 //                              k < Visitor::counters
+// `over(elements, list)` in place of `elements` passes over the patches that are not in a list
+// (backend/patch_list.hpp). What kernels and visitors have to offer is in backend/kernel.hpp.
 namespace pliant {
 
 template <int G>

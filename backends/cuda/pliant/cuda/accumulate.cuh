@@ -65,7 +65,11 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   constexpr int M = (Fields::components + ... + 0);
   extern __shared__ __align__(16) char shared_memory[];
   PatchMemory<T, Nodes, C, M> const memory(patches, shared_memory);
-  Index const patch = static_cast<Index>(blockIdx.x), thread = static_cast<Index>(threadIdx.x);
+  // Another kernel may have written the list.
+  if (patches.active.list != nullptr) begin_after_previous_kernel();
+  Index const patch = patches.active.patch(static_cast<Index>(blockIdx.x));
+  if (patch < 0) return;
+  Index const thread = static_cast<Index>(threadIdx.x);
   Index const threads = static_cast<Index>(blockDim.x);
   PatchNode const* const nodes =
       patches.nodes + static_cast<std::ptrdiff_t>(patch) * patches.node_capacity;

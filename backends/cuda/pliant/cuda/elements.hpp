@@ -15,6 +15,17 @@ class Cuda;
 
 namespace detail {
 
+/// Which patches of a table a kernel looks at.
+struct ActiveList {
+  Index const* list = nullptr;  // how many, then their numbers; null: all
+
+  /// The patch of number k among these; negative behind the last one.
+  __device__ __forceinline__ Index patch(Index k) const {
+    if (list == nullptr) return k;
+    return k < list[0] ? list[k + 1] : -1;
+  }
+};
+
 /// An element table as kernels see it.
 template <int Nodes>
 struct ElementView {
@@ -22,6 +33,17 @@ struct ElementView {
   Index count;
   Index const* connectivity;  // (elements, width)
   Tag const* tags;
+  int patch_size;
+  ActiveList active;
+
+  /// The i-th element of the active patches; negative where the last patch has none.
+  __device__ __forceinline__ Index element(Index i) const {
+    if (active.list != nullptr) {
+      Index const patch = active.patch(i / patch_size);
+      i = patch < 0 ? count : patch * patch_size + i % patch_size;
+    }
+    return i < count ? i : -1;
+  }
 };
 
 /// The patches of an element table as kernels see them.
@@ -33,6 +55,7 @@ struct PatchView {
   PatchRow<Nodes> const* rows;     // (elements)
   PatchNode const* nodes;          // (patches, node_capacity)
   std::uint16_t const* diagonals;  // (patches, diagonal_capacity)
+  ActiveList active;
 };
 
 }  // namespace detail
@@ -43,6 +66,7 @@ class CudaElements {
   using View = detail::ElementView<Nodes>;
 
  public:
+  static constexpr int nodes_per_element = Nodes;
   CudaElements() = default;
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                int /* groups */, std::vector<Tag> const& tags, Index nodes)
@@ -51,16 +75,17 @@ class CudaElements {
   /// multiple of the threads.
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads)
-      : count_(static_cast<Index>(connectivity.size())), threads_(size_and_threads[1]) {
-    if (threads_ < 1 || size_and_threads[0] % threads_ != 0)
-      throw Error("patches of ", size_and_threads[0], " elements for ", threads_,
+      : count_(static_cast<Index>(connectivity.size())),
+        patch_size_(size_and_threads[0]),
+        threads_(size_and_threads[1]) {
+    if (threads_ < 1 || patch_size_ < threads_ || patch_size_ % threads_ != 0)
+      throw Error("patches of ", patch_size_, " elements for ", threads_,
                   " threads; give a multiple of the threads");
     detail::check_nodes<Nodes>(connectivity, nodes);
     tags_ = uploaded(backend, tags);
     tag_data_ = tags_.data();
     connectivity_ = padded(backend, connectivity);
-    if constexpr (!detail::scatters<T, Nodes>)
-      plan(backend, connectivity, nodes, size_and_threads[0]);
+    if constexpr (!detail::scatters<T, Nodes>) plan(backend, connectivity, nodes);
   }
 
   Index count() const { return count_; }
@@ -71,20 +96,21 @@ class CudaElements {
   /// Nothing to do: kernels read the tags.
   void regroup() {}
 
-  Index patches() const { return patches_; }
+  Index patch_size() const { return patch_size_; }
+  Index patch_count() const { return count_ / patch_size_ + (count_ % patch_size_ != 0); }
   int threads() const { return threads_; }
-  View view() const { return {count_, connectivity_.data(), tag_data_}; }
-  detail::PatchView<Nodes> patch_view() const {
-    return {count_,    patch_size_,  patch_size_ / threads_, node_capacity_,   diagonal_capacity_,
-            tag_data_, rows_.data(), nodes_.data(),          diagonals_.data()};
+  View view(detail::ActiveList const& active) const {
+    return {count_, connectivity_.data(), tag_data_, patch_size_, active};
+  }
+  detail::PatchView<Nodes> patch_view(detail::ActiveList const& active) const {
+    return {count_,    patch_size_,  patch_size_ / threads_, node_capacity_,    diagonal_capacity_,
+            tag_data_, rows_.data(), nodes_.data(),          diagonals_.data(), active};
   }
 
  private:
   void plan(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
-            Index nodes, int patch_size) {
-    auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size).plan();
-    patch_size_ = plan.patch_size;
-    patches_ = plan.patches;
+            Index nodes) {
+    auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size_).plan();
     node_capacity_ = plan.node_capacity;
     diagonal_capacity_ = plan.diagonal_capacity;
     rows_ = uploaded(backend, plan.rows);
@@ -110,8 +136,8 @@ class CudaElements {
     return uploaded(backend, rows);
   }
 
-  Index count_ = 0, patches_ = 0;
-  int threads_ = 1, patch_size_ = 0, node_capacity_ = 0, diagonal_capacity_ = 0;
+  Index count_ = 0;
+  int patch_size_ = 1, threads_ = 1, node_capacity_ = 0, diagonal_capacity_ = 0;
   DeviceArray<Tag> tags_;
   Tag const* tag_data_ = nullptr;  // whoever owns them
   DeviceArray<Index> connectivity_;

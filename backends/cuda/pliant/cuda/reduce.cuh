@@ -61,14 +61,16 @@ __global__ void reduce_partials(int count, double const* partials, double* resul
   if (i == 0) *result = value;
 }
 
-/// A kernel's value of an element, as a function of the element's number.
+/// A kernel's value of an element, as a function of its number among the active ones.
 template <int Groups, int Nodes, class Kernel, class... Fields>
 struct ElementTerm {
   ElementView<Nodes> elements;
   Kernel kernel;
   std::tuple<Fields...> fields;
 
-  __device__ double operator()(Index e) const {
+  __device__ double operator()(Index i) const {
+    Index const e = elements.element(i);
+    if (e < 0) return 0;
     double value = 0;
     Index const* const row =
         elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;

@@ -13,9 +13,9 @@ __global__ void __launch_bounds__(scatter_threads)
     scatter_elements(ElementView<Nodes> const elements, __grid_constant__ Kernel const kernel,
                      NodeField<T, C> const out, Fields... fields) {
   begin_after_previous_kernel();
-  Index const e =
-      static_cast<Index>(blockIdx.x) * scatter_threads + static_cast<Index>(threadIdx.x);
-  if (e >= elements.count) return;
+  Index const e = elements.element(static_cast<Index>(blockIdx.x) * scatter_threads +
+                                   static_cast<Index>(threadIdx.x));
+  if (e < 0) return;
   Index const* const row = elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
   dispatch<Groups>(elements.tags[e], [&](auto group) {
     auto const shares = call(kernel, group, OneElement{e}, gather_nodes<Nodes>(fields, row)...);

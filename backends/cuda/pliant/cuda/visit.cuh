@@ -21,8 +21,8 @@ __global__ void __launch_bounds__(visit_threads)
   __syncthreads();
   begin_after_previous_kernel();
 
-  Index const e = static_cast<Index>(blockIdx.x) * visit_threads + thread;
-  if (e < elements.count) {
+  Index const e = elements.element(static_cast<Index>(blockIdx.x) * visit_threads + thread);
+  if (e >= 0) {
     Index const* const row =
         elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
     dispatch<Groups>(elements.tags[e], [&](auto group) {
