@@ -34,12 +34,11 @@ struct GroupStatistics {
   typename B::template Array<double> counters;
   bool open = false;
 
-  void start(B const&, Index elements, std::int64_t step) {
+  void start(B const& backend, Index elements, std::int64_t step) {
     auto const n = static_cast<std::size_t>(elements);
-    since = typename B::template Array<Index>(n);
-    since.upload(std::vector<Index>(n, static_cast<Index>(step)));
-    switches = typename B::template Array<std::uint16_t>(n);
-    counters = typename B::template Array<double>(Counters::count);
+    since = upload(backend, std::vector<Index>(n, static_cast<Index>(step)));
+    switches = zeros<std::uint16_t>(backend, n);
+    counters = zeros<double>(backend, Counters::count);
     open = true;
   }
   /// Enters that elements went from the groups `before` to `after` at a step, by hand.
