@@ -9,6 +9,7 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/backend/host_timer.hpp>
+#include <pliant/backend/kernel.hpp>
 #include <pliant/error.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/threads.hpp>
@@ -100,13 +101,19 @@ class OpenMP {
   void synchronize() const {}
   Timer timer() const { return {}; }
 
-  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
-  void accumulate(Elements<Nodes> const& elements, Kernel const& kernel, NodeField<T, C> out,
+  template <int Groups, class Table, class Kernel, int C, class... Fields>
+  void accumulate(Table const& table, Kernel const& kernel, NodeField<T, C> out,
                   Fields const&... fields) const {
-    auto const accumulate_in = [&](Index p) {
-      accumulate_patch<Groups>(elements, p, kernel, out, fields...);
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, Matrix<Scalar, nodes, C>, Groups, PackMembers,
+                   Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
+    auto const& elements = active.elements;
+    if (active.list != nullptr) clear_scratch(elements, out);
+    auto const accumulate_in = [&](Index k) {
+      accumulate_patch<Groups>(elements, active.patch(k), kernel, out, fields...);
     };
-    threads_.for_each_block(elements.patch_count(), accumulate_in, elements.folded_count(),
+    threads_.for_each_block(active.patch_count(), accumulate_in, elements.folded_count(),
                             [&](Index k) {
                               auto const f = elements.folded(k);
                               for (Index row : f.rows)
@@ -114,28 +121,37 @@ class OpenMP {
                             });
   }
 
-  template <int Groups, int Nodes, class Kernel, class... Fields>
-  double sum_elements(Elements<Nodes> const& elements, Kernel const& kernel,
-                      Fields const&... fields) const {
-    std::vector<double> partial(static_cast<std::size_t>(elements.patch_count()));
-    threads_.for_each_block(elements.patch_count(), [&](Index p) {
+  template <int Groups, class Table, class Kernel, class... Fields>
+  double sum_elements(Table const& table, Kernel const& kernel, Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, Scalar, Groups, PackMembers, Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
+    std::vector<double> partial(static_cast<std::size_t>(active.patch_count()));
+    threads_.for_each_block(active.patch_count(), [&](Index k) {
       double total = 0;
-      for_each_pack<Groups>(elements, p, [&](auto group, PackMembers const& m) {
-        Scalar const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
-        for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
-      });
-      partial[static_cast<std::size_t>(p)] = total;
+      for_each_pack<Groups>(
+          active.elements, active.patch(k), [&](auto group, PackMembers const& m) {
+            Scalar const values =
+                call(kernel, group, m, gather_pack<nodes>(active.elements, m, fields)...);
+            for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
+          });
+      partial[static_cast<std::size_t>(k)] = total;
     });
     return sum_in_order(partial);
   }
 
-  template <int Groups, int Nodes, class Visitor, class... Fields>
-  void visit(Elements<Nodes> const& elements, Visitor const& visitor, HostArray<double>& counters,
+  template <int Groups, class Table, class Visitor, class... Fields>
+  void visit(Table const& table, Visitor const& visitor, HostArray<double>& counters,
              Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_visitor<Visitor, T, Gather<nodes, Fields...>, Groups, PackMembers,
+                    Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
     std::vector<std::array<double, Visitor::counters>> partial(
-        static_cast<std::size_t>(elements.patch_count()));
-    threads_.for_each_block(elements.patch_count(), [&](Index p) {
-      partial[static_cast<std::size_t>(p)] = visit_patch<Groups>(elements, p, visitor, fields...);
+        static_cast<std::size_t>(active.patch_count()));
+    threads_.for_each_block(active.patch_count(), [&](Index k) {
+      partial[static_cast<std::size_t>(k)] =
+          visit_patch<Groups>(active.elements, active.patch(k), visitor, fields...);
     });
     for (auto const& mine : partial)
       for (std::size_t k = 0; k < mine.size(); ++k) counters.data()[k] += mine[k];
@@ -144,6 +160,9 @@ class OpenMP {
  private:
   static constexpr Index small_loop = 16384;  // to here, waking threads costs more than the loop
   static constexpr Index sum_block = 4096;
+
+  template <int Nodes, class Field>
+  using Values = Matrix<Scalar, Nodes, Field::components>;
 
   /// The elements in the lanes of one pack; behind `count` the last one repeats.
   struct PackMembers {
@@ -176,6 +195,16 @@ class OpenMP {
         m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
       f(GroupNumber<Group>{}, m);
     }
+  }
+
+  /// Patches that are passed over add nothing.
+  template <int Nodes, int C>
+  void clear_scratch(Elements<Nodes> const& elements, NodeField<T, C> out) const {
+    if (elements.patch_count() == 0) return;
+    Index const first = elements.scratch_of(0).first;
+    threads_.for_each_part(elements.scratch_nodes(), small_loop, [&](Index from, Index to) {
+      std::fill_n(&out(first + from, 0), std::ptrdiff_t{node_stride} * (to - from), T(0));
+    });
   }
 
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>

@@ -90,16 +90,6 @@ struct Copy {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
-/// Sets row `row` of a field. Values travel with the functor, so `for_each(1, SetRow{...})` neither
-/// allocates nor waits.
-template <class T, int Dim>
-struct SetRow {
-  NodeField<T, Dim> to;
-  Index row;
-  Vector<T, Dim> values;
-  PLIANT_HOST_DEVICE void operator()(Index) const { to.set(row, values); }
-};
-
 /// Sets the rows [0, nodes) of a field to zero.
 template <class T>
 struct Clear {

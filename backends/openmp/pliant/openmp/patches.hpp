@@ -19,7 +19,9 @@ namespace pliant::detail {
 template <int Nodes>
 class Patches {
  public:
-  static constexpr Index patch_size = 2048;  // elements; swept by bench, flat from 1024 to 8192
+  static constexpr int nodes_per_element = Nodes;
+  /// Elements; swept by bench, flat from 1024 to 8192.
+  static constexpr Index patch_size() { return 2048; }
 
   Patches() = default;
   Patches(std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
@@ -41,7 +43,7 @@ class Patches {
   }
 
   Index count() const { return static_cast<Index>(order_.size()); }
-  Index patch_count() const { return (count() + patch_size - 1) / patch_size; }
+  Index patch_count() const { return (count() + patch_size() - 1) / patch_size(); }
   Index scratch_nodes() const { return scratch_nodes_; }
   HostArray<Tag>& tags() { return tags_; }
   HostArray<Tag> const& tags() const { return tags_; }
@@ -76,10 +78,10 @@ class Patches {
   /// order without a look.
   void regroup() {
     for (Index p = 0; p < patch_count(); ++p) {
-      auto const first = static_cast<std::size_t>(p * patch_size);
-      auto const size = std::min(ordered_tags_.size() - first, static_cast<std::size_t>(patch_size));
-      if (std::equal(tag_data_ + first, tag_data_ + first + size,
-                     ordered_tags_.data() + first))
+      auto const first = static_cast<std::size_t>(p * patch_size());
+      auto const size =
+          std::min(ordered_tags_.size() - first, static_cast<std::size_t>(patch_size()));
+      if (std::equal(tag_data_ + first, tag_data_ + first + size, ordered_tags_.data() + first))
         continue;
       std::copy_n(tag_data_ + first, size, ordered_tags_.data() + first);
       order(p);
@@ -88,7 +90,7 @@ class Patches {
 
  private:
   void order(Index patch) {
-    Index const first = patch * patch_size, last = std::min(count(), first + patch_size);
+    Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
     Index* next = order_.data() + first;
     auto bound = bounds_.begin() + patch * (groups_ + 1);
     for (int g = 0; g < groups_; ++g) {
@@ -107,7 +109,7 @@ class Patches {
     for (Index p = 0; p < patch_count(); ++p) {
       scratch_first_.push_back(next);
       std::size_t const seen = foreign.size();
-      Index const first = p * patch_size, last = std::min(count(), first + patch_size);
+      Index const first = p * patch_size(), last = std::min(count(), first + patch_size());
       for (std::ptrdiff_t k = std::ptrdiff_t{Nodes} * first; k < std::ptrdiff_t{Nodes} * last;
            ++k) {
         auto const node = static_cast<std::size_t>(connectivity_.data()[k]);
