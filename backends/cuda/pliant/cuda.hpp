@@ -73,6 +73,10 @@ class Cuda {
     return n <= 0 ? 0.0 : reduce<detail::Sum>("sum", n, f);
   }
   template <class F>
+  void add_sum(Index n, F const& f, double* to) const {
+    if (n > 0) reduce_to<detail::AddedSum>("add_sum", n, f, to);
+  }
+  template <class F>
   double maximum(Index n, F const& f) const {
     return n <= 0 ? -std::numeric_limits<double>::infinity()
                   : reduce<detail::Maximum>("maximum", n, f);
@@ -144,15 +148,20 @@ class Cuda {
     auto const device = context_->stream()->enter();
     detail::launch(detail::Start::early, verb, shape, stream(), kernel, arguments...);
   }
+  /// Leaves the result in memory that kernels write to; waits for nothing.
   template <class Reduction, class F>
-  double reduce(char const* verb, Index n, F const& f) const {
+  void reduce_to(char const* verb, Index n, F const& f, double* result) const {
     Index const count =
         std::min<Index>(blocks(n, detail::reduce_threads), detail::CudaContext::max_partials);
     double* const partials = context_->partials();
     launch(verb, {count, detail::reduce_threads}, detail::reduce_to_partials<Reduction, F>, n, f,
            partials);
     launch(verb, {1, detail::CudaContext::max_partials}, detail::reduce_partials<Reduction>, count,
-           partials, context_->result());
+           partials, result);
+  }
+  template <class Reduction, class F>
+  double reduce(char const* verb, Index n, F const& f) const {
+    reduce_to<Reduction>(verb, n, f, context_->result());
     synchronize();
     return *context_->result();
   }

@@ -83,6 +83,10 @@ class OpenMP {
     return sum_in_order(partial);
   }
   template <class F>
+  void add_sum(Index n, F const& f, double* to) const {
+    *to += sum(n, f);
+  }
+  template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
     threads_.for_each_part(n, small_loop, [&](Index first, Index last) {

@@ -66,6 +66,10 @@ class Reference {
     return total;
   }
   template <class F>
+  void add_sum(Index n, F const& f, double* to) const {
+    *to += sum(n, f);
+  }
+  template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
     for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));

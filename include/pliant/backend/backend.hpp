@@ -23,6 +23,8 @@
 // Node loops    f is a functor marked for host and device, called once for each i in [0, n).
 //   for_each(n, f)             f(i)
 //   sum(n, f) maximum(n, f)    double; of f(i)
+//   add_sum(n, f, to)          *to += the sum of f(i), where `to` is in the backend's memory; waits for
+//                              nothing
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
 //                              that return nothing, the same ones with the same arguments each time
 //                              (a GPU records them once as a graph).
@@ -92,6 +94,7 @@ concept Backend =
       b.for_each(n, f);
       { b.sum(n, f) } -> std::same_as<double>;
       { b.maximum(n, f) } -> std::same_as<double>;
+      b.add_sum(n, f, static_cast<double*>(nullptr));
       { b.record(f) } -> std::same_as<typename B::Recording>;
       {
         b.template array<typename B::scalar>(std::size_t{})

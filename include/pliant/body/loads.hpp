@@ -36,7 +36,6 @@ ExternalForces<typename Parts::T, Parts::dim> external_forces(Parts& parts) {
   ExternalForces<T, Parts::dim> external;
   for (int k = 0; k < Parts::dim; ++k)
     external.gravity[k] = static_cast<T>(state.gravity[static_cast<std::size_t>(k)]);
-  external.damping = static_cast<T>(state.damping);
   external.load = nullptr;
   if (state.load.size() == 0) return external;
   external.load = layout.load.size() > 0 ? layout.load.data() : state.load.data();

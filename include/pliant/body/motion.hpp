@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <pliant/backend/field.hpp>
 #include <pliant/constraint/condition.hpp>
 
@@ -10,23 +12,36 @@ namespace pliant {
 template <class T, int Dim>
 struct ExternalForces {
   Vector<T, Dim> gravity;  // m/s²
-  T damping;               // per mass: the force −damping · m v, 1/s
   T const* load;           // (nodes, 4), N; may be null
 };
 
+/// One half-kick of a time h under a force per mass a and mass damping c: v ← α v + β a with α = e^(−c h) and
+/// β = (1 − α)/c, exact for constant a. The composition kick, drift, kick is second order, and its stable
+/// step is not below that without damping, however strong that is.
+template <class T>
+struct HalfKick {
+  T keep, gain;  // α, and β in s
+
+  static HalfKick over(double time, double damping) {
+    double const x = damping * time;
+    return {static_cast<T>(std::exp(-x)), static_cast<T>(x > 0 ? -std::expm1(-x) / damping : time)};
+  }
+  PLIANT_HOST_DEVICE T operator()(T v, T a) const { return keep * v + gain * a; }
+};
+
 /// Brings velocities and displacements forward:
-///   v ← (v + lag a)/(1 + damping lag)       the half kick that the last step left open
-///   v ← v (1 − damping kick) + kick a       the first half kick of this step
-///   u ← u + drift v                         and the forces of the old u are cleared
-/// Both half kicks together are central differences with centred mass damping, whose stable step is
-/// that without damping. Directions that are held keep u and have v = 0.
+///   v ← the half-kick that the last step left pending
+///   v ← the first half-kick of this step
+///   u ← u + drift v, and the forces of the old u are cleared
+/// Directions that are held keep u and have v = 0.
 template <class T, int Dim>
 struct Advance {
   NodeField<T, Dim> u, v, f;
   T const* mass;
   DirectionMask const* held;
   ExternalForces<T, Dim> external;
-  T lag, kick, drift;  // s
+  HalfKick<T> lag, kick;
+  T drift;  // s
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
     // All is read before the first write, which the compiler must take for one of what is read.
@@ -37,15 +52,13 @@ struct Advance {
     auto load = Vector<T, Dim>::zero();
     if (external.load) load = NodeField<T const, Dim>{external.load}.at(i);
     if (drift != T(0)) f.set(i, Vector<T, Dim>::zero());
-    if (!(m > T(0))) return;  // slaves follow their masters; nodes of no element rest
+    if (!(m > T(0))) return;  // slaves follow their masters
     T const inverse_mass = T(1) / m;
-    T const release = T(1) / (T(1) + external.damping * lag);
     for (int k = 0; k < Dim; ++k) {
       if (mask >> k & 1) continue;
       T a = force[k] * inverse_mass + external.gravity[k];
       if (external.load) a += load[k] * inverse_mass;
-      T speed = (velocity[k] + lag * a) * release;
-      speed = speed * (T(1) - external.damping * kick) + kick * a;
+      T const speed = kick(lag(velocity[k], a), a);
       velocity[k] = speed;
       displacement[k] += drift * speed;
     }
@@ -54,20 +67,46 @@ struct Advance {
   }
 };
 
-/// Puts the nodes of a list at a prescribed displacement and velocity.
+/// The work of mass damping in the two half-kicks of an Advance, J: what they change beyond the work of the other
+/// forces, m (v'² − v²)/2 less (a·v_half h/2 ∓ a² h²/8) for each, so that it is zero without damping.
 template <class T, int Dim>
-struct Prescribe {
-  NodeField<T, Dim> u, v;
-  Index const* nodes;
-  DirectionMask directions;
-  Vector<T, Dim> displacement, velocity;
+struct DampingWork {
+  NodeField<T const, Dim> v, f;
+  T const* mass;
+  DirectionMask const* held;
+  ExternalForces<T, Dim> external;
+  HalfKick<T> lag, kick;
+  double lag_time, kick_time;  // s
 
-  PLIANT_HOST_DEVICE void operator()(Index n) const {
-    for (int k = 0; k < Dim; ++k)
-      if (directions >> k & 1) {
-        u(nodes[n], k) = displacement[k];
-        v(nodes[n], k) = velocity[k];
-      }
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    T const m = mass[i];
+    if (!(m > T(0))) return 0;
+    double work = 0;
+    for (int k = 0; k < Dim; ++k) {
+      if (held[i] >> k & 1) continue;
+      T force = f(i, k);
+      if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
+      T const a = force / m + external.gravity[k];
+      T const before = v(i, k), now = lag(before, a), after = kick(now, a);
+      auto const half = [&](T half_speed, T from, T to, double time, double sign) {
+        double const x = static_cast<double>(from), y = static_cast<double>(to);
+        double const p = static_cast<double>(a), h = static_cast<double>(half_speed);
+        return (y * y - x * x) / 2 - time * p * h + sign * time * time * p * p / 2;
+      };
+      work += static_cast<double>(m) *
+              (half(before, before, now, lag_time, -1) + half(after, now, after, kick_time, 1));
+    }
+    return work;
+  }
+};
+
+/// time · f·v of a node, J.
+template <class T, int Dim>
+struct WorkRate {
+  NodeField<T const, Dim> f, v;
+  double time;  // s
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    return time * static_cast<double>(dot(f.at(i), v.at(i)));
   }
 };
 
@@ -81,13 +120,6 @@ struct StopHeld {
     for (int k = 0; k < Dim; ++k)
       if (held[i] >> k & 1) v(i, k) = T(0);
   }
-};
-
-template <class T>
-struct Copy {
-  T const* from;
-  T* to;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
 /// Sets the rows [0, nodes) of a field to zero.

@@ -72,7 +72,8 @@ struct Parts {
     Array<T> u, du, f;
   };
   std::optional<Scratch> scratch{};
-  Array<T> row_sums{};  // (nodes, 4) and scratch rows, of the stable step
+  Array<T> without_energy{};  // (nodes, 4) and scratch rows, N: of terms that have no energy
+  Array<T> row_sums{};        // (nodes, 4) and scratch rows, of the stable step
   mutable Array<double> no_counters{};
   AdaptationTimers<B> timers{};
 

@@ -6,18 +6,81 @@
 // Velocities that are a half-kick behind the time of a state.
 namespace pliant {
 
-/// Velocities and displacements go forward: see Advance.
+/// The half-kicks of an advance: see HalfKick.
+template <class Parts>
+HalfKick<typename Parts::T> half_kick(Parts const& parts, double time) {
+  return HalfKick<typename Parts::T>::over(time, parts.state.damping);
+}
+
+namespace detail {
+
+/// Brings parts.without_energy up to date: the forces of the terms that have no energy, and so do work that the
+/// energies do not tell.
+template <class Parts>
+bool evaluate_terms_without_energy(Parts& parts) {
+  bool any = false;
+  for (auto const* terms : {&parts.pressures, &parts.terms})
+    for (auto const& term : *terms) any = any || !term->has_energy();
+  if (!any) return false;
+  if (parts.without_energy.size() != parts.layout.f.size())
+    parts.without_energy = zeros<typename Parts::T>(parts.backend, parts.layout.f.size());
+  typename Parts::Field const f{parts.without_energy.data()};
+  clear_rows(parts, f);
+  for (auto const* terms : {&parts.pressures, &parts.terms})
+    for (auto const& term : *terms)
+      if (!term->has_energy()) term->add_force(parts.backend, std::as_const(parts).here(), f);
+  parts.layout.interpolation.apply_transpose(parts.backend, f);
+  return true;
+}
+
+/// Adds what damping and driven nodes do around the present time to state.work; before an Advance.
+template <class Parts>
+void book_work(Parts& parts, double lag, double kick, bool drifts) {
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& layout = parts.layout;
+  auto const external = external_forces(parts);
+  double* const work = parts.state.work.data();
+  typename Parts::ConstField const v{parts.state.v.data()}, f{layout.f.data()};
+  if (parts.state.damping > 0)
+    parts.backend.add_sum(
+        layout.nodes,
+        DampingWork<T, dim>{v, f, layout.mass.data(), layout.held.data(), external,
+                            half_kick(parts, lag), half_kick(parts, kick), lag, kick},
+        work + static_cast<int>(Work::damping));
+  for (auto const& driven : parts.driven)
+    driven.add_work(parts.backend, v, f, layout.mass.data(), external.gravity, external.load, lag,
+                    kick, drifts, work + static_cast<int>(Work::motions));
+}
+
+}  // namespace detail
+
+/// Velocities and displacements go forward: see Advance. Times in s. The forces are those of the present
+/// displacements, and motions were asked for the end of the step where there is one.
 template <class Parts>
 void advance(Parts& parts, double lag, double kick, double drift) {
   using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& layout = parts.layout;
+  detail::book_work(parts, lag, kick, drift != 0);
+  bool const hidden_work = detail::evaluate_terms_without_energy(parts);
+  auto const book_hidden = [&](double time) {
+    if (hidden_work && time > 0)
+      parts.backend.add_sum(
+          layout.nodes,
+          WorkRate<T, dim>{{parts.without_energy.data()}, std::as_const(parts).v(), time},
+          parts.state.work.data() + static_cast<int>(Work::pressures));
+  };
+  book_hidden(lag);
   parts.backend.for_each(
-      parts.layout.nodes,
-      Advance<T, Parts::dim>{parts.u(), parts.v(), parts.f(), parts.layout.mass.data(),
-                             parts.layout.held.data(), external_forces(parts), static_cast<T>(lag),
-                             static_cast<T>(kick), static_cast<T>(drift)});
-  parts.layout.interpolation.apply(parts.backend, parts.v());
+      layout.nodes,
+      Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), layout.held.data(),
+                      external_forces(parts), half_kick(parts, lag), half_kick(parts, kick),
+                      static_cast<T>(drift)});
+  layout.interpolation.apply(parts.backend, parts.v());
+  book_hidden(kick);
   if (drift != 0) {
-    parts.layout.interpolation.apply(parts.backend, parts.u());
+    layout.interpolation.apply(parts.backend, parts.u());
     parts.forces_current = false;
   }
 }

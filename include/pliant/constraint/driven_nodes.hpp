@@ -29,6 +29,39 @@ struct Prescribe {
   }
 };
 
+/// The work of a condition on the nodes that it drives, J, around the present time: the forces F that pull there
+/// are overcome along the half steps before and behind it, and the nodes gain kinetic energy,
+/// −F·(lag v₋ + kick v₊) + m (v₊² − v₋²)/2.
+template <class T, int Dim>
+struct MotionWork {
+  NodeField<T const, Dim> v, f;
+  T const* mass;
+  T const* load;  // (nodes, 4); may be null
+  Vector<T, Dim> gravity;
+  Index const* nodes;
+  DirectionMask directions;
+  Vector<T, Dim> velocity;
+  T const* rows;
+  double lag, kick;  // s
+  bool drifts;       // whether a step begins
+
+  PLIANT_HOST_DEVICE double operator()(Index n) const {
+    Index const i = nodes[n];
+    T const* const row = rows + 2 * Dim * static_cast<std::ptrdiff_t>(n);
+    double work = 0;
+    for (int k = 0; k < Dim; ++k) {
+      if (!(directions >> k & 1)) continue;
+      T force = f(i, k) + mass[i] * gravity[k];
+      if (load) force += NodeField<T const, Dim>{load}(i, k);
+      double const before = static_cast<double>(v(i, k));
+      double const after = static_cast<double>(rows ? row[Dim + k] : velocity[k]);
+      work -= static_cast<double>(force) * (lag * before + (drifts ? kick * after : 0.0));
+      if (drifts) work += static_cast<double>(mass[i]) * (after * after - before * before) / 2;
+    }
+    return work;
+  }
+};
+
 template <int Dim>
 Point<Dim> position_at(Motion<Dim> const& motion, Point<Dim> const& place, Index node,
                        double time) {
@@ -83,6 +116,16 @@ class DrivenNodes {
       ask_one(places_[n], condition_.nodes[n], row, speed);
     }
     rows_.upload(host_rows_);
+  }
+  /// Adds the condition's work to *to, J; see MotionWork. Before the nodes are placed.
+  void add_work(B const& backend, NodeField<T const, Dim> v, NodeField<T const, Dim> f,
+                T const* mass, Vector<T, Dim> const& gravity, T const* load, double lag,
+                double kick, bool drifts, double* to) const {
+    backend.add_sum(static_cast<Index>(nodes_.size()),
+                    detail::MotionWork<T, Dim>{
+                        v, f, mass, load, gravity, nodes_.data(), condition_.directions, velocity_,
+                        rows_.size() > 0 ? rows_.data() : nullptr, lag, kick, drifts},
+                    to);
   }
   void place(B const& backend, Field u, Field v) const {
     backend.for_each(

@@ -8,6 +8,7 @@
 #include <pliant/body/ledger.hpp>
 #include <pliant/solver/distortion.hpp>
 #include <pliant/solver/leapfrog.hpp>
+#include <pliant/solver/leapfrog_energy.hpp>
 #include <pliant/solver/stable_step.hpp>
 
 namespace pliant {
@@ -19,9 +20,9 @@ struct CentralDifferenceOptions {
   int refresh_interval = 1024;  // steps between evaluations of the stable step, at the most
   int watch_interval = 16;  // steps between looks at the distortion, which may ask for one earlier
   /// Growth of the total energy since the last check, over strain and kinetic energy, and since the start,
-  /// over the largest of these so far, that counts as a blow-up. Not looked at while nodes are driven or
-  /// facets pressed, which does work, nor with laws that have internal variables: they may give back
-  /// what the strain energy does not count.
+  /// over the largest of these so far, that counts as a blow-up. The work of loads, pressures, driven nodes
+  /// and damping is booked, and no growth. Not looked at with laws that have internal variables: they
+  /// may give back what the strain energy does not count.
   double energy_growth = 0.1;
 };
 
@@ -64,11 +65,17 @@ class CentralDifference {
     std::int64_t const begun = state.steps, goal = begun + steps;
     begin(parts);
     auto& own = state.integrator;
+    std::int64_t checked = -1;  // at which step
     while (state.steps < goal) {
-      if ((!parts.has_checkpoint || state.steps >= own.next_check) && !check(parts) &&
-          state.steps < begun)
-        return {state.steps - begun, state.time, own.step, true};
       if (state.steps >= own.next_watch) watch(parts);
+      bool const due =
+          !parts.has_checkpoint || state.steps >= std::min(own.next_check, own.next_refresh);
+      if (due && checked != state.steps) {
+        // A step is chosen for a good state only.
+        if (check(parts)) checked = state.steps;
+        if (state.steps < begun) return {state.steps - begun, state.time, own.step, true};
+        if (checked != state.steps) continue;
+      }
       if (state.steps >= own.next_refresh) refresh(parts);
       step_ = own.step;
       take_steps(
@@ -83,7 +90,7 @@ class CentralDifference {
   /// Takes over a state that another integrator, or none, has advanced so far.
   template <class Parts>
   void begin(Parts& parts) {
-    parts.watched_energy = [](Parts& p) { return total_energy_of(p); };
+    parts.watched_energy = leapfrog_energy<Parts>;
     auto& own = parts.state.integrator;
     bool const resumed = own.active && parts.integrator == nullptr;
     if (own.active && (parts.integrator == this || resumed)) {
@@ -122,14 +129,6 @@ class CentralDifference {
     own.step = step;
   }
 
-  /// The energy that time integration keeps, J: with the kinetic energy v₋·M·v₊/2 of the half steps around the
-  /// present time, v∓ = v ∓ Δt/2 a, and without what is booked.
-  template <class Parts>
-  static double energy_of(Parts& parts) {
-    double const step = parts.state.integrator.step;
-    return total_energy_of(parts) - step * step * acceleration_term(parts) - booked_energy(parts);
-  }
-
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
   template <class Parts>
   bool check(Parts& parts) {
@@ -137,7 +136,7 @@ class CentralDifference {
     auto& own = state.integrator;
     double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
     double const present = strain + kinetic_energy_of(parts);
-    double const energy = energy_of(parts);
+    double const energy = leapfrog_energy(parts) - booked_energy(parts);
     bool const watched =
         !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
     // Comparisons with NaN, before the first check, are false.

@@ -37,30 +37,6 @@ struct DistortionVisitor {
   }
 };
 
-/// m a²/8 of a node, in its free directions.
-template <class T, int Dim>
-struct AccelerationTerm {
-  NodeField<T const, Dim> f;
-  T const* mass;
-  DirectionMask const* held;
-  ExternalForces<T, Dim> external;
-  NodeField<T const, Dim> v;
-  PLIANT_HOST_DEVICE double operator()(Index i) const {
-    T const m = mass[i];
-    if (!(m > T(0))) return 0;
-    double sum = 0;
-    for (int k = 0; k < Dim; ++k) {
-      if (held[i] >> k & 1) continue;
-      T force = f(i, k);
-      if (external.load) force += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k];
-      double const a =
-          static_cast<double>(force / m + external.gravity[k] - external.damping * v(i, k));
-      sum += static_cast<double>(m) * a * a;
-    }
-    return sum / 8;
-  }
-};
-
 }  // namespace detail
 
 /// The largest distortion of an element, ‖F‖² + ‖F⁻¹‖² − 2 d in its middle.
@@ -80,20 +56,6 @@ double largest_distortion(Parts& parts) {
         largest, parts.backend.maximum(table.count(), detail::ValueAt<T>{table.scratch.data()}));
   });
   return largest;
-}
-
-/// Σ m a²/8, J/s²: Δt² of it is what the kinetic energy at a time has over that of the half steps around it,
-/// v₋·M·v₊/2.
-template <class Parts>
-double acceleration_term(Parts& parts) {
-  using T = typename Parts::T;
-  evaluate_forces(parts);
-  return parts.backend.sum(parts.layout.nodes,
-                           detail::AccelerationTerm<T, Parts::dim>{{parts.layout.f.data()},
-                                                                   parts.layout.mass.data(),
-                                                                   parts.layout.held.data(),
-                                                                   external_forces(parts),
-                                                                   std::as_const(parts).v()});
 }
 
 }  // namespace pliant

@@ -14,10 +14,16 @@ namespace pliant::detail {
 struct Sum {
   __device__ static double identity() { return 0; }
   __device__ static double combine(double a, double b) { return a + b; }
+  __device__ static void store(double value, double* to) { *to = value; }
+};
+/// A sum that is added to what is there.
+struct AddedSum : Sum {
+  __device__ static void store(double value, double* to) { *to += value; }
 };
 struct Maximum {
   __device__ static double identity() { return -cuda::std::numeric_limits<double>::infinity(); }
   __device__ static double combine(double a, double b) { return a < b ? b : a; }
+  __device__ static void store(double value, double* to) { *to = value; }
 };
 
 /// The block's values combined in a fixed order; thread 0 has the result.
@@ -58,7 +64,7 @@ __global__ void reduce_partials(int count, double const* partials, double* resul
   begin_after_previous_kernel();
   int const i = static_cast<int>(threadIdx.x);
   double const value = reduce_block<Reduction>(i < count ? partials[i] : Reduction::identity());
-  if (i == 0) *result = value;
+  if (i == 0) Reduction::store(value, result);
 }
 
 /// A kernel's value of an element, as a function of its number among the active ones.

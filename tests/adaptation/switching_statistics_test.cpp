@@ -1,1 +1,0 @@
-#include "adaptation/switching_statistics_suite.hpp"
