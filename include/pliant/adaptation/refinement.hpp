@@ -183,12 +183,13 @@ template <class Parts>
 RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> const& plan) {
   double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
   double const kinetic = kinetic_energy_of(parts);
-  double const watched = parts.watched_energy ? parts.watched_energy(parts) : 0;
   auto const give_back = [&](auto const& layout, auto const& held, auto& v) {
     return detail::give_momentum_back(*plan.after->tree, plan.parents, parts.material.density,
                                       layout, *plan.after, held, v);
   };
-  Point<2> const taken = change_topology(parts, plan.after, plan.transfer, give_back);
+  Point<2> taken{};
+  double const added = watched_change(
+      parts, [&] { taken = change_topology(parts, plan.after, plan.transfer, give_back); });
   LedgerEntry<2> const entry{parts.state.time,
                              "refine",
                              static_cast<double>(plan.parents.size()),
@@ -196,10 +197,9 @@ RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> 
                              kinetic_energy_of(parts) - kinetic,
                              taken};
   parts.state.record.refinements.push_back(entry);
-  // What else an integrator's own energy makes of other masses and forces.
+  // The energy that an integrator keeps may have changed by more, with masses and forces.
   if (parts.watched_energy)
-    parts.state.energy_by_hand +=
-        parts.watched_energy(parts) - watched - entry.strain_energy - entry.kinetic_energy;
+    parts.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
   for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
   return {plan.parents.size(), plan.transfer.new_nodes().size()};
 }

@@ -15,7 +15,7 @@ struct IntegratorState {
   std::int64_t next_check = 0;    // steps
   std::int64_t next_refresh = 0;  // steps
   std::int64_t next_watch = 0;    // steps
-  /// Total energies less what was booked, J: at the start, and at the last check.
+  /// Less what was booked, J: what leapfrog keeps, at the start; the total, at the last check.
   double first_energy = std::numeric_limits<double>::quiet_NaN();
   double last_energy = std::numeric_limits<double>::quiet_NaN();
   double scale = 0;  // the largest of strain and kinetic energy so far, J

@@ -15,6 +15,12 @@
 
 namespace pliant {
 
+/// The total energy at a time, and what leapfrog's own, which its steps keep, has less: Δt² Σ m a²/8, J.
+struct WatchedEnergy {
+  double total = 0, acceleration = 0;
+  double kept() const { return total - acceleration; }
+};
+
 /// What a body is made of, for integrators, solvers and adaptation. Plain data: each function on it stands
 /// with its purpose (force/, constraint/, solver/, adaptation/).
 template <Backend B, class M, class... Fs>
@@ -59,8 +65,8 @@ struct Parts {
   long revision = 0;            // changes whenever recorded kernels would no longer be right
   std::optional<state_type> checkpoint{};
   bool has_checkpoint = false;  // of the present mesh, with no change by hand since
-  /// The total energy, J; set by an integrator that watches it.
-  double (*watched_energy)(Parts&) = nullptr;
+  /// The energies that an integrator watches; set by it.
+  WatchedEnergy (*watched_energy)(Parts&) = nullptr;
   void const* integrator = nullptr;  // the one that state.integrator belongs to; null: any
   struct Recorded {
     typename B::Recording recording;

@@ -65,22 +65,35 @@ void upload_pressures(Parts& parts) {
   }
 }
 
+/// Runs `change()`, and returns what it added to the energy that an integrator watches and keeps, J; 0 while
+/// none does. Where there is no such number, the integrator begins anew.
+template <class Parts, class Change>
+double watched_change(Parts& parts, Change const& change) {
+  auto const before = parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
+  change();
+  if (!parts.watched_energy) return 0;
+  auto const after = parts.watched_energy(parts);
+  double const added = after.kept() - before.kept();
+  if (!std::isfinite(added)) {
+    parts.state.integrator.active = false;
+    return 0;
+  }
+  parts.state.integrator.last_energy += after.acceleration - before.acceleration;
+  return added;
+}
+
 /// Runs a change of the state by a user's hand: `change()`. Velocities are brought up to the present time
-/// first. Once an integrator watches the energy, what the
-/// change adds to it is booked; forces are evaluated anew, and roll-back does not cross it.
+/// first. Once an integrator watches the energy, what the change adds to it is booked; forces are
+/// evaluated anew, and roll-back does not cross it.
 template <class Parts, class Change>
 void change_by_hand(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
-  double const before = parts.watched_energy ? parts.watched_energy(parts) : 0;
-  change();
-  forget_forces(parts);
+  double const added = watched_change(parts, [&] {
+    change();
+    forget_forces(parts);
+  });
+  parts.state.energy_by_hand += added;
   parts.has_checkpoint = false;
-  if (!parts.watched_energy) return;
-  double const added = parts.watched_energy(parts) - before;
-  if (std::isfinite(added))
-    parts.state.energy_by_hand += added;
-  else
-    parts.state.integrator.active = false;  // there is no energy to compare with
 }
 
 namespace detail {

@@ -19,11 +19,11 @@ struct CentralDifferenceOptions {
   int check_interval = 256;     // steps between checks of finiteness and energy
   int refresh_interval = 1024;  // steps between evaluations of the stable step, at the most
   int watch_interval = 16;  // steps between looks at the distortion, which may ask for one earlier
-  /// Growth of the total energy since the last check, over strain and kinetic energy, and since the start,
-  /// over the largest of these so far, that counts as a blow-up. The work of loads, pressures, driven nodes
-  /// and damping is booked, and no growth. Not looked at with laws that have internal variables: they
-  /// may give back what the strain energy does not count.
-  double energy_growth = 0.1;
+  /// What counts as a blow-up: growth of the total energy since the last check, over strain and kinetic
+  /// energy; and growth of the energy that leapfrog keeps since the start, over the largest of these so
+  /// far. The work of loads, pressures, driven nodes and damping is booked, and no growth. Not looked
+  /// at with laws that have internal variables: they may give back what the strain energy does not count.
+  double energy_growth = 0.1, energy_drift = 0.02;
 };
 
 /// What a call of an integrator did.
@@ -45,9 +45,11 @@ class CentralDifference {
   explicit CentralDifference(CentralDifferenceOptions options = {}) : options_(options) {
     if (!(options.safety > 0 && options.safety <= 1) ||
         !(options.step >= 0 && std::isfinite(options.step)) || options.check_interval < 1 ||
-        options.refresh_interval < 1 || options.watch_interval < 1 || !(options.energy_growth >= 0))
+        options.refresh_interval < 1 || options.watch_interval < 1 ||
+        !(options.energy_growth >= 0) || !(options.energy_drift >= 0))
       throw Error(
-          "CentralDifference: safety must be in (0, 1], step and energy_growth not negative, and "
+          "CentralDifference: safety must be in (0, 1], step, energy_growth and energy_drift not "
+          "negative, and "
           "intervals at least 1");
   }
 
@@ -103,12 +105,12 @@ class CentralDifference {
     own.next_check = own.next_refresh = own.next_watch = parts.state.steps;
   }
 
-  /// A look at how much the elements are distorted: where that has changed, the stable step has too.
+  /// A look at how much the elements are distorted: where that has changed, the stable step has too, and there
+  /// is something to check.
   template <class Parts>
   void watch(Parts& parts) {
     auto& own = parts.state.integrator;
     own.next_watch = parts.state.steps + options_.watch_interval;
-    if (options_.step > 0) return;
     double const distortion = largest_distortion(parts);
     if (!(std::abs(distortion - own.distortion) <= 0.1 * (1 + own.distortion)))
       own.next_refresh = parts.state.steps;
@@ -118,14 +120,12 @@ class CentralDifference {
   void refresh(Parts& parts) {
     auto& own = parts.state.integrator;
     own.next_refresh = parts.state.steps + options_.refresh_interval;
-    if (options_.step == 0) own.distortion = largest_distortion(parts);
+    own.distortion = largest_distortion(parts);
     double const step =
         (options_.step > 0 ? options_.step : options_.safety * stable_step_of(parts)) / own.slower;
     if (step == own.step) return;
-    // Leapfrog's energy depends on the step.
-    double const change = (own.step * own.step - step * step) * acceleration_term(parts);
-    own.first_energy += change;
-    own.last_energy += change;
+    // The energy that leapfrog keeps depends on the step.
+    own.first_energy += (own.step * own.step - step * step) * acceleration_term(parts);
     own.step = step;
   }
 
@@ -136,17 +136,20 @@ class CentralDifference {
     auto& own = state.integrator;
     double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
     double const present = strain + kinetic_energy_of(parts);
-    double const energy = leapfrog_energy(parts) - booked_energy(parts);
+    auto const energies = leapfrog_energy(parts);
+    double const booked = booked_energy(parts);
+    double const total = energies.total - booked, kept = energies.kept() - booked;
     bool const watched =
         !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
-    // Comparisons with NaN, before the first check, are false.
-    bool const grew = watched && (energy > own.last_energy + options_.energy_growth * present ||
-                                  energy > own.first_energy + options_.energy_growth *
-                                                                  std::max(own.scale, present));
-    if (std::isfinite(energy) && !grew) {
+    // An unstable step lets the total grow while what leapfrog keeps stays; a state that stiffens faster than
+    // the step follows adds to that too. Comparisons with NaN, before the first check, are false.
+    bool const grew =
+        watched && (total > own.last_energy + options_.energy_growth * present ||
+                    kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
+    if (std::isfinite(total) && !grew) {
       own.scale = std::max(own.scale, present);
-      own.last_energy = energy;
-      if (!std::isfinite(own.first_energy) || !watched) own.first_energy = energy;
+      own.last_energy = total;
+      if (!std::isfinite(own.first_energy)) own.first_energy = kept;
       own.next_check = state.steps + options_.check_interval;
       keep_checkpoint(parts);
       return true;

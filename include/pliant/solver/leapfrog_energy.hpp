@@ -43,12 +43,13 @@ double acceleration_term(Parts& parts) {
                                                                    external_forces(parts)});
 }
 
-/// The total energy that leapfrog keeps, J: with the kinetic energy v₋·M·v₊/2 of the half steps around the
-/// present time, v∓ = v ∓ Δt/2 a. For linear laws it is constant to rounding, whatever the step.
+/// The total energy, and what the one that leapfrog keeps has less: that has the kinetic energy v₋·M·v₊/2 of the
+/// half steps around the present time, v∓ = v ∓ Δt/2 a. For linear laws it is constant to rounding,
+/// whatever the step; beyond the stable one it no longer bounds the motion.
 template <class Parts>
-double leapfrog_energy(Parts& parts) {
+WatchedEnergy leapfrog_energy(Parts& parts) {
   double const step = parts.state.integrator.step;
-  return total_energy_of(parts) - step * step * acceleration_term(parts);
+  return {total_energy_of(parts), step * step * acceleration_term(parts)};
 }
 
 }  // namespace pliant
