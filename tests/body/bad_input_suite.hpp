@@ -107,7 +107,8 @@ TEST_CASE("a law's own parameters must be possible", "[body]") {
     Body{backend, sheet(), soft, Group<Formulation<Quad4, Gauss<2>, L>>{law}};
   };
   std::string const group = "body: the law given to the group on Quad4 is impossible: ";
-  CHECK_THROWS_WITH(with(Fung<double>{3, 2, 0}), group + "Fung's exponent is 0; it must be positive");
+  CHECK_THROWS_WITH(with(Fung<double>{3, 2, 0}),
+                    group + "Fung's exponent is 0; it must be positive");
   CHECK_THROWS_WITH(with(Fung<double>{3, 0, 1}), says("Fung's mu is 0"));
   CHECK_THROWS_WITH(with(Gent<double>{2, 0, 5}), says("Gent's limit is 0; it must be positive"));
   CHECK_THROWS_WITH(with(ArrudaBoyce<double>{2, 0, 5}), says("locking stretch is 0"));

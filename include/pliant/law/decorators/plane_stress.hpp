@@ -14,10 +14,11 @@ struct Sheet {
   static constexpr bool takes_inversion = false;
 
   void check() const { detail::check_parameters(solid); }
-  /// F₃₃ − 1 at the in-plane displacement gradient h, by Newton's method on ln F₃₃; NaN for J₂ ≤ 0. It starts from
+  /// F₃₃ − 1 at the in-plane displacement gradient h, by Newton's method on ln F₃₃. It starts from
   /// F₃₃ = J₂^(−r), J₂ = det F in the plane, r the law's own ratio at rest, which is exact for
   /// λ/2 (ln J)² and in the limit of incompressibility. After 6 steps all laws here are exact to
-  /// rounding at stretches of 0.6 to 1.6; after 8 to 1e-9 at 0.37 to 2.7, up to ν = 0.4995.
+  /// rounding at stretches of 0.6 to 1.6; after 8 to 1e-9 at 0.37 to 2.7, up to ν = 0.4995. NaN for
+  /// J₂ ≤ 0.
   template <class S>
   PLIANT_HOST_DEVICE S thickening(Tensor<S, 2> const& h) const {
     constexpr int steps = sizeof(builtin_scalar<S>) == 4 ? 6 : 8;
@@ -124,8 +125,9 @@ struct Sheet<L> {
 /// strain: Formulation<Quad4, Gauss<2>, PlaneStress<NeoHookean>::law>. Forces are per thickness at
 /// rest. Of any law in whose state h₁₃ = h₂₃ = 0 there is no out-of-plane shear stress: isotropic
 /// ones, and those of fibres within the plane or normal to it. Costs 9 tangent products of the law,
-/// Hooke's none. For J > 0 in the plane, whatever the law, but for Hooke's. Where no F₃₃ > 0 makes P₃₃ = 0 (Saint Venant-Kirchhoff, Fung and corotated sheets
-/// at large stretch) the result means nothing.
+/// Hooke's none. All sheets but Hooke's are for J > 0 in the plane, whatever their law, and NaN elsewhere.
+/// Where no F₃₃ > 0 makes P₃₃ = 0 (Saint Venant-Kirchhoff, Fung and corotated sheets at large stretch)
+/// the result means nothing.
 template <template <class> class L>
 struct PlaneStress {
   template <class T>
