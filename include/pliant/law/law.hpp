@@ -189,9 +189,6 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> sum_of_stresses(SetList<Sets...>, L const& law
   return (stress_in<Sets>(law, h) + ...);
 }
 
-}  // namespace detail
-
-namespace detail {
 template <class Sets>
 inline constexpr bool without_roots = false;
 template <template <class> class Set, class V>
