@@ -188,6 +188,32 @@ TEST_CASE("fields read and write their components of a row", "[backend]") {
   });
 }
 
+/// Every number in the bin of its last byte, but multiples of three in none; or all in one.
+struct LastByte {
+  bool all_alike;
+  PLIANT_HOST_DEVICE Bin operator()(Index i) const {
+    return {i % 3 == 0 ? -1 : all_alike ? 7 : i & 255, std::int64_t{i} * (i % 2 == 0 ? 1 : -1)};
+  }
+};
+
+TEST_CASE("a histogram adds weights to bins", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    for (bool all_alike : {false, true})
+      for (Index n : {0, 1, 31, 4097, 1000003}) {
+        INFO(n << " values");
+        std::vector<std::int64_t> expected(histogram_bins, 5);
+        for (Index i = 0; i < n; ++i)
+          if (Bin const bin = LastByte{all_alike}(i); bin.number >= 0)
+            expected[static_cast<std::size_t>(bin.number)] += bin.weight;
+        auto bins = upload(backend, std::vector<std::int64_t>(histogram_bins, 5));
+
+        backend.histogram(n, LastByte{all_alike}, bins.data());
+
+        CHECK(download<std::int64_t>(bins) == expected);
+      }
+  });
+}
+
 TEST_CASE("a recording does again what was recorded", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto seen = zeros<double>(backend, 3);

@@ -12,6 +12,7 @@
 #include <pliant/backend/kernel.hpp>
 #include <pliant/cuda/accumulate.cuh>
 #include <pliant/cuda/context.hpp>
+#include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
@@ -128,6 +129,13 @@ class Cuda {
         detail::visit_elements<Groups, nodes, Visitor, Fields...>;
     launch("visit", {blocks(element_count(active), detail::visit_threads), detail::visit_threads},
            visit_kernel, active.elements.view({active.list}), visitor, counters.data(), fields...);
+  }
+  template <class F>
+  void histogram(Index n, F const& f, std::int64_t* bins) const {
+    if (n <= 0) return;
+    Index const count =
+        std::min<Index>(blocks(n, detail::reduce_threads), detail::CudaContext::max_partials);
+    launch("histogram", {count, detail::reduce_threads}, detail::add_to_histogram<F>, n, f, bins);
   }
 
  private:

@@ -117,6 +117,11 @@ class Reference {
       visitor.finish(group, e, values, Again{row, {fields...}}, tally);
     });
   }
+  template <class F>
+  void histogram(Index n, F const& f, std::int64_t* bins) const {
+    for (Index i = 0; i < n; ++i)
+      if (Bin const bin = f(i); bin.number >= 0) bins[bin.number] += bin.weight;
+  }
 
  private:
   template <int Nodes, class Field>

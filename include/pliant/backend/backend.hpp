@@ -2,6 +2,7 @@
 
 #include <array>
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,8 @@
 //   sum(n, f) maximum(n, f)    double; of f(i)
 //   add_sum(n, f, to)          *to += the sum of f(i), where `to` is in the backend's memory; waits for
 //                              nothing
+//   histogram(n, f, bins)      adds f(i).weight to bins[f(i).number], an array of at most 256 integers
+//                              in the backend's memory; a negative number: nowhere
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
 //                              that return nothing, the same ones with the same arguments each time
 //                              (a GPU records them once as a graph).
@@ -68,6 +71,13 @@ struct GroupNumber {
 /// The tag of an element that no group holds.
 inline constexpr Tag no_group = 255;
 
+/// What a function adds to a histogram.
+struct Bin {
+  int number;  // negative: none
+  std::int64_t weight;
+};
+inline constexpr int histogram_bins = 256;
+
 /// An owning array in a backend's memory.
 template <class A, class U>
 concept BackendArray = std::default_initializable<A> && std::movable<A> &&
@@ -83,6 +93,9 @@ struct NodeProbe {
   PLIANT_HOST_DEVICE double operator()(Index) const { return 0; }
   void operator()() const {}
 };
+struct BinProbe {
+  PLIANT_HOST_DEVICE Bin operator()(Index) const { return {0, 0}; }
+};
 }  // namespace detail
 
 /// Where arrays live and loops run.
@@ -90,11 +103,12 @@ template <class B>
 concept Backend =
     std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
     BackendArray<typename B::template Array<typename B::scalar>, typename B::scalar> &&
-    requires(B const& b, Index n, detail::NodeProbe f) {
+    requires(B const& b, Index n, detail::NodeProbe f, detail::BinProbe bin, std::int64_t* bins) {
       b.for_each(n, f);
       { b.sum(n, f) } -> std::same_as<double>;
       { b.maximum(n, f) } -> std::same_as<double>;
       b.add_sum(n, f, static_cast<double*>(nullptr));
+      b.histogram(n, bin, bins);
       { b.record(f) } -> std::same_as<typename B::Recording>;
       {
         b.template array<typename B::scalar>(std::size_t{})
