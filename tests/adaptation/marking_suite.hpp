@@ -1,29 +1,29 @@
 #pragma once
 
+#include <numeric>
+
 #include "support/formulations.hpp"
 
 namespace pliant::test {
 
-/// Which values act, by sorting them.
+/// Which values act, by sorting them: the most extreme first, equal ones by number.
 template <class T>
 std::vector<bool> sorted_marks(Marking const& m, std::vector<T> const& values) {
-  std::vector<double> ranked;  // the most extreme first
   double const sign = m.below() ? -1 : 1;
-  for (T v : values)
-    if (v == v) ranked.push_back(sign * static_cast<double>(v));
-  std::ranges::sort(ranked, std::greater{});
-  std::size_t acting = ranked.size();
+  std::vector<std::size_t> order;
+  for (std::size_t e = 0; e < values.size(); ++e)
+    if (values[e] == values[e]) order.push_back(e);
+  auto const ranked = [&](std::size_t k) { return sign * static_cast<double>(values[order[k]]); };
+  std::ranges::stable_sort(
+      order, [&](std::size_t a, std::size_t b) { return sign * values[a] > sign * values[b]; });
+  std::size_t acting = order.size();
   auto const only = [&](auto const& holds) {
     std::size_t k = 0;
-    while (k < acting && holds(ranked[k])) ++k;
+    while (k < acting && holds(ranked(k))) ++k;
     acting = k;
   };
-  /// At most so many, and equal values at the limit together or not at all.
   auto const at_most = [&](double most) {
-    if (static_cast<double>(acting) <= most) return;
-    std::size_t k = static_cast<std::size_t>(most);
-    while (k > 0 && ranked[k - 1] == ranked[k]) --k;
-    acting = k;
+    if (static_cast<double>(acting) > most) acting = static_cast<std::size_t>(most);
   };
   switch (m.kind) {
     case MarkingKind::above:
@@ -34,7 +34,7 @@ std::vector<bool> sorted_marks(Marking const& m, std::vector<T> const& values) {
       break;
     case MarkingKind::fraction_of_largest:
       if (acting > 0)
-        only([&, most = std::min(ranked[0], double{std::numeric_limits<T>::max()})](double v) {
+        only([&, most = std::min(ranked(0), double{std::numeric_limits<T>::max()})](double v) {
           return v > m.amount * most;
         });
       break;
@@ -43,30 +43,44 @@ std::vector<bool> sorted_marks(Marking const& m, std::vector<T> const& values) {
       break;
     case MarkingKind::bulk: {
       double total = 0, sum = 0;
-      for (double v : ranked) total += v;
+      for (std::size_t k = 0; k < acting; ++k) total += ranked(k);
       std::size_t k = 0;
-      while (k < acting && (sum < m.amount * total || (k > 0 && ranked[k] == ranked[k - 1])))
-        sum += ranked[k++];
+      while (k < acting && (sum < m.amount * total || (k > 0 && ranked(k) == ranked(k - 1))))
+        sum += ranked(k++);
       if (m.amount == 0) k = 0;
       acting = k;
       break;
     }
   }
   if (!m.below()) only([&](double v) { return v > m.floor; });
-  if (m.budget < static_cast<long>(acting)) at_most(static_cast<double>(m.budget));
-  std::vector<bool> marks;
-  for (T v : values)
-    marks.push_back(acting > 0 && v == v && sign * static_cast<double>(v) >= ranked[acting - 1]);
+  if (m.budget < static_cast<std::int64_t>(acting)) at_most(static_cast<double>(m.budget));
+  std::vector<bool> marks(values.size());
+  for (std::size_t k = 0; k < acting; ++k) marks[order[k]] = true;
   return marks;
 }
 
+/// Which values act, by the cut that is found in the backend's memory.
 template <class B>
 std::vector<bool> marks_of(Marking const& m, B const& backend,
                            std::vector<typename B::scalar> const& values) {
+  using T = typename B::scalar;
+  T const sign = m.below() ? T(-1) : T(1);
+  std::vector<Index> numbers(values.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
   auto const array = upload(backend, values);
-  auto const threshold = threshold_of(m, backend, array.data(), static_cast<Index>(values.size()));
+  auto const number = upload(backend, numbers);
+  auto const tags = upload(backend, std::vector<Tag>(values.size(), Tag(3)));
+  auto histogram = upload(backend, std::vector<std::int64_t>(histogram_bins, 0));
+  typename B::template Array<Ranking<T>> ranking(1);
+  detail::find_cut(backend, m,
+                   detail::RankedValues<T>{array.data(), tags.data(), number.data(),
+                                           static_cast<Index>(values.size()), Tag(3), sign},
+                   histogram.data(), ranking.data());
+  auto const cut = download<Ranking<T>>(ranking)[0].cut;
   std::vector<bool> marks;
-  for (auto v : values) marks.push_back(m.below() ? v < threshold : v > threshold);
+  for (std::size_t e = 0; e < values.size(); ++e)
+    marks.push_back(cut.holds(sign * values[e], static_cast<Index>(e)));
+  CHECK(download<std::int64_t>(histogram) == std::vector<std::int64_t>(histogram_bins, 0));
   return marks;
 }
 
@@ -108,7 +122,8 @@ TEST_CASE("the elements that a marking marks are those of a sorted list", "[adap
                         MarkingKind::top_share, MarkingKind::bulk})
         for (double amount : {0.0, 0.125, 0.5, 0.96875, 1.0})
           for (double floor : {-std::numeric_limits<double>::infinity(), 0.25, 2.0})
-            for (long budget : {std::numeric_limits<long>::max(), 1L, 3L, 60L}) {
+            for (std::int64_t budget : {std::numeric_limits<std::int64_t>::max(), std::int64_t{1},
+                                        std::int64_t{3}, std::int64_t{60}}) {
               Marking const m{kind, amount, floor, budget};
               if (m.below() && std::isfinite(floor)) continue;
 
@@ -128,6 +143,33 @@ TEST_CASE("the elements that a marking marks are those of a sorted list", "[adap
   });
 }
 
+TEST_CASE("a bulk does not depend on the order of its values", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    // Sums of these in floating point differ in their last bits with the order.
+    Random random(9);
+    std::vector<T> values;
+    for (int i = 0; i < 3000; ++i) values.push_back(static_cast<T>(std::exp(6 * random())));
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (double share : {0.1, 0.5, 0.9}) {
+      Marking const m{MarkingKind::bulk, share};
+      auto const marks = marks_of(m, backend, values);
+      CHECK(marks == sorted_marks(m, values));
+      for (int k = 0; k < 5; ++k) {
+        for (std::size_t i = order.size(); i > 1; --i)
+          std::swap(order[i - 1], order[random.below(i)]);
+        std::vector<T> shuffled;
+        for (std::size_t i : order) shuffled.push_back(values[i]);
+
+        auto const other = marks_of(m, backend, shuffled);
+
+        for (std::size_t i = 0; i < order.size(); ++i) REQUIRE(other[i] == marks[order[i]]);
+      }
+    }
+  });
+}
+
 TEST_CASE("negative values are ranked too", "[adaptation]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;
@@ -136,7 +178,7 @@ TEST_CASE("negative values are ranked too", "[adaptation]") {
     for (int i = 0; i < 300; ++i) values.push_back(static_cast<T>(random() - 0.5));
     for (auto kind : {MarkingKind::above, MarkingKind::below, MarkingKind::top_share})
       for (double amount : {-1.0, -0.25, 0.0, 0.25})
-        for (long budget : {std::numeric_limits<long>::max(), 10L}) {
+        for (std::int64_t budget : {std::numeric_limits<std::int64_t>::max(), std::int64_t{10}}) {
           Marking const m{kind,
                           std::abs(kind == MarkingKind::top_share ? amount : 0) +
                               (kind == MarkingKind::top_share ? 0 : amount),
@@ -148,27 +190,40 @@ TEST_CASE("negative values are ranked too", "[adaptation]") {
 }
 
 #if !defined(__CUDACC__)
-/// Reference, counting how often it adds up.
+/// Reference, counting what is asked of it.
 struct Counting : Reference<double> {
-  int* sums;
+  int *waits, *histograms;
   template <class F>
   double sum(Index n, F const& f) const {
-    ++*sums;
+    ++*waits;
     return Reference<double>::sum(n, f);
+  }
+  template <class F>
+  double maximum(Index n, F const& f) const {
+    ++*waits;
+    return Reference<double>::maximum(n, f);
+  }
+  template <class F>
+  void histogram(Index n, F const& f, std::int64_t* bins) const {
+    ++*histograms;
+    Reference<double>::histogram(n, f, bins);
   }
 };
 
-TEST_CASE("a threshold is found in a few passes, whatever the values", "[adaptation]") {
+TEST_CASE("a cut is found in a pass for each byte, and nothing waits for it", "[adaptation]") {
   for (auto const& values : samples<double>())
-    for (auto kind : {MarkingKind::top_share, MarkingKind::bulk, MarkingKind::above}) {
-      int sums = 0;
+    for (auto kind : {MarkingKind::top_share, MarkingKind::bulk, MarkingKind::above,
+                      MarkingKind::fraction_of_largest}) {
+      int waits = 0, histograms = 0;
       Counting backend;
-      backend.sums = &sums;
+      backend.waits = &waits;
+      backend.histograms = &histograms;
 
       (void)marks_of(Marking{kind, 0.0625, 0, kind == MarkingKind::above ? 2 : 1000}, backend,
                      values);
 
-      CHECK(sums <= 2 * 64 + 4);
+      CHECK(waits == 0);
+      CHECK(histograms <= 2 + 8 + 8 + 2);
     }
 }
 #endif

@@ -84,6 +84,48 @@ TEST_CASE("the statistics stay right when a user moves elements too", "[adaptati
   });
 }
 
+TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the largest",
+          "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    constexpr int most = std::numeric_limits<int>::max();
+    constexpr std::int64_t later = 4 * std::int64_t{most};
+    auto body = bending_body(backend);
+    auto& table = body.layout().template table<Quad4>();
+    auto const n = static_cast<std::size_t>(table.count());
+    REQUIRE(n > 3);
+    table.statistics.start(backend, table.count(), 10);
+    std::vector<std::int32_t> switches(n, 65535);
+    switches[0] = most - 1;
+    switches[1] = most;
+    table.statistics.switches.upload(switches);
+    auto const counts_are = [&](int first, int others) {
+      std::vector<int> expected(n, others);
+      expected[static_cast<std::size_t>(table.user_element[0])] = first;
+      expected[static_cast<std::size_t>(table.user_element[1])] = most;
+      CHECK(switch_counts<Quad4>(body) == expected);
+    };
+    for (int k = 0; k < 4; ++k) body.tick(0, most);
+
+    auto const go = when<Linear>(Rotation{}).above(-1);
+    Adaptation{go.stay(later - 9).template become<Turning>()}.now(body);
+    counts_are(most - 1, 65535);
+    Adaptation{go.stay(later - 10).template become<Turning>()}.now(body);
+    counts_are(most, 65536);
+
+    auto const elements = static_cast<double>(n);
+    CHECK(element_steps<Quad4>(body) ==
+          std::vector<double>{elements * static_cast<double>(later - 10), 0});
+    body.tick(0, 7);
+    Adaptation{when<Turning>(Rotation{}).above(-1).template become<Linear>()}.now(body);
+    counts_are(most, 65537);
+    CHECK(element_steps<Quad4>(body) ==
+          std::vector<double>{elements * static_cast<double>(later - 10), elements * 7});
+
+    table.statistics.enter(std::vector<Tag>(n, 0), std::vector<Tag>(n, 1), 2 * later);
+    counts_are(most, 65538);
+  });
+}
+
 TEST_CASE("the energy of a body that switches is what its ledger says", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     // Central differences keep energy up to Δt²; what is lost at the switches would be of order Δt.

@@ -203,6 +203,131 @@ TEST_CASE("ranking rules compare the elements of their own formulation alone", "
   });
 }
 
+TEST_CASE("of equal values, as many elements act as the budget or the share allows",
+          "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {8, 8}});
+    auto const linear = when<Linear>(Constant{1});
+    /// The first elements by the user's number are in group 1.
+    auto const first = [&](std::size_t count) {
+      std::vector<Tag> groups(mesh.elements<Quad4>().size(), 0);
+      std::fill_n(groups.begin(), std::min(count, groups.size()), Tag(1));
+      return groups;
+    };
+    auto const expect = [&](auto&& adapt, auto const& moved_after) {
+      auto body = three_group_body(backend, mesh);
+      for (int check = 1; check < 16; ++check) {
+        adapt.now(body);
+        REQUIRE(body.template groups_of<Quad4>() == first(moved_after(check)));
+      }
+    };
+    REQUIRE(mesh.elements<Quad4>().size() == 64);
+
+    expect(Adaptation{linear.above(0.5).budget(5).template become<Turning>()},
+           [](int check) { return static_cast<std::size_t>(5 * check); });
+    expect(Adaptation{linear.below(1.5).budget(5).template become<Turning>()},
+           [](int check) { return static_cast<std::size_t>(5 * check); });
+    expect(Adaptation{linear.bulk(1).budget(5).template become<Turning>()},
+           [](int check) { return static_cast<std::size_t>(5 * check); });
+    expect(Adaptation{linear.above_fraction_of_largest(0.5).budget(5).template become<Turning>()},
+           [](int check) { return static_cast<std::size_t>(5 * check); });
+    std::size_t moved = 0;
+    expect(Adaptation{linear.top_share(0.25).template become<Turning>()},
+           [&](int) { return moved += (64 - moved) / 4; });
+    expect(Adaptation{linear.bulk(0.25).template become<Turning>()}, [](int) { return 64u; });
+  });
+}
+
+/// A criterion that is NaN where x of the first node is beyond a limit, x elsewhere.
+struct NanBeyond {
+  double limit;
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    using S = typename State::scalar;
+    using T = builtin_scalar<S>;
+    S const x = e.rest(0, 0);
+    return select(S(T(limit)) < x, S(std::numeric_limits<T>::quiet_NaN()), x);
+  }
+};
+
+TEST_CASE("elements where a criterion is NaN do not act and are not counted", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {8, 8}});
+    auto const value = [&] {
+      auto const body = three_group_body(backend, mesh);
+      return evaluate<Quad4>(body, NanBeyond{0.01});
+    }();
+    auto const present = std::ranges::count_if(value, [](double v) { return v == v; });
+    REQUIRE(present > 16);
+    REQUIRE(present < 48);
+    auto const moved = [&](auto const& rule) {
+      auto body = three_group_body(backend, mesh);
+      Adaptation{rule}.now(body);
+      auto const groups = body.template groups_of<Quad4>();
+      for (std::size_t e = 0; e < value.size(); ++e)
+        if (value[e] != value[e]) CHECK(groups[e] == 0);
+      return std::ranges::count(groups, 1);
+    };
+    auto const linear = when<Linear>(NanBeyond{0.01});
+
+    CHECK(moved(linear.above(-10).template become<Turning>()) == present);
+    CHECK(moved(linear.below(10).template become<Turning>()) == present);
+    CHECK(moved(linear.top_share(0.5).template become<Turning>()) == present / 2);
+    CHECK(moved(linear.top_share(1).template become<Turning>()) == present);
+    CHECK(moved(linear.below(10).budget(7).template become<Turning>()) == 7);
+    CHECK(moved(linear.above(-10).budget(present + 1).template become<Turning>()) == present);
+  });
+}
+
+#if !defined(__CUDACC__)
+/// 1, and throws from the n-th call on.
+struct Throwing {
+  int* calls;
+  int last;
+  template <class State>
+  auto operator()(State const&) const {
+    if (++*calls >= last) throw Error("a criterion of the user's");
+    return typename State::scalar(1);
+  }
+};
+
+TEST_CASE("a criterion that throws leaves groups and statistics as they were on Reference",
+          "[adaptation]") {
+  auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {4, 4}});
+  int const all = 16;
+  for (int last : {1, 7, all, all + 1}) {
+    int calls = 0;
+    auto const rule = when<Linear>(Throwing{&calls, last});
+    auto const check = [&](auto&& adapt) {
+      calls = 0;
+      auto body = three_group_body(Reference<double>{}, mesh);
+      body.set_displacements(Random(2).field<2>(mesh.nodes.size(), 0.01));
+      body.template assign<Turning>({3, 5});
+      body.step(1e-9, 3);
+      auto const groups = body.template groups_of<Quad4>();
+      auto const steps = element_steps<Quad4>(body);
+      bool const throws = last <= all - 2;
+
+      if (throws)
+        CHECK_THROWS_WITH(adapt.now(body), says("a criterion of the user's"));
+      else
+        adapt.now(body);
+
+      CHECK((body.template groups_of<Quad4>() == groups) == throws);
+      CHECK(element_steps<Quad4>(body) == steps);
+      CHECK(ledger(body).empty() == throws);
+      CHECK(switch_counts<Quad4>(body) == [&] {
+        std::vector<int> counts(std::size_t{16}, throws ? 0 : 1);
+        counts[3] = counts[5] = 0;
+        return counts;
+      }());
+    };
+    check(Adaptation{rule.above(0.5).template become<Rubber>()});
+    check(Adaptation{rule.above(0.5).budget(100).template become<Rubber>()});
+  }
+}
+#endif
+
 TEST_CASE("adaptation looks at every eighth call, or as often as it is told", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     auto const mesh = regular_mesh<Quad4>(3);

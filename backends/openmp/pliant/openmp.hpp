@@ -88,6 +88,18 @@ class OpenMP {
     *to += sum(n, f);
   }
   template <class F>
+  void histogram(Index n, F const& f, std::int64_t* bins) const {
+    threads_.for_each_part(n, small_loop, [&](Index first, Index last) {
+      std::array<std::int64_t, histogram_bins> own{};
+      for (Index i = first; i < last; ++i)
+        if (Bin const bin = f(i); bin.number >= 0)
+          own[static_cast<std::size_t>(bin.number)] += bin.weight;
+#pragma omp critical(pliant_histogram)
+      for (std::size_t k = 0; k < own.size(); ++k)
+        if (own[k] != 0) bins[k] += own[k];
+    });
+  }
+  template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
     threads_.for_each_part(n, small_loop, [&](Index first, Index last) {
@@ -160,20 +172,6 @@ class OpenMP {
     });
     for (auto const& mine : partial)
       for (std::size_t k = 0; k < mine.size(); ++k) counters.data()[k] += mine[k];
-  }
-  template <class F>
-  void histogram(Index n, F const& f, std::int64_t* bins) const {
-#pragma omp parallel num_threads(threads_) if (n > small_loop)
-    {
-      std::array<std::int64_t, histogram_bins> own{};
-#pragma omp for schedule(static) nowait
-      for (Index i = 0; i < n; ++i)
-        if (Bin const bin = f(i); bin.number >= 0)
-          own[static_cast<std::size_t>(bin.number)] += bin.weight;
-#pragma omp critical(pliant_histogram)
-      for (std::size_t k = 0; k < own.size(); ++k)
-        if (own[k] != 0) bins[k] += own[k];
-    }
   }
 
  private:

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <pliant/adaptation/refinement.hpp>
-#include <pliant/adaptation/switching.hpp>
+#include <pliant/adaptation/strategy.hpp>
+#include <pliant/adaptation/table_check.hpp>
 
 namespace pliant {
 
 /// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
-/// for the elements of its formulation, and the elements that it marks act. Where several rules look
-/// at one formulation, the first that holds acts. Rules that switch go before rules that refine.
-template <class... Rules>
+/// for the elements of its formulation, and the elements that it marks act. Where several rules that
+/// switch look at one formulation, the first that holds acts. Rules that switch go before rules that
+/// refine, which look at the groups after it. An element where a criterion is NaN does not act by that rule.
+template <Rule... Rules>
 class Adaptation {
  public:
   explicit Adaptation(Rules... rules) : rules_(std::move(rules)...) {}
@@ -28,72 +30,75 @@ class Adaptation {
     if (++calls_ % interval_ == 0) now(body);
   }
 
-  /// Looks and acts at once, whatever the interval.
+  /// Looks and acts at once, whatever the interval. When it throws (refinement would exceed the mesh's
+  /// limits, or a criterion throws on a backend that lets it), the body is as it was.
   template <class TheBody>
   void now(TheBody& body) {
     static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
                   "a rule is for an element type that the body's mesh does not have");
-    constexpr bool refines = (!detail::Switches<Rules> || ...);
     auto& parts = body.parts();
-    auto& timers = parts.timers;
-    timers.criteria.start();
-    parts.for_each_type([&](auto& table, auto& elements) {
-      using Table = std::remove_cvref_t<decltype(table)>;
-      detail::switch_groups(parts, table, elements, switching<Table>());
-    });
-    timers.criteria.stop();
-    if constexpr (TheBody::backend_type::orders_by_group) {
-      timers.migration.start();
-      parts.for_each_type([&](auto& table, auto&) { table.elements.regroup(); });
-      timers.migration.stop();
-    }
-    forget_forces(parts);
-    if constexpr (refines) {
-      timers.criteria.start();
-      int max_level = 0;
-      std::vector<std::vector<Index>> marked;
-      parts.for_each_type(
-          [&](auto& table, auto&) { marked.push_back(marked_in(parts, table, max_level)); });
-      timers.criteria.stop();
-      timers.migration.start();
-      refine(body, marked, max_level);
-      timers.migration.stop();
+    parts.timers.criteria.start();
+    for_each_check(parts, [](auto const& check) { check.decide(); });
+    parts.timers.criteria.stop();
+    if constexpr (switches && refines) {
+      for_each_check(parts, [](auto const& check) { check.keep(); });
+      try {
+        switch_groups(parts);
+        refine_marked(parts);
+      } catch (...) {
+        for_each_check(parts, [](auto const& check) { check.put_back(); });
+        regroup(parts);
+        throw;
+      }
+    } else if constexpr (switches) {
+      switch_groups(parts);
+    } else if constexpr (refines) {
+      refine_marked(parts);
     }
   }
 
  private:
-  template <class Table>
-  auto switching() const {
-    return std::apply(
-        [](auto const&... rule) { return std::tuple_cat(detail::only_switching<Table>(rule)...); },
-        rules_);
-  }
+  static constexpr bool switches = (SwitchingRule<Rules> || ...);
+  static constexpr bool refines = (RefiningRule<Rules> || ...);
 
-  /// The elements that rules want refined, by the user's number.
-  template <class Parts, class Table>
-  std::vector<Index> marked_in(Parts& parts, Table& table, int& max_level) const {
-    std::vector<Index> marked;
-    auto const look = [&](auto const& rule) {
-      using Rule = std::remove_cvref_t<decltype(rule)>;
-      if constexpr (!detail::Switches<Rule> && detail::On<Rule, Table>) {
-        static_assert(Table::template group_of<typename Rule::from> < Table::groups,
-                      "a rule names a formulation of which the body has no Group");
-        auto const values = detail::criterion_values(parts, table, rule);
-        auto const threshold =
-            threshold_of(rule.marking, parts.backend, values.data(), table.count());
-        auto const on_host = download<typename Parts::T>(values);
-        auto const levels = detail::levels_of<typename Table::element>(parts);
-        for (std::size_t e = 0; e < on_host.size(); ++e) {
-          Index const element = table.user_element[e];
-          bool const holds = rule.marking.below() ? on_host[e] < threshold : on_host[e] > threshold;
-          if (holds && levels[static_cast<std::size_t>(element)] < rule.options.max_level)
-            marked.push_back(element);
-        }
-        max_level = std::max(max_level, rule.options.max_level);
-      }
-    };
-    std::apply([&](auto const&... rule) { (look(rule), ...); }, rules_);
-    return marked;
+  template <class Parts, class Visit>
+  void for_each_check(Parts& parts, Visit const& visit) const {
+    parts.for_each_type([&](auto& table, auto& elements) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      using Elements = std::remove_cvref_t<decltype(elements)>;
+      auto const rules = detail::rules_on<Table>(rules_);
+      visit(detail::TableCheck<Parts, Table, Elements, std::remove_cvref_t<decltype(rules)>>{
+          parts, table, elements, rules});
+    });
+  }
+  template <class Parts>
+  void switch_groups(Parts& parts) const {
+    parts.timers.criteria.start();
+    leave_half_kick_pending(parts);
+    for_each_check(parts, [](auto const& check) { check.act(); });
+    parts.timers.criteria.stop();
+    regroup(parts);
+  }
+  /// Call after tags changed.
+  template <class Parts>
+  static void regroup(Parts& parts) {
+    if constexpr (Parts::backend_type::orders_by_group) {
+      parts.timers.migration.start();
+      parts.for_each_type([&](auto& table, auto&) { table.elements.regroup(); });
+      parts.timers.migration.stop();
+    }
+    forget_forces(parts);
+  }
+  template <class Parts>
+  void refine_marked(Parts& parts) const {
+    parts.timers.criteria.start();
+    int max_level = 0;
+    std::vector<std::vector<Index>> marked;
+    for_each_check(parts, [&](auto const& check) { marked.push_back(check.marked(max_level)); });
+    parts.timers.criteria.stop();
+    parts.timers.migration.start();
+    if (auto const plan = plan_refinement(parts, marked, max_level)) commit(parts, *plan);
+    parts.timers.migration.stop();
   }
 
   void set_interval(int calls) {

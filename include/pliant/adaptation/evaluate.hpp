@@ -1,49 +1,44 @@
 #pragma once
 
-#include <pliant/adaptation/switching.hpp>
+#include <pliant/adaptation/criteria_visitor.hpp>
+#include <pliant/body/parts.hpp>
 
 namespace pliant {
 
 namespace detail {
-/// A criterion of every element, each under the formulation that it has now.
-template <class Table, class Criterion>
-struct EvaluateVisitor {
-  using T = typename Table::scalar;
-  static constexpr int counters = 1;
-  static constexpr bool reads_elements = Table::Laws::reads_elements;
-  typename Table::Laws groups;
-  Criterion criterion;
+/// Looks at the elements of a formulation, and does nothing.
+template <class F, class C>
+struct Look {
+  using from = F;
+  C criterion;
+};
+/// Keeps the first value of each element.
+template <class T>
+struct Store {
   T* values;  // (elements)
-
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
-    return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>{
-              {{criterion(state_of<typename Table::template formulation<G>>(law, rest, u))}}};
-        },
-        v...);
-  }
-  template <int G, class Again, class Tally>
-  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& value, Again const&,
-                                 Tally const&) const {
-    values[e] = value[0];
+  template <int G, class V>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own) const {
+    values[e] = own[0];
   }
 };
 }  // namespace detail
 
-/// The value of a criterion for every element of a type, in the user's order.
-template <Element E, class TheBody, class Criterion>
-std::vector<double> evaluate(TheBody const& body, Criterion const& criterion) {
-  auto const& parts = body.parts();
+/// The value of a criterion for every element of a type, in the user's order, each under the
+/// formulation that it has now.
+template <Element E, class TheBody, class C>
+std::vector<double> evaluate(TheBody const& body, C const& criterion) {
   using T = typename TheBody::scalar;
+  auto const& parts = body.parts();
   auto const& table = parts.layout.template table<E>();
   using Table = std::remove_cvref_t<decltype(table)>;
+  auto const rules = [&]<class... Fs>(detail::TypeList<Fs...>) {
+    static_assert((Criterion<C, Fs> && ...),
+                  "evaluate: a criterion is called with the state of an element of each Group, and "
+                  "gives a number");
+    return detail::TableRules<Table, detail::Look<Fs, C>...>{{detail::Look<Fs, C>{criterion}...}};
+  }(typename Table::formulations{});
   auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
-  parts.backend.template visit<Table::groups>(
-      table.elements,
-      detail::EvaluateVisitor<Table, Criterion>{table.laws, criterion, values.data()},
-      parts.no_counters, parts.rest(), parts.u());
+  detail::evaluate_criteria(parts, table, rules, detail::Store<T>{values.data()});
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <pliant/adaptation/marking.hpp>
-#include <pliant/formulation/formulation.hpp>
+#include <pliant/adaptation/rule.hpp>
 
 // Strategies read as sentences:
 //   when<Linear>(largest(EdgeLengthRatio{}, Rotation{})).above(0.1).become<Nonlinear>()
@@ -16,41 +15,18 @@ inline double number(char const* what, double value) {
 }
 }  // namespace detail
 
-/// Elements of From that a criterion marks go over to To.
-template <class From, class To, class Criterion>
-struct SwitchRule {
-  using from = From;
-  using to = To;
-  Criterion criterion;
-  Marking marking;
-  long stay;  // steps that an element stays in a group at the least
-};
-
-struct RefineOptions {
-  int max_level = 30;  // elements refined this often are left alone
-};
-
-/// Elements of From that a criterion marks are split into four.
-template <class From, class Criterion>
-struct RefineRule {
-  using from = From;
-  Criterion criterion;
-  Marking marking;
-  RefineOptions options;
-};
-
-/// A criterion with a marking, waiting for what to do.
-template <class From, class Criterion>
+/// A criterion with a marking, of which a rule is made.
+template <class From, class C>
 class Marked {
  public:
-  Marked(Criterion criterion, Marking marking) : criterion_(criterion), marking_(marking) {}
+  Marked(C criterion, Marking marking) : criterion_(criterion), marking_(marking) {}
 
   /// No element with a smaller value acts, whatever the others have.
   Marked floor(double value) const {
     if (marking_.below())
       throw Error(
-          "strategy: a floor under values that are to be small; give a floor to rules that "
-          "look for large values");
+          "strategy: a rule with below has no floor; give a floor to rules that look for "
+          "large values");
     Marked m = *this;
     m.marking_.floor = detail::number("floor", value);
     return m;
@@ -58,7 +34,8 @@ class Marked {
   /// At most so many elements act in one check: those of the most extreme values.
   Marked budget(long elements) const {
     if (elements < 1)
-      throw Error("strategy: a budget of ", elements, " elements lets nobody act; give at least 1");
+      throw Error("strategy: a budget of ", elements,
+                  " elements allows no action; give at least 1");
     Marked m = *this;
     m.marking_.budget = elements;
     return m;
@@ -75,7 +52,7 @@ class Marked {
   auto become() const {
     static_assert(std::same_as<typename From::element, typename To::element>,
                   "become<To>: From and To must be formulations on the same element");
-    return SwitchRule<From, To, Criterion>{criterion_, marking_, stay_};
+    return SwitchRule<From, To, C>{criterion_, marking_, stay_};
   }
   auto refine(RefineOptions options = {}) const {
     static_assert(From::dim == 2 && From::nodes == From::element::cell::corners,
@@ -84,20 +61,20 @@ class Marked {
       throw Error("strategy: refine has no stay; use stay with become, or check less often");
     if (options.max_level < 0)
       throw Error("strategy: a max_level of ", options.max_level, "; give at least 0");
-    return RefineRule<From, Criterion>{criterion_, marking_, options};
+    return RefineRule<From, C>{criterion_, marking_, options};
   }
 
  private:
-  Criterion criterion_;
+  C criterion_;
   Marking marking_;
   long stay_ = 0;
 };
 
 /// A criterion, looked at for the elements of one formulation.
-template <class From, class Criterion>
+template <class From, class C>
 class When {
  public:
-  explicit When(Criterion criterion) : criterion_(criterion) {}
+  explicit When(C criterion) : criterion_(criterion) {}
 
   auto above(double value) const {
     return marked(MarkingKind::above, detail::number("above", value));
@@ -112,20 +89,23 @@ class When {
   auto bulk(double share) const { return marked(MarkingKind::bulk, checked(share)); }
 
  private:
-  Marked<From, Criterion> marked(MarkingKind kind, double amount) const {
+  Marked<From, C> marked(MarkingKind kind, double amount) const {
     return {criterion_, {kind, amount}};
   }
   static double checked(double share) {
     if (!(share >= 0 && share <= 1))
-      throw Error("strategy: ", share, " is no share; give a number in [0, 1]");
+      throw Error("strategy: ", share, " is not a share; give a number in [0, 1]");
     return share;
   }
-  Criterion criterion_;
+  C criterion_;
 };
 
-template <class From, class Criterion>
-When<From, Criterion> when(Criterion criterion) {
-  return When<From, Criterion>{criterion};
+template <class From, class C>
+When<From, C> when(C criterion) {
+  static_assert(Criterion<C, From>,
+                "when<F>(criterion): a criterion is called with the state of an element of F, and "
+                "gives a number");
+  return When<From, C>{criterion};
 }
 
 }  // namespace pliant

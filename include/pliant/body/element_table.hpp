@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <pliant/body/criteria_workspace.hpp>
 #include <pliant/body/group.hpp>
 #include <pliant/body/group_laws.hpp>
 
@@ -30,7 +31,8 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   std::vector<Index> user_element;             // by the internal number
   typename B::template Array<scalar> values;   // (values, elements)
   typename B::template Array<scalar> scratch;  // (elements), of whoever needs it
-  bool straight = false;                       // all edges are, with their nodes in the middle
+  CriteriaWorkspace<B> criteria;
+  bool straight = false;  // all edges are, with their nodes in the middle
 
   Index count() const { return elements.count(); }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -21,37 +22,42 @@ struct CounterLayout {
   static constexpr int count = Groups + 3 * Groups * Groups;
 };
 
-/// What is remembered of the elements of one type while they change groups; made when adaptation
-/// first looks at them, so that other scenes do not pay.
+/// Counts up to the largest number and stays there.
+PLIANT_HOST_DEVICE std::int32_t one_more(std::int32_t count) {
+  return count < std::numeric_limits<std::int32_t>::max() ? count + 1 : count;
+}
+
+/// What is counted of the elements of one type while they change groups; made when adaptation first
+/// looks at them, so that other scenes do not pay.
 template <Backend B, int Groups>
 struct GroupStatistics {
   using Counters = CounterLayout<Groups>;
 
-  typename B::template Array<Index> since;  // (elements): step of the last change of group
-  typename B::template Array<std::uint16_t> switches;  // (elements): changes of group so far
-  /// Element-steps per group of the stretches that are over (an element that leaves a group adds
-  /// its steps there), moves and changes of strain energy (J) between groups.
+  typename B::template Array<std::int64_t> since;  // (elements): step of the last change of group
+  typename B::template Array<std::int32_t> switches;  // (elements): changes of group so far
+  /// Element-steps per group of the stays that are over (an element that leaves a group adds its
+  /// steps there), moves between groups and their changes of strain and kinetic energy, J.
   typename B::template Array<double> counters;
   bool open = false;
 
   void start(B const& backend, Index elements, std::int64_t step) {
     auto const n = static_cast<std::size_t>(elements);
-    since = upload(backend, std::vector<Index>(n, static_cast<Index>(step)));
-    switches = zeros<std::uint16_t>(backend, n);
+    since = upload(backend, std::vector<std::int64_t>(n, step));
+    switches = zeros<std::int32_t>(backend, n);
     counters = zeros<double>(backend, Counters::count);
     open = true;
   }
-  /// Enters that elements went from the groups `before` to `after` at a step, by hand.
+  /// Counts that a user put elements from the groups `before` into the groups `after` at a step.
   void enter(std::vector<Tag> const& before, std::vector<Tag> const& after, std::int64_t step) {
-    auto from = download<Index>(since);
-    auto times = download<std::uint16_t>(switches);
+    auto from = download<std::int64_t>(since);
+    auto times = download<std::int32_t>(switches);
     auto sums = download<double>(counters);
     for (std::size_t e = 0; e < before.size(); ++e) {
       if (before[e] == after[e] || before[e] >= Groups) continue;
       sums[static_cast<std::size_t>(Counters::steps_of(before[e]))] +=
           static_cast<double>(step - from[e]);
-      from[e] = static_cast<Index>(step);
-      ++times[e];
+      from[e] = step;
+      times[e] = one_more(times[e]);
     }
     since.upload(from);
     switches.upload(times);

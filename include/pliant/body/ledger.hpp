@@ -26,9 +26,8 @@ std::vector<double> all_counters(Parts const& parts, Elements const& elements, s
   using Counters = CounterLayout<Table::groups>;
   std::vector<double> sums = counters<Table>(parts, elements, which);
   auto const tags = download<Tag>(elements.tags);
-  auto const born = static_cast<Index>(parts.state.record.born);
-  std::vector<Index> since(tags.size(), born);
-  if (elements.statistics.open) since = download<Index>(elements.statistics.since);
+  std::vector<std::int64_t> since(tags.size(), parts.state.record.born);
+  if (elements.statistics.open) since = download<std::int64_t>(elements.statistics.since);
   for (std::size_t e = 0; e < tags.size(); ++e)
     if (tags[e] < Table::groups)
       sums[static_cast<std::size_t>(Counters::steps_of(tags[e]))] +=
@@ -72,7 +71,7 @@ std::vector<double> element_steps(TheBody const& body) {
 }
 
 /// How often each element changed its group, by the user's number; from zero again for all elements
-/// after a refinement.
+/// after a refinement. Counts stay at the largest `int` once there.
 template <Element E, class TheBody>
 std::vector<int> switch_counts(TheBody const& body) {
   std::vector<int> counts;
@@ -80,7 +79,7 @@ std::vector<int> switch_counts(TheBody const& body) {
     if constexpr (std::same_as<typename std::remove_cvref_t<decltype(table)>::element, E>) {
       counts.resize(static_cast<std::size_t>(table.count()), 0);
       if (!elements.statistics.open) return;
-      auto const internal = download<std::uint16_t>(elements.statistics.switches);
+      auto const internal = download<std::int32_t>(elements.statistics.switches);
       for (std::size_t e = 0; e < internal.size(); ++e)
         counts[static_cast<std::size_t>(table.user_element[e])] = internal[e];
     }

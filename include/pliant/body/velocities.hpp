@@ -94,6 +94,18 @@ void synchronize_velocities(Parts& parts) {
   parts.state.pending_half_kick = 0;
 }
 
+/// The inverse of synchronize_velocities, where an integrator has taken a step: with velocities of the half step
+/// before, a change of forces changes the energy that leapfrog keeps, W + v₋·M·v₊/2 with v₊ = v₋ + Δt a,
+/// by ΔW + Δt/2 Δf·v₋ exactly, which each element knows of itself.
+template <class Parts>
+void leave_half_kick_pending(Parts& parts) {
+  double const half = parts.state.integrator.step / 2;
+  if (parts.state.pending_half_kick != 0 || half == 0) return;
+  evaluate_forces(parts);
+  advance(parts, -half, 0, 0);
+  parts.state.pending_half_kick = half;
+}
+
 /// Σ m v²/2, J.
 template <class Parts>
 double kinetic_energy_of(Parts& parts) {

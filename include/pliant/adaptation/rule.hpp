@@ -1,0 +1,54 @@
+#pragma once
+
+#include <pliant/adaptation/criterion/criterion.hpp>
+#include <pliant/adaptation/marking.hpp>
+
+namespace pliant {
+
+/// Elements of From that a criterion marks change to the group To.
+template <class From, class To, class C>
+struct SwitchRule {
+  using from = From;
+  using to = To;
+  C criterion;
+  Marking marking;
+  std::int64_t stay;  // steps that an element stays in a group at the least
+};
+
+struct RefineOptions {
+  int max_level = 30;  // elements refined this often are left alone
+};
+
+/// Elements of From that a criterion marks are split into four.
+template <class From, class C>
+struct RefineRule {
+  using from = From;
+  C criterion;
+  Marking marking;
+  RefineOptions options;
+};
+
+namespace detail {
+template <class R>
+concept MarksElements = requires(R const& rule) {
+  typename R::from;
+  rule.criterion;
+  { rule.marking } -> std::convertible_to<Marking>;
+} && Criterion<decltype(R::criterion), typename R::from>;
+}  // namespace detail
+
+/// What an Adaptation takes: marks elements of one formulation by a criterion, and says what becomes
+/// of them. `when` makes rules.
+template <class R>
+concept SwitchingRule = detail::MarksElements<R> && requires(R const& rule) {
+  typename R::to;
+  { rule.stay } -> std::convertible_to<std::int64_t>;
+};
+template <class R>
+concept RefiningRule = detail::MarksElements<R> && requires(R const& rule) {
+  { rule.options.max_level } -> std::convertible_to<int>;
+};
+template <class R>
+concept Rule = SwitchingRule<R> || RefiningRule<R>;
+
+}  // namespace pliant

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <pliant/adaptation/decision.hpp>
+#include <pliant/adaptation/ranking.hpp>
+#include <pliant/adaptation/refinement.hpp>
+#include <pliant/adaptation/switching.hpp>
+
+namespace pliant::detail {
+
+template <class R, class Table>
+concept On = std::same_as<typename R::from::element, typename Table::element>;
+
+template <class Table, class R>
+inline constexpr bool has_target = true;
+template <class Table, SwitchingRule R>
+inline constexpr bool has_target<Table, R> =
+    Table::template group_of<typename R::to> < Table::groups;
+
+/// The rules of a list that look at a table.
+template <class Table, class... Rules>
+auto rules_on(std::tuple<Rules...> const& rules) {
+  auto const one = []<class R>(R const& rule) {
+    if constexpr (On<R, Table>)
+      return std::tuple<R>{rule};
+    else
+      return std::tuple<>{};
+  };
+  return std::apply([&](auto const&... rule) { return std::tuple_cat(one(rule)...); }, rules);
+}
+
+/// One check of one element type: `decide` evaluates all criteria and changes nothing that a user
+/// sees, `act` moves elements between groups, `marked` lists those to refine. None waits for the
+/// backend, `marked` aside.
+template <class Parts, class Table, class Elements, class Rules>
+class TableCheck;
+
+template <class Parts, class Table, class Elements, class... Rules>
+class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
+  using B = typename Parts::backend_type;
+  using T = typename Parts::T;
+  using All = TableRules<Table, Rules...>;
+  static constexpr bool switches = (SwitchingRule<Rules> || ...);
+  static constexpr bool refines = (RefiningRule<Rules> || ...);
+  static constexpr int count = sizeof...(Rules);
+  static_assert(count <= 32, "an Adaptation has at most 32 rules for one element type");
+  static_assert((has_target<Table, Rules> && ...),
+                "a rule names a formulation of which the body has no Group");
+
+ public:
+  TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules)
+      : parts_(parts), table_(table), elements_(elements), rules_{rules} {}
+
+  void decide() const {
+    if constexpr (count > 0) {
+      prepare();
+      auto const decision = this->decision();
+      evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, decision);
+      if constexpr (switches)
+        if (decision.ranks) {
+          find_cuts([]<class R>(R const&) { return SwitchingRule<R>; });
+          backend().for_each(table_.count(), decision);
+        }
+    }
+  }
+  void act() const {
+    if constexpr (switches)
+      backend().template visit<Table::groups>(
+          table_.elements,
+          ActVisitor<Table, Rules...>{table_.laws, rules_, workspace().next.data(),
+                                      workspace().values.data(), table_.count(), target()},
+          elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
+          std::as_const(parts_).v());
+  }
+
+  /// The elements that rules want refined, by the user's number; `max_level` grows to the rules'.
+  std::vector<Index> marked(int& max_level) const {
+    std::vector<Index> marked;
+    if constexpr (refines) {
+      auto const decision = this->decision();
+      if (decision.ranks) find_cuts([]<class R>(R const&) { return RefiningRule<R>; });
+      backend().for_each(table_.count(), MarkRefining<Decision<Table, Rules...>>{decision});
+      auto const masks = download<std::uint32_t>(workspace().refining);
+      auto const levels = levels_of<typename Table::element>(parts_);
+      auto const level_of_rule = max_levels();
+      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e) {
+        Index const element = table_.user_element[e];
+        bool wanted = false;
+        for (std::size_t r = 0; r < level_of_rule.size(); ++r)
+          wanted = wanted || ((masks[e] >> r & 1) != 0 &&
+                              levels[static_cast<std::size_t>(element)] < level_of_rule[r]);
+        if (wanted) marked.push_back(element);
+      }
+      for (int level : level_of_rule) max_level = std::max(max_level, level);
+    }
+    return marked;
+  }
+  /// Keeps what `act` changes, and puts it back.
+  void keep() const {
+    each_kept([this](auto& own, auto& kept) { copy(own, kept); });
+  }
+  void put_back() const {
+    each_kept([this](auto& own, auto& kept) { copy(kept, own); });
+  }
+
+ private:
+  // What of the body is read and changed.
+  B const& backend() const { return parts_.backend; }
+  CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
+  SwitchTarget<T> target() const {
+    auto& statistics = elements_.statistics;
+    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
+            parts_.state.steps, static_cast<T>(parts_.state.pending_half_kick)};
+  }
+  template <class Visit>
+  void each_kept(Visit const& visit) const {
+    if constexpr (switches) {
+      auto& statistics = elements_.statistics;
+      auto& kept = workspace().kept;
+      visit(elements_.tags, kept.tags);
+      visit(statistics.since, kept.since);
+      visit(statistics.switches, kept.switches);
+      visit(statistics.counters, kept.counters);
+      visit(elements_.internal_variables, kept.internal_variables);
+    }
+  }
+  /// Allocates in the first check of a mesh.
+  void prepare() const {
+    using Workspace = CriteriaWorkspace<B>;
+    auto& w = workspace();
+    auto const n = static_cast<std::size_t>(table_.count());
+    if constexpr (switches) {
+      Workspace::reserve(backend(), w.next, n);
+      if (!elements_.statistics.open)
+        elements_.statistics.start(backend(), table_.count(), parts_.state.record.born);
+    }
+    if constexpr (refines) Workspace::reserve(backend(), w.refining, n);
+    if (refines || ranks())
+      Workspace::reserve(backend(), w.values, static_cast<std::size_t>(All::rows) * n);
+    if (ranks()) {
+      if (w.number.size() < n) w.number = upload(backend(), table_.user_element);
+      Workspace::reserve(backend(), w.rankings, std::size_t{count});
+      Workspace::reserve(backend(), w.histogram, std::size_t{histogram_bins});
+    }
+  }
+
+  template <class U>
+  using Array = typename B::template Array<U>;
+  template <class U>
+  void copy(Array<U>& from, Array<U>& to) const {
+    CriteriaWorkspace<B>::reserve(backend(), to, from.size());
+    backend().for_each(static_cast<Index>(from.size()), CopyValue<U>{from.data(), to.data()});
+  }
+  bool ranks() const {
+    return std::apply([](auto const&... rule) { return (rule.marking.ranks() || ...); },
+                      rules_.rules);
+  }
+  Decision<Table, Rules...> decision() const {
+    auto& w = workspace();
+    auto const own = target();
+    Decision<Table, Rules...> d{{},
+                                {},
+                                {},
+                                ranks(),
+                                refines || ranks(),
+                                w.rankings.data(),
+                                w.values.data(),
+                                table_.count(),
+                                w.number.data(),
+                                own.tags,
+                                own.since,
+                                own.step,
+                                w.next.data(),
+                                w.refining.data()};
+    int r = 0;
+    auto const add = [&](auto const& rule) {
+      d.sign[r] = rule.marking.below() ? T(-1) : T(1);
+      d.beyond[r] = rule.marking.template beyond<T>();
+      if constexpr (SwitchingRule<std::remove_cvref_t<decltype(rule)>>) d.stay[r] = rule.stay;
+      ++r;
+    };
+    std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
+    return d;
+  }
+  template <class Chosen>
+  void find_cuts(Chosen const& chosen) const {
+    [&]<int... R>(std::integer_sequence<int, R...>) {
+      (find_cut_of<R>(chosen(std::get<R>(rules_.rules))), ...);
+    }(std::make_integer_sequence<int, count>());
+  }
+  template <int R>
+  void find_cut_of(bool chosen) const {
+    if (!chosen) return;
+    auto& w = workspace();
+    auto const& marking = std::get<R>(rules_.rules).marking;
+    auto const offset = static_cast<std::ptrdiff_t>(table_.count()) * All::template row<R>;
+    find_cut(backend(), marking,
+             RankedValues<T>{w.values.data() + offset, elements_.tags.data(), w.number.data(),
+                             table_.count(), static_cast<Tag>(All::template group<R>),
+                             marking.below() ? T(-1) : T(1)},
+             w.histogram.data(), w.rankings.data() + R);
+  }
+  auto max_levels() const {
+    std::array<int, count> levels{};
+    int r = 0;
+    auto const add = [&](auto const& rule) {
+      if constexpr (RefiningRule<std::remove_cvref_t<decltype(rule)>>)
+        levels[static_cast<std::size_t>(r)] = rule.options.max_level;
+      ++r;
+    };
+    std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
+    return levels;
+  }
+
+  Parts& parts_;
+  Table& table_;
+  Elements& elements_;
+  All rules_;
+};
+
+}  // namespace pliant::detail

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include <pliant/backend/backend.hpp>
+
+namespace pliant {
+
+/// The bits of a number as an unsigned integer that grows with the number; not for NaN.
+template <class T>
+using OrderedBits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+template <class T>
+PLIANT_HOST_DEVICE OrderedBits<T> ordered_bits(T x) {
+  constexpr OrderedBits<T> sign = OrderedBits<T>{1} << (8 * sizeof(T) - 1);
+  auto const bits = std::bit_cast<OrderedBits<T>>(x == 0 ? T(0) : x);  // −0 equals 0
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+/// The inverse of `ordered_bits`.
+template <class T>
+PLIANT_HOST_DEVICE T from_ordered_bits(OrderedBits<T> key) {
+  constexpr OrderedBits<T> sign = OrderedBits<T>{1} << (8 * sizeof(T) - 1);
+  return std::bit_cast<T>((key & sign) != 0 ? key ^ sign : static_cast<OrderedBits<T>>(~key));
+}
+
+/// Where the elements end that act, in the order of falling values and, among equal values, of
+/// ascending numbers.
+template <class T>
+struct Cut {
+  using Key = OrderedBits<T>;
+  Key key;
+  Index last;  // the last element that acts with exactly this value; −1: none
+
+  /// Whether an element acts. `value` is negated for rules that look for small values; NaN never acts.
+  PLIANT_HOST_DEVICE bool holds(T value, Index number) const {
+    if (!(value == value)) return false;
+    Key const own = ordered_bits(value);
+    return own > key || (own == key && number <= last);
+  }
+  PLIANT_HOST_DEVICE void tighten(Cut const& other) {
+    if (other.key > key || (other.key == key && other.last < last)) *this = other;
+  }
+  PLIANT_HOST_DEVICE static Cut nobody() { return {static_cast<Key>(~Key{0}), -1}; }
+};
+
+/// The state of a search for a cut, in the backend's memory.
+template <class T>
+struct Ranking {
+  enum State : std::int32_t { searching, everybody, nobody };
+
+  Cut<T> cut;
+  OrderedBits<T> prefix;   // leading digits found so far
+  OrderedBits<T> key;      // of the value at the limit of a count
+  std::int64_t remaining;  // weight that is still to be found among values that begin with `prefix`
+  T scale;                 // from a value to its weight in fixed point; 0: the largest is infinite
+  State state;
+
+  Ranking() = default;
+  explicit Ranking(int) : Ranking() {}  // arrays begin zeroed
+};
+
+/// What a check of criteria keeps from pass to pass. It is kept from check to check as well, and goes
+/// with the mesh.
+template <Backend B>
+struct CriteriaWorkspace {
+  using T = typename B::scalar;
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+  Array<T> values;                // (rows, elements)
+  Array<Tag> next;                // (elements): the group after the check
+  Array<std::uint32_t> refining;  // (elements): bit r: rule r wants it refined
+  Array<Index> number;            // (elements): the user's
+  Array<std::int64_t> histogram;  // (histogram_bins), zero between searches
+  Array<Ranking<T>> rankings;     // (rules)
+  /// Copies of what a check changes, to be put back when refinement throws.
+  struct Kept {
+    Array<Tag> tags;
+    Array<std::int64_t> since;
+    Array<std::int32_t> switches;
+    Array<double> counters;
+    Array<T> internal_variables;
+  } kept;
+
+  /// Makes arrays that are too small anew.
+  template <class U>
+  static void reserve(B const& backend, Array<U>& array, std::size_t count) {
+    if (array.size() < count) array = zeros<U>(backend, count);
+  }
+};
+
+}  // namespace pliant
