@@ -1,0 +1,96 @@
+#pragma once
+
+#include <pliant/law/viscosity.hpp>
+
+#include "adaptation/plane_bodies.hpp"
+
+namespace pliant::test {
+
+/// The same for every element.
+struct Constant {
+  double value;
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const&) const {
+    return typename State::scalar(static_cast<builtin_scalar<typename State::scalar>>(value));
+  }
+};
+
+TEST_CASE("a check whose refinement exceeds the capacity changes nothing", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(5);
+    auto const elements = mesh.elements<Quad4>().size();
+    auto const make = [&] {
+      Body body{backend, mesh, soft, Group<QuadRubber>{}, Group<QuadLinear>{}};
+      body.set_gravity({0, -1});
+      body.set_displacements(Random(3).field<2>(mesh.nodes.size(), 0.01));
+      body.template assign<QuadLinear>({1, 2, 5});
+      CentralDifference step;
+      step(body, 3);
+      Adaptation{when<QuadLinear>(Constant{1}).above(0.5).budget(1).template become<QuadRubber>()}
+          .now(body);
+      step(body, 2);
+      return body;
+    };
+    auto body = make(), twin = make();
+    body.set_capacity({.elements = elements + 3});
+    auto const rubber = when<QuadRubber>(EdgeLengthRatio{}).above(0.0);
+    Adaptation adapt{rubber.budget(6).template become<QuadLinear>(),
+                     when<QuadLinear>(EdgeLengthRatio{}).top_share(1).refine()};
+    auto const groups = body.template groups_of<Quad4>();
+    auto const steps = element_steps<Quad4>(body);
+    auto const switches = switch_counts<Quad4>(body);
+    auto const entries = ledger(body);
+    REQUIRE(entries.size() == 1);
+
+    CHECK_THROWS_AS(adapt.now(body), Error);
+
+    CHECK(element_count(body) == elements);
+    CHECK(body.template groups_of<Quad4>() == groups);
+    CHECK(element_steps<Quad4>(body) == steps);
+    CHECK(switch_counts<Quad4>(body) == switches);
+    REQUIRE(ledger(body).size() == entries.size());
+    CHECK(ledger(body)[0].elements == entries[0].elements);
+    CHECK(ledger(body)[0].strain_energy == entries[0].strain_energy);
+    CHECK(ledger(body)[0].kinetic_energy == entries[0].kinetic_energy);
+    CentralDifference step, other_step;
+    step(body, 5);
+    other_step(twin, 5);
+    CHECK(difference(body.displacements(), twin.displacements()) <= 1e-13);
+
+    body.set_capacity({});
+    adapt.now(body);
+    CHECK(ledger(body).size() == 3);
+    CHECK(element_count(body) > elements + 3);
+  });
+}
+
+TEST_CASE("internal variables too are as before a check that throws", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using First = Formulation<Quad4, Gauss<2>, Prony<SaintVenantKirchhoff>::law>;
+    using Second = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
+    auto const mesh = distorted_mesh<Quad4>(5);
+    auto const make = [&] {
+      Body body{backend, mesh, soft,
+                Group<First>{typename First::template law<double>{{3, 2}, {0.5}, {0.1}}},
+                Group<Second>{typename Second::template law<double>{{30, 20}, {0.5}, {0.1}}}};
+      body.set_displacements(Random(3).field<2>(mesh.nodes.size(), 0.02));
+      CentralDifference step;
+      step(body, 20);
+      return body;
+    };
+    auto body = make(), twin = make();
+    body.set_capacity({.elements = mesh.elements<Quad4>().size()});
+    Adaptation adapt{when<First>(Constant{1}).above(0).template become<Second>(),
+                     when<Second>(Constant{1}).above(0).refine()};
+
+    CHECK_THROWS_AS(adapt.now(body), Error);
+
+    body.step(1e-4, 20);
+    twin.step(1e-4, 20);
+    CHECK(largest(twin.velocities()) > 1e-3);
+    CHECK(difference(body.displacements(), twin.displacements()) <= 1e-13);
+    CHECK(difference(body.velocities(), twin.velocities()) <= 1e-12);
+  });
+}
+
+}  // namespace pliant::test
