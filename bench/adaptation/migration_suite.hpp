@@ -27,13 +27,11 @@ auto two_laws(B const& backend, int cells) {
 /// The edge length ratio above which a share of elements lies.
 template <class E, class TheBody>
 double ratio_exceeded_by(double share, TheBody& body) {
-  auto const rule = when<Cheaper<E>>(EdgeLengthRatio{}).above(0).template become<Better<E>>();
-  auto values = download<typename TheBody::scalar>(
-      pliant::detail::criterion_values(body, body.parts().layout.template table<E>(), rule));
+  auto values = evaluate<E>(body, EdgeLengthRatio{});
   auto const limit = values.begin() +
                      static_cast<std::ptrdiff_t>((1 - share) * static_cast<double>(values.size()));
   std::ranges::nth_element(values, limit);
-  return static_cast<double>(*limit);
+  return *limit;
 }
 
 template <class E>
@@ -74,8 +72,8 @@ void time_mixed_force(benchmark::State& state, B const& backend, int cells) {
     return b;
   });
   measure(state, backend, [&] {
-    forget_forces(body.parts());
-    evaluate_forces(body.parts());
+    body.forget_forces();
+    body.evaluate_forces();
   });
   report_elements(state, body);
 }
