@@ -280,6 +280,43 @@ TEST_CASE("elements where a criterion is NaN do not act and are not counted", "[
 }
 
 #if !defined(__CUDACC__)
+/// Counts its calls.
+struct Counted {
+  inline static int calls = 0;
+  template <class State>
+  auto operator()(State const& e) const {
+    ++calls;
+    return e.rest(0, 0);
+  }
+};
+
+TEST_CASE("a check evaluates a criterion once for each element that it looks at", "[adaptation]") {
+  auto const mesh = distorted_mesh<Quad4>(6);
+  auto const all = static_cast<int>(mesh.elements<Quad4>().size());
+  auto const calls_of = [&](auto const&... rules) {
+    auto body = three_group_body(Reference<double>{}, mesh);
+    body.template assign<Turning>({1, 2, 3});
+    Counted::calls = 0;
+    Adaptation{rules...}.now(body);
+    return Counted::calls;
+  };
+  auto const linear = when<Linear>(Counted{});
+  auto const turning = when<Turning>(Counted{});
+  auto const both = when<Linear>(pliant::largest(Counted{}, Constant{-9}));
+  auto const same = when<Linear>(pliant::largest(Counted{}, EdgeLengthRatio{}));
+
+  CHECK(calls_of(linear.above(9).become<Turning>()) == all - 3);
+  CHECK(calls_of(linear.top_share(0.5).budget(7).become<Turning>()) == all - 3);
+  CHECK(calls_of(linear.bulk(0.5).budget(7).become<Turning>(),
+                 turning.below(-9).become<Linear>()) == all);
+  CHECK(calls_of(linear.above(9).become<Turning>(), linear.top_share(0.5).become<Rubber>()) ==
+        all - 3);
+  CHECK(calls_of(same.above(9).become<Turning>(), same.top_share(0.5).become<Rubber>()) == all - 3);
+  // Criteria with data may differ.
+  CHECK(calls_of(both.above(9).become<Turning>(), both.top_share(0.5).become<Rubber>()) ==
+        2 * (all - 3));
+}
+
 /// 1, and throws from the n-th call on.
 struct Throwing {
   int* calls;

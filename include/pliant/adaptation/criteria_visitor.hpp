@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include <pliant/adaptation/criterion/criterion.hpp>
+#include <pliant/backend/backend.hpp>
 
 namespace pliant::detail {
 

@@ -2,7 +2,7 @@
 
 #include <tuple>
 
-#include <pliant/adaptation/criterion/element_state.hpp>
+#include <pliant/adaptation/criterion/criterion.hpp>
 
 namespace pliant {
 
@@ -30,6 +30,9 @@ struct ExtremeOf {
       return min(value, from<I + 1>(e));
   }
 };
+
+template <Extreme X, class... Cs>
+inline constexpr bool stateless<ExtremeOf<X, Cs...>> = (stateless<Cs> && ...);
 }  // namespace detail
 
 /// The largest of several criteria.
