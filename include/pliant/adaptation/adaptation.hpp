@@ -3,8 +3,16 @@
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/adaptation/table_check.hpp>
+#include <pliant/backend/value_at.hpp>
 
 namespace pliant {
+
+namespace detail {
+struct SetZero {
+  double* value;
+  PLIANT_HOST_DEVICE void operator()(Index) const { *value = 0; }
+};
+}  // namespace detail
 
 /// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
 /// for the elements of its formulation, and the elements that it marks act. Where several rules that
@@ -38,6 +46,8 @@ class Adaptation {
                   "a rule is for an element type that the body's mesh does not have");
     auto& parts = body.parts();
     parts.timers.criteria.start();
+    if (parts.moves.size() == 0) parts.moves = zeros<double>(parts.backend, 1);
+    parts.backend.for_each(1, detail::SetZero{parts.moves.data()});
     for_each_check(parts, [](auto const& check) { check.decide(); });
     parts.timers.criteria.stop();
     if constexpr (switches && refines) {
@@ -73,8 +83,10 @@ class Adaptation {
   }
   template <class Parts>
   void switch_groups(Parts& parts) const {
+    if (parts.backend.sum(1, detail::ValueAt<double>{parts.moves.data()}) == 0) return;
     parts.timers.criteria.start();
     leave_half_kick_pending(parts);
+    evaluate_accelerations(parts);
     for_each_check(parts, [](auto const& check) { check.act(); });
     parts.timers.criteria.stop();
     regroup(parts);

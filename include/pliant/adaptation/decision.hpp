@@ -27,6 +27,7 @@ struct Decision {
   std::int64_t step;
   Tag* next;                // (elements)
   std::uint32_t* refining;  // (elements): bit R: rule R refines it
+  double* moves;            // (1): set to 1 where some element goes to another group
 
   /// Takes the values of an element; decides at once if no rule ranks.
   template <int G, class V>
@@ -34,12 +35,12 @@ struct Decision {
     if (stores)
       for (int k = 0; k < All::rows; ++k) value(e, k) = own[k];
     if constexpr ((SwitchingRule<Rules> || ...))
-      if (!ranks) next[e] = next_group<G, 0>(e, [&](int k) { return own[k]; });
+      if (!ranks) go<G>(e, next_group<G, 0>(e, [&](int k) { return own[k]; }));
   }
   /// Decides from the values that are kept.
   PLIANT_HOST_DEVICE void operator()(Index e) const {
     dispatch<Table::groups>(tags[e], [&]<int G>(GroupNumber<G>) {
-      next[e] = next_group<G, 0>(e, [&](int k) { return value(e, k); });
+      go<G>(e, next_group<G, 0>(e, [&](int k) { return value(e, k); }));
     });
   }
   PLIANT_HOST_DEVICE void mark_refining(Index e) const {
@@ -52,6 +53,11 @@ struct Decision {
   }
 
  private:
+  template <int G>
+  PLIANT_HOST_DEVICE void go(Index e, Tag group) const {
+    next[e] = group;
+    if (group != G) *moves = 1;
+  }
   template <int R>
   PLIANT_HOST_DEVICE bool holds(T value, Index e) const {
     T const signed_value = sign[R] * value;

@@ -35,7 +35,8 @@ struct ActVisitor {
   SwitchTarget<T> target;
 
   template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&, V const&) const {
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&, V const&,
+                                   V const&) const {
     return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>{};
   }
   template <int G, class Again, class Tally>
@@ -64,9 +65,11 @@ struct ActVisitor {
   template <int From, int To>
   static constexpr bool goes = From != To && (goes_by<From, To, Rules>() || ...);
 
-  /// Seldom called, so kept out of line; constexpr is what lets device code call it. The pending half
-  /// kick will be given under the new law, which changes the kinetic energy by the difference of the
-  /// forces times velocity, to first order in the step.
+  /// Seldom called, so kept out of line; constexpr is what lets device code call it. What leapfrog keeps is its
+  /// modified energy; with velocities v₋ of the half step before and accelerations a it is
+  /// W + v₋·M·v₋/2 − Δt/2 v₋·∇W + Δt²/12 (v₋·∇²W v₋ + a·M·a) to second order (Hairer, Lubich and Wanner,
+  /// Geometric Numerical Integration, IX.3). Of its change, all but the square of the forces' is an
+  /// element's own.
   template <int From, int To, class Again, class Tally>
   [[gnu::noinline]] constexpr void move(Index e, Again const& again, Tally const& tally) const {
     using Old = typename Table::template formulation<From>;
@@ -74,9 +77,10 @@ struct ActVisitor {
     OneElement const own{e};
     auto const old_law = groups.template law<From>(own);
     auto const new_law = groups.template law<To>(own);
-    auto const [rest, u, v] = again();
+    auto const [rest, u, v, a] = again();
     T const before = energy<Old>(old_law, rest, u);
     auto const pull_before = force<Old>(old_law, rest, u);
+    auto const stiff_before = dot(tangent_product<Old>(old_law, rest, u, v), v);
     carry_internal_variables<From, To>(groups, e, rest, u);
     T const after = energy<New>(new_law, rest, u);
     auto const difference = force<New>(new_law, rest, u) - pull_before;
@@ -86,8 +90,11 @@ struct ActVisitor {
       for (int k = 0; k < All::rows; ++k)
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];
     }
+    T const stiffer = stiff_before - dot(tangent_product<New>(new_law, rest, u, v), v);  // v·ΔK v
+    T const half = target.pending_half_kick;
     tally(Counters::kinetic(From, To),
-          static_cast<double>(target.pending_half_kick * dot(difference, v)));
+          static_cast<double>(half * dot(difference, v) +
+                              half * half / T(3) * (stiffer + T(2) * dot(difference, a))));
     tally(Counters::steps_of(From), static_cast<double>(target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);
     tally(Counters::energy(From, To), static_cast<double>(after - before));

@@ -69,7 +69,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
           ActVisitor<Table, Rules...>{table_.laws, rules_, workspace().next.data(),
                                       workspace().values.data(), table_.count(), target()},
           elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
-          std::as_const(parts_).v());
+          std::as_const(parts_).v(), NodeField<T const, Parts::dim>{parts_.acceleration.data()});
   }
 
   /// The elements that rules want refined, by the user's number; `max_level` grows to the rules'.
@@ -170,7 +170,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
                                 own.since,
                                 own.step,
                                 w.next.data(),
-                                w.refining.data()};
+                                w.refining.data(),
+                                parts_.moves.data()};
     int r = 0;
     auto const add = [&](auto const& rule) {
       d.sign[r] = rule.marking.below() ? T(-1) : T(1);

@@ -107,14 +107,34 @@ double adaptation_energy(TheBody const& body) {
   return adaptation_energy_of(body.parts());
 }
 
-/// What has changed the total energy besides time integration, J: adaptation, changes of loads, and a user's
-/// hand.
+/// What has changed a body's total energy besides time integration and adaptation, J.
+struct ExternalWork {
+  double changed_loads;  // loads and gravity are in the potential energy; changes of them are here
+  double damping;        // negative
+  double motions;        // of driven nodes
+  double pressures;      // and of other force terms that have no energy
+  double by_hand;        // displacements, velocities, groups, conditions that a user set
+  double steps;          // changes of the time step: leapfrog keeps an energy that depends on it
+  double sum() const { return changed_loads + damping + motions + pressures + by_hand + steps; }
+};
+
+/// The work on a body since an integrator first took it.
+template <class Parts>
+ExternalWork external_work_of(Parts const& parts) {
+  auto const work = download<double>(parts.state.work);
+  auto const at = [&](Work which) { return work[static_cast<std::size_t>(which)]; };
+  return {at(Work::changed_loads), at(Work::damping),          at(Work::motions),
+          at(Work::pressures),     parts.state.energy_by_hand, parts.state.energy_of_steps};
+}
+template <class TheBody>
+ExternalWork external_work(TheBody const& body) {
+  return external_work_of(body.parts());
+}
+
+/// All that is booked, J: what a body's energy has changed by besides time integration.
 template <class Parts>
 double booked_energy(Parts const& parts) {
-  auto const work = download<double>(parts.state.work);
-  double sum = adaptation_energy_of(parts) + parts.state.energy_by_hand;
-  for (double w : work) sum += w;
-  return sum;
+  return adaptation_energy_of(parts) + external_work_of(parts).sum();
 }
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved

@@ -67,6 +67,28 @@ struct Advance {
   }
 };
 
+/// The acceleration of a node, zero in directions that are held.
+template <class T, int Dim>
+struct Accelerate {
+  NodeField<T, Dim> acceleration;
+  NodeField<T const, Dim> f;
+  T const* mass;
+  DirectionMask const* held;
+  ExternalForces<T, Dim> external;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    auto a = Vector<T, Dim>::zero();
+    T const m = mass[i];
+    for (int k = 0; k < Dim && m > T(0); ++k) {
+      if (held[i] >> k & 1) continue;
+      T force = f(i, k);
+      if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
+      a[k] = force / m + external.gravity[k];
+    }
+    acceleration.set(i, a);
+  }
+};
+
 /// The work of mass damping in the two half-kicks of an Advance, J: what they change beyond the work of the other
 /// forces, m (v'² − v²)/2 less (a·v_half h/2 ∓ a² h²/8) for each, so that it is zero without damping.
 template <class T, int Dim>

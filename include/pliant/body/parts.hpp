@@ -79,6 +79,8 @@ struct Parts {
   };
   std::optional<Scratch> scratch{};
   Array<T> without_energy{};  // (nodes, 4) and scratch rows, N: of terms that have no energy
+  Array<T> acceleration{};    // (nodes, 4), m/s²: of the present forces, while groups change
+  Array<double> moves{};      // (1): whether a check moves elements between groups
   Array<T> row_sums{};        // (nodes, 4) and scratch rows, of the stable step
   mutable Array<double> no_counters{};
   AdaptationTimers<B> timers{};

@@ -59,6 +59,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   double time = 0;               // s
   double pending_half_kick = 0;  // s: what leapfrog still owes the velocities
   double step_size = 0;          // s: of laws with internal variables, since they were committed
+  double energy_of_steps = 0;    // J: what changes of the step added to what leapfrog keeps
   double energy_by_hand = 0;     // J: what a user's changes of the state added since a run began
   std::int64_t steps = 0;
   AdaptationRecord<dim> record;
@@ -88,6 +89,7 @@ struct State<B, Mesh<Es...>, Fs...> {
     visit("time", s.time...);
     visit("pending half-kick", s.pending_half_kick...);
     visit("step of internal variables", s.step_size...);
+    visit("energy of changes of the step", s.energy_of_steps...);
     visit("energy added by hand", s.energy_by_hand...);
     visit("steps", s.steps...);
     AdaptationRecord<dim>::for_each_member(visit, s.record...);

@@ -106,6 +106,22 @@ void leave_half_kick_pending(Parts& parts) {
   parts.state.pending_half_kick = half;
 }
 
+/// Brings parts.acceleration up to the present forces, those of slaves interpolated.
+template <class Parts>
+void evaluate_accelerations(Parts& parts) {
+  using T = typename Parts::T;
+  evaluate_forces(parts);
+  if (parts.acceleration.size() != parts.layout.rest.size())
+    parts.acceleration = zeros<T>(parts.backend, parts.layout.rest.size());
+  NodeField<T, Parts::dim> const a{parts.acceleration.data()};
+  parts.backend.for_each(parts.layout.nodes, Accelerate<T, Parts::dim>{a,
+                                                                       {parts.layout.f.data()},
+                                                                       parts.layout.mass.data(),
+                                                                       parts.layout.held.data(),
+                                                                       external_forces(parts)});
+  parts.layout.interpolation.apply(parts.backend, a);
+}
+
 /// Σ m v²/2, J.
 template <class Parts>
 double kinetic_energy_of(Parts& parts) {

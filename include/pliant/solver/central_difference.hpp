@@ -125,7 +125,9 @@ class CentralDifference {
         (options_.step > 0 ? options_.step : options_.safety * stable_step_of(parts)) / own.slower;
     if (step == own.step) return;
     // The energy that leapfrog keeps depends on the step.
-    own.first_energy += (own.step * own.step - step * step) * acceleration_term(parts);
+    double const change = (own.step * own.step - step * step) * acceleration_term(parts);
+    parts.state.energy_of_steps += change;
+    own.last_energy -= change;
     own.step = step;
   }
 
