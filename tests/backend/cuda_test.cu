@@ -241,6 +241,51 @@ TEST_CASE("elements of no group leave everything as it was", "[cuda]") {
   CHECK(got.counters == std::vector<double>{0, 0, 0});
 }
 
+/// Every second patch of a list, against tags that leave the others out.
+template <class F, class T>
+void compare_lists(int n) {
+  Scene<typename F::element> const scene(n);
+  using L = Laws<F, F, T>;
+  constexpr int dim = F::dim;
+  L const laws{{T(2), T(1)}, {T(3), T(2)}};
+  Cuda<T> const backend;
+  auto const made = [&](std::vector<Tag> const& tags) {
+    return CudaElements<T, F::nodes>(backend, scene.connectivity, 2, tags, scene.nodes);
+  };
+  auto const all = made(scene.tags);
+  REQUIRE(all.patch_count() > 2);
+  std::vector<Index> list{0};
+  std::vector<Tag> tags(scene.tags.size(), no_group);
+  for (Index p = 0; p < all.patch_count(); p += 2) {
+    list.push_back(p);
+    for (Index e = p * all.patch_size(); e < std::min(all.count(), (p + 1) * all.patch_size()); ++e)
+      tags[static_cast<std::size_t>(e)] = scene.tags[static_cast<std::size_t>(e)];
+  }
+  list[0] = static_cast<Index>(list.size()) - 1;
+  auto const x = upload(backend, cast<T>(scene.rest)),
+             u = upload(backend, cast<T>(scene.displacement));
+  NodeField<T const, dim> const rest{x.data()}, displacement{u.data()};
+  auto const forces = [&](auto const& table) {
+    auto out = zeros<T>(backend, static_cast<std::size_t>(node_stride * scene.nodes));
+    backend.template accumulate<2>(table, Force<L>{laws}, NodeField<T, dim>{out.data()}, rest,
+                                   displacement);
+    return widened(download<T>(out));
+  };
+  auto const numbers = upload(backend, list);
+  auto const tagged = made(tags);
+  check_equal(forces(over(all, numbers)), forces(tagged), sizeof(T) == 8 ? 1e-13 : 1e-5);
+  CHECK(backend.template sum_elements<2>(over(all, numbers), Energy<L>{laws}, rest, displacement) ==
+        Approx(backend.template sum_elements<2>(tagged, Energy<L>{laws}, rest, displacement))
+            .epsilon(1e-6));
+}
+
+TEST_CASE("lists of patches pass over the others where elements scatter too", "[cuda]") {
+  compare_lists<Formulation<Hex8, Gauss<2>, SaintVenantKirchhoff>, float>(7);
+  compare_lists<Formulation<Hex8, Gauss<2>, SaintVenantKirchhoff>, double>(7);
+  compare_lists<Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>, float>(8);
+  compare_lists<Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>, double>(8);
+}
+
 TEST_CASE("node loops reach every node once", "[cuda]") {
   Cuda<double> const backend;
   for (Index n : {0, 1, 31, 1000, 1 << 20}) {
