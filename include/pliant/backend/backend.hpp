@@ -96,6 +96,54 @@ struct NodeProbe {
 struct BinProbe {
   PLIANT_HOST_DEVICE Bin operator()(Index) const { return {0, 0}; }
 };
+struct KernelProbe {
+  template <int G, class V>
+  PLIANT_HOST_DEVICE V operator()(GroupNumber<G>, V const& v) const {
+    return v;
+  }
+};
+struct SumProbe {
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& v) const {
+    return v(0, 0);
+  }
+};
+struct VisitorProbe {
+  static constexpr int counters = 0;
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& v) const {
+    return Vector<std::remove_cvref_t<decltype(v(0, 0))>, 1>{};
+  }
+  template <int G, class Values, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index, Values const&, Again const&,
+                                 Tally const&) const {}
+};
+
+template <class E, class B>
+concept TableOf =
+    std::default_initializable<E> && std::movable<E> &&
+    std::constructible_from<E, B const&,
+                            std::vector<std::array<Index, E::nodes_per_element>> const&, int,
+                            std::vector<Tag> const&, Index> &&
+    requires(E e, E const& c) {
+      { e.tags() } -> std::same_as<typename B::template Array<Tag>&>;
+      { c.tags() } -> std::same_as<typename B::template Array<Tag> const&>;
+      { e.take_tags() } -> std::same_as<typename B::template Array<Tag>>;
+      e.regroup();
+      { c.count() } -> std::same_as<Index>;
+      { c.scratch_nodes() } -> std::same_as<Index>;
+      { c.patch_size() } -> std::same_as<Index>;
+      { c.patch_count() } -> std::same_as<Index>;
+    };
+
+template <class B, class Table>
+concept LoopsOver = requires(B const& b, Table const& table, NodeField<typename B::scalar, 3> out,
+                             NodeField<typename B::scalar const, 3> field,
+                             typename B::template Array<double>& counters) {
+  { b.template accumulate<1>(table, KernelProbe{}, out, field) } -> std::same_as<void>;
+  { b.template sum_elements<1>(table, SumProbe{}, field) } -> std::same_as<double>;
+  { b.template visit<1>(table, VisitorProbe{}, counters, field) } -> std::same_as<void>;
+};
 }  // namespace detail
 
 /// Where arrays live and loops run.
@@ -103,7 +151,8 @@ template <class B>
 concept Backend =
     std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
     BackendArray<typename B::template Array<typename B::scalar>, typename B::scalar> &&
-    requires(B const& b, Index n, detail::NodeProbe f, detail::BinProbe bin, std::int64_t* bins) {
+    requires(B const& b, Index n, detail::NodeProbe f, detail::BinProbe bin, std::int64_t* bins,
+             typename B::Recording const& recording, typename B::Timer timer) {
       b.for_each(n, f);
       { b.sum(n, f) } -> std::same_as<double>;
       { b.maximum(n, f) } -> std::same_as<double>;
@@ -114,10 +163,17 @@ concept Backend =
         b.template array<typename B::scalar>(std::size_t{})
       } -> std::same_as<typename B::template Array<typename B::scalar>>;
       b.synchronize();
+      recording.replay(1);
+      { b.timer() } -> std::same_as<typename B::Timer>;
+      timer.start();
+      timer.stop();
+      { timer.seconds() } -> std::same_as<double>;
       { B::orders_by_group } -> std::convertible_to<bool>;
       { B::name() } -> std::convertible_to<char const*>;
-      typename B::template Elements<4>;
-    };
+    } &&
+    detail::TableOf<typename B::template Elements<4>, B> &&
+    detail::LoopsOver<B, typename B::template Elements<4>> &&
+    detail::LoopsOver<B, ActiveElements<typename B::template Elements<4>>>;
 
 /// An array of zeros, made by a backend.
 template <class U, Backend B>
