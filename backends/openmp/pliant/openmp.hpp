@@ -220,7 +220,8 @@ class OpenMP {
     if (elements.patch_count() == 0) return;
     Index const first = elements.scratch_of(0).first;
     threads_.for_each_part(elements.scratch_nodes(), small_loop, [&](Index from, Index to) {
-      std::fill_n(&out(first + from, 0), std::ptrdiff_t{node_stride} * (to - from), T(0));
+      std::fill_n(out.data + std::ptrdiff_t{node_stride} * (first + from),
+                  std::ptrdiff_t{node_stride} * (to - from), T(0));
     });
   }
 
@@ -228,7 +229,8 @@ class OpenMP {
   static void accumulate_patch(Elements<Nodes> const& elements, Index patch, Kernel const& kernel,
                                NodeField<T, C> out, Fields const&... fields) {
     auto const [first, last] = elements.scratch_of(patch);
-    std::fill(&out(first, 0), &out(first, 0) + std::ptrdiff_t{node_stride} * (last - first), T(0));
+    std::fill_n(out.data + std::ptrdiff_t{node_stride} * first,
+                std::ptrdiff_t{node_stride} * (last - first), T(0));
     for_each_pack<Groups>(elements, patch, [&](auto group, PackMembers const& m) {
       auto const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
       for (int a = 0; a < Nodes; ++a) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -30,8 +32,13 @@ struct NodeField {
   static constexpr int components = Components;
   using value_type = std::remove_const_t<T>;
   T* data;  // (nodes, 4)
+  /// As far as known; debug builds check that nodes are below.
+  Index nodes = std::numeric_limits<Index>::max();
 
-  PLIANT_HOST_DEVICE T& operator()(Index node, int k) const { return row(node)[k]; }
+  PLIANT_HOST_DEVICE T& operator()(Index node, int k) const {
+    assert(k >= 0 && k < Components);
+    return row(node)[k];
+  }
   PLIANT_HOST_DEVICE auto at(Index node) const {
     Vector<value_type, Components> v;
 #if defined(__CUDA_ARCH__)
@@ -56,9 +63,17 @@ struct NodeField {
  private:
   using Row = detail::PaddedRow<value_type, Components>;
   PLIANT_HOST_DEVICE T* row(Index node) const {
+    assert(node >= 0 && node < nodes);
     return data + static_cast<std::ptrdiff_t>(node_stride) * node;
   }
 };
+
+/// The view of an array of padded rows, which knows how many there are.
+template <int Components, class A>
+auto node_field(A& array) {
+  using T = std::remove_pointer_t<decltype(array.data())>;
+  return NodeField<T, Components>{array.data(), static_cast<Index>(array.size() / node_stride)};
+}
 
 /// A view of values per element in a backend's memory: value k of element e is `data[k elements + e]`.
 template <class T, int Components>
@@ -67,6 +82,7 @@ struct ElementField {
   Index elements;
 
   PLIANT_HOST_DEVICE T& operator()(Index element, int k) const {
+    assert(element >= 0 && element < elements && k >= 0 && k < Components);
     return data[static_cast<std::ptrdiff_t>(elements) * k + element];
   }
   /// `Count` of the values, from value `first` on.

@@ -85,12 +85,12 @@ struct Parts {
   mutable Array<double> no_counters{};
   AdaptationTimers<B> timers{};
 
-  Field u() { return {state.u.data()}; }
-  Field v() { return {state.v.data()}; }
-  Field f() { return {layout.f.data()}; }
-  ConstField u() const { return {state.u.data()}; }
-  ConstField v() const { return {state.v.data()}; }
-  ConstField rest() const { return {layout.rest.data()}; }
+  Field u() { return node_field<dim>(state.u); }
+  Field v() { return node_field<dim>(state.v); }
+  Field f() { return node_field<dim>(layout.f); }
+  ConstField u() const { return node_field<dim>(state.u); }
+  ConstField v() const { return node_field<dim>(state.v); }
+  ConstField rest() const { return node_field<dim>(layout.rest); }
   /// Where forces are asked: at displacements, of this body or another's arrays.
   Placement<T, dim> at(ConstField displacements) const { return {rest(), displacements}; }
   Placement<T, dim> here() const { return at(u()); }
