@@ -12,6 +12,7 @@
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/backend/kernel.hpp>
 #include <pliant/error.hpp>
+#include <pliant/openmp/pack_members.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/threads.hpp>
 #include <pliant/openmp/transpose.hpp>
@@ -146,10 +147,10 @@ class OpenMP {
     std::vector<double> partial(static_cast<std::size_t>(active.patch_count()));
     threads_.for_each_block(active.patch_count(), [&](Index k) {
       double total = 0;
-      for_each_pack<Groups>(
+      detail::for_each_pack<Groups, T>(
           active.elements, active.patch(k), [&](auto group, PackMembers const& m) {
             Scalar const values =
-                call(kernel, group, m, gather_pack<nodes>(active.elements, m, fields)...);
+                call(kernel, group, m, detail::gather_pack<nodes>(active.elements, m, fields)...);
             for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
           });
       partial[static_cast<std::size_t>(k)] = total;
@@ -181,38 +182,7 @@ class OpenMP {
   template <int Nodes, class Field>
   using Values = Matrix<Scalar, Nodes, Field::components>;
 
-  /// The elements in the lanes of one pack; behind `count` the last one repeats.
-  struct PackMembers {
-    Index element[Scalar::lanes];
-    int count;
-
-    /// The values of a field per element.
-    template <class U, int C>
-    Vector<Scalar, C> operator()(ElementField<U, C> const& field) const {
-      Vector<Scalar, C> values;
-      for (int k = 0; k < C; ++k)
-        for (int l = 0; l < Scalar::lanes; ++l) values[k].v[l] = field(element[l], k);
-      return values;
-    }
-  };
-
-  template <int Groups, int Nodes, class F>
-  static void for_each_pack(Elements<Nodes> const& elements, Index patch, F const& f) {
-    [&]<int... G>(std::integer_sequence<int, G...>) {
-      (for_each_pack_of<G>(elements, patch, f), ...);
-    }(std::make_integer_sequence<int, Groups>());
-  }
-  template <int Group, int Nodes, class F>
-  static void for_each_pack_of(Elements<Nodes> const& elements, Index patch, F const& f) {
-    auto const members = elements.members(patch, Group);
-    for (std::size_t first = 0; first < members.size(); first += Scalar::lanes) {
-      PackMembers m;
-      m.count = static_cast<int>(std::min<std::size_t>(Scalar::lanes, members.size() - first));
-      for (int l = 0; l < Scalar::lanes; ++l)
-        m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
-      f(GroupNumber<Group>{}, m);
-    }
-  }
+  using PackMembers = detail::PackMembers<T>;
 
   /// Patches that are passed over add nothing.
   template <int Nodes, int C>
@@ -231,8 +201,9 @@ class OpenMP {
     auto const [first, last] = elements.scratch_of(patch);
     std::fill_n(out.data + std::ptrdiff_t{node_stride} * first,
                 std::ptrdiff_t{node_stride} * (last - first), T(0));
-    for_each_pack<Groups>(elements, patch, [&](auto group, PackMembers const& m) {
-      auto const values = call(kernel, group, m, gather_pack<Nodes>(elements, m, fields)...);
+    detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
+      auto const values =
+          call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int a = 0; a < Nodes; ++a) {
         Index rows[Scalar::lanes];
         for (int l = 0; l < Scalar::lanes; ++l) rows[l] = elements.targets(m.element[l])[a];
@@ -248,37 +219,15 @@ class OpenMP {
                           Fields const&... fields) {
     std::array<double, Visitor::counters> counters{};
     auto const tally = [&](int k, double x) { counters[static_cast<std::size_t>(k)] += x; };
-    for_each_pack<Groups>(elements, patch, [&](auto group, PackMembers const& m) {
+    detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
       auto const values =
-          evaluate_at(visitor, group, m, gather_pack<Nodes>(elements, m, fields)...);
+          evaluate_at(visitor, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int l = 0; l < m.count; ++l) {
         Gather<Nodes, Fields...> const again{elements.nodes(m.element[l]), {fields...}};
-        visitor.finish(group, m.element[l], lane_of(values, l), again, tally);
+        visitor.finish(group, m.element[l], detail::lane_of(values, l), again, tally);
       }
     });
     return counters;
-  }
-
-  template <int Nodes, int C, class U>
-  PLIANT_INLINE static Matrix<Scalar, Nodes, C> gather_pack(Elements<Nodes> const& elements,
-                                                            PackMembers const& m,
-                                                            NodeField<U, C> const& field) {
-    Matrix<Scalar, Nodes, C> values;
-    for (int a = 0; a < Nodes; ++a) {
-      Index nodes[Scalar::lanes];
-      for (int l = 0; l < Scalar::lanes; ++l) nodes[l] = elements.nodes(m.element[l])[a];
-      typename Scalar::Register r[4];
-      detail::gather_nodes<T, Scalar::lanes>(field.data, nodes, r);
-      for (int k = 0; k < C; ++k) values(a, k).v = r[k];
-    }
-    return values;
-  }
-
-  template <int N>
-  static Vector<T, N> lane_of(Vector<Scalar, N> const& values, int lane) {
-    Vector<T, N> own;
-    for (int k = 0; k < N; ++k) own[k] = values[k][lane];
-    return own;
   }
 
   static double sum_in_order(std::vector<double> const& partial) {

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include <pliant/backend/dispatch.hpp>
+#include <pliant/backend/field.hpp>
+#include <pliant/openmp/patches.hpp>
+#include <pliant/openmp/transpose.hpp>
+
+// Elements of a patch, as many at a time as a pack has lanes.
+namespace pliant::detail {
+
+/// The elements in the lanes of one pack; behind `count` the last one repeats.
+template <class T>
+struct PackMembers {
+  using Scalar = Pack<T>;
+  Index element[Scalar::lanes];
+  int count;
+
+  /// The values of a field per element.
+  template <class U, int C>
+  Vector<Scalar, C> operator()(ElementField<U, C> const& field) const {
+    Vector<Scalar, C> values;
+    for (int k = 0; k < C; ++k)
+      for (int l = 0; l < Scalar::lanes; ++l) values[k].v[l] = field(element[l], k);
+    return values;
+  }
+};
+
+template <int Group, class T, int Nodes, class F>
+void for_each_pack_of(Patches<Nodes> const& elements, Index patch, F const& f) {
+  constexpr int lanes = Pack<T>::lanes;
+  auto const members = elements.members(patch, Group);
+  for (std::size_t first = 0; first < members.size(); first += lanes) {
+    PackMembers<T> m;
+    m.count = static_cast<int>(std::min<std::size_t>(lanes, members.size() - first));
+    for (int l = 0; l < lanes; ++l)
+      m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
+    f(GroupNumber<Group>{}, m);
+  }
+}
+/// f(GroupNumber<g>{}, members) for each pack of a patch, group by group.
+template <int Groups, class T, int Nodes, class F>
+void for_each_pack(Patches<Nodes> const& elements, Index patch, F const& f) {
+  [&]<int... G>(std::integer_sequence<int, G...>) {
+    (for_each_pack_of<G, T>(elements, patch, f), ...);
+  }(std::make_integer_sequence<int, Groups>());
+}
+
+/// The values of a field at the nodes of a pack's elements.
+template <int Nodes, class T, class U, int C>
+PLIANT_INLINE inline Matrix<Pack<T>, Nodes, C> gather_pack(Patches<Nodes> const& elements,
+                                                           PackMembers<T> const& m,
+                                                           NodeField<U, C> const& field) {
+  constexpr int lanes = Pack<T>::lanes;
+  Matrix<Pack<T>, Nodes, C> values;
+  for (int a = 0; a < Nodes; ++a) {
+    Index nodes[lanes];
+    for (int l = 0; l < lanes; ++l) nodes[l] = elements.nodes(m.element[l])[a];
+    typename Pack<T>::Register r[4];
+    gather_nodes<T, lanes>(field.data, nodes, r);
+    for (int k = 0; k < C; ++k) values(a, k).v = r[k];
+  }
+  return values;
+}
+
+template <class T, int N>
+Vector<T, N> lane_of(Vector<Pack<T>, N> const& values, int lane) {
+  Vector<T, N> own;
+  for (int k = 0; k < N; ++k) own[k] = values[k][lane];
+  return own;
+}
+
+}  // namespace pliant::detail
