@@ -149,7 +149,7 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
   auto prescribed = *parts.state.prescribed;
   condition.handle = {prescribed.next_id++};
   if (condition.motion) {
-    if (condition.name.empty()) condition.name = detail::message({"motion ", condition.handle.id});
+    if (condition.name.empty()) condition.name = "motion " + std::to_string(condition.handle.id);
     if (parts.motions.contains(condition.name))
       throw Error("body.drive: there is a motion called \"", condition.name,
                   "\" already; give each a name of its own");
