@@ -71,7 +71,7 @@ std::vector<bool> marks_of(Marking const& m, B const& backend,
   auto const number = upload(backend, numbers);
   auto const tags = upload(backend, std::vector<Tag>(values.size(), Tag(3)));
   auto histogram = upload(backend, std::vector<std::int64_t>(histogram_bins, 0));
-  typename B::template Array<Ranking<T>> ranking(1);
+  auto ranking = zeros<Ranking<T>>(backend, 1);
   detail::find_cut(backend, m,
                    detail::RankedValues<T>{array.data(), tags.data(), number.data(),
                                            static_cast<Index>(values.size()), Tag(3), sign},
