@@ -27,6 +27,26 @@ void place_driven_nodes(Parts& parts) {
   parts.layout.interpolation.apply(parts.backend, parts.u());
 }
 
+/// Displacements as they were before conditions put nodes at the start of their motions, in the user's order,
+/// as long as nothing else has moved since; the present ones otherwise. A static solver's increments
+/// start there.
+template <class Parts>
+std::vector<Point<Parts::dim>> place_before_drives(Parts const& parts) {
+  auto const& before = parts.before_drives;
+  auto u = parts.layout.in_user_order(parts.state.u);
+  if (before.size() != u.size()) return u;
+  std::vector<DirectionMask> driven(u.size(), 0);
+  for (auto const& condition : parts.state.prescribed->conditions)
+    for (Index node : condition.nodes)
+      if (condition.motion) driven[static_cast<std::size_t>(node)] |= condition.directions;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (parts.state.topology->interpolation.row_of(static_cast<Index>(i)) != nullptr) continue;
+    for (std::size_t k = 0; k < Parts::dim; ++k)
+      if (!(driven[i] >> k & 1) && u[i][k] != before[i][k]) return u;
+  }
+  return before;
+}
+
 /// Which directions of each node are held or driven, by internal numbers.
 template <class Parts>
 std::vector<DirectionMask> held_directions(Parts const& parts) {
@@ -160,6 +180,7 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
     parts.motions.emplace(condition.name, condition.motion);
   }
   Handle const handle = condition.handle;
+  if (condition.motion) parts.before_drives = place_before_drives(parts);
   prescribed.conditions.push_back(std::move(condition));
   change_by_hand(parts, [&] {
     detail::prescribe(parts, std::move(prescribed));

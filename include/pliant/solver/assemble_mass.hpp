@@ -6,7 +6,7 @@
 namespace pliant {
 
 /// How inertia is spread: over the nodes that share an element, ∫ ρ N_a N_b dV, or to each node alone,
-/// as explicit integration needs it (Body::masses).
+/// as explicit integration needs it (Body::add_lumped_mass).
 enum class MassMatrix { consistent, lumped };
 
 /// The mass matrix of a body, kg: rows run over (node, direction) in the user's order. Slaves' rows and
@@ -15,26 +15,22 @@ template <class TheBody>
 Eigen::SparseMatrix<double> assemble_mass(TheBody const& body,
                                           MassMatrix kind = MassMatrix::consistent) {
   constexpr int dim = TheBody::dim;
-  auto const& layout = body.layout();
+  auto const& parts = body.parts();
+  auto const& mesh = body.mesh();
   std::vector<Eigen::Triplet<double>> entries;
   auto const add = [&](Index i, Index j, double mass) {
     for (int k = 0; k < dim; ++k) entries.emplace_back(dim * i + k, dim * j + k, mass);
   };
   if (kind == MassMatrix::lumped) {
-    for (Index i = 0; i < layout.nodes; ++i) add(i, i, body.masses()[static_cast<std::size_t>(i)]);
+    for (Index i = 0; i < body.nodes(); ++i)
+      add(i, i, parts.layout.mass_list[static_cast<std::size_t>(i)]);
   } else {
-    // Each node's row of the interpolation T: itself, or its masters.
-    std::vector<std::vector<std::pair<Index, double>>> row_of(
-        static_cast<std::size_t>(layout.nodes));
-    for (Index i = 0; i < layout.nodes; ++i) row_of[static_cast<std::size_t>(i)] = {{i, 1.0}};
-    for (auto const& slave : layout.slave_list)
-      row_of[static_cast<std::size_t>(slave.node)] = slave.masters;
-
-    body.for_each_table([&](auto const& table) {
+    auto const& interpolation = parts.state.topology->interpolation;
+    parts.for_each_type([&](auto const& table, auto const&) {
       using E = typename std::remove_cvref_t<decltype(table)>::element;
       static constexpr auto points = tabulate<E, MassQuadrature<E>, double>();
-      for (Connectivity<E> const& nodes : body.mesh().template elements<E>()) {
-        auto const x = Coefficients<E, double>::of(nodal(body.mesh(), nodes));
+      for (Connectivity<E> const& nodes : mesh.template elements<E>()) {
+        auto const x = Coefficients<E, double>::of(nodal(mesh, nodes));
         auto m = Tensor<double, E::nodes>::zero();
         for (int q = 0; q < points.count; ++q) {
           double const mass = body.material().density * points.weight[q] *
@@ -43,15 +39,18 @@ Eigen::SparseMatrix<double> assemble_mass(TheBody const& body,
             for (int b = 0; b < E::nodes; ++b)
               m(a, b) += mass * points.shape[q][a] * points.shape[q][b];
         }
-        for (std::size_t a = 0; a < E::nodes; ++a)
-          for (std::size_t b = 0; b < E::nodes; ++b)
-            for (auto const& [i, wi] : row_of[static_cast<std::size_t>(nodes[a])])
-              for (auto const& [j, wj] : row_of[static_cast<std::size_t>(nodes[b])])
-                add(i, j, wi * wj * m(static_cast<int>(a), static_cast<int>(b)));
+        for (int a = 0; a < E::nodes; ++a)
+          interpolation.for_each_master(
+              nodes[static_cast<std::size_t>(a)], [&](Index i, double wi) {
+                for (int b = 0; b < E::nodes; ++b)
+                  interpolation.for_each_master(
+                      nodes[static_cast<std::size_t>(b)],
+                      [&](Index j, double wj) { add(i, j, wi * wj * m(a, b)); });
+              });
       }
     });
   }
-  Eigen::Index const size = Eigen::Index{dim} * layout.nodes;
+  Eigen::Index const size = Eigen::Index{dim} * body.nodes();
   Eigen::SparseMatrix<double> mass(size, size);
   mass.setFromTriplets(entries.begin(), entries.end());
   return mass;

@@ -6,13 +6,13 @@
 namespace pliant {
 
 struct NewmarkOptions {
-  double step = 0;  // s
+  double step = 0;  // s, positive and finite
   /// The trapezoidal rule: second order, unconditionally stable and without damping for small motions. In
   /// large ones its energy may grow: watch it, or take γ > 1/2 with β = (γ + 1/2)²/4.
-  double beta = 0.25, gamma = 0.5;
+  double beta = 0.25, gamma = 0.5;  // β in (0, 1], γ in [1/2, 1]
   MassMatrix mass = MassMatrix::consistent;
   int max_iterations = 30;   // of Newton's method, per step
-  double tolerance = 1e-10;  // of the residual, relative to the largest of the forces
+  double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
 };
 
 /// Implicit time integration on the assembled matrix, in double precision (Newmark 1959):
@@ -21,39 +21,48 @@ struct NewmarkOptions {
 /// steps longer than the explicit ones, on bodies small enough for a direct solver.
 class Newmark {
  public:
+  /// Throws Error for options that cannot work: see NewmarkOptions.
   explicit Newmark(NewmarkOptions const& options) : options_(options) {
-    if (!(options.step > 0 && std::isfinite(options.step)) || !(options.beta > 0) ||
-        !(options.gamma >= 0.5) || options.max_iterations < 1 || !(options.tolerance > 0))
-      throw Error(
-          "Newmark: step, beta and tolerance must be positive, gamma at least 1/2, and "
-          "max_iterations at least 1");
+    if (!(options.step > 0 && std::isfinite(options.step)))
+      throw Error("Newmark: step ", options.step, " s; give a positive, finite step");
+    if (!(options.beta > 0 && options.beta <= 1) || !(options.gamma >= 0.5 && options.gamma <= 1))
+      throw Error("Newmark: beta ", options.beta, " and gamma ", options.gamma,
+                  "; give beta above 0 up to 1, and gamma from 1/2 to 1");
+    if (options.max_iterations < 1)
+      throw Error("Newmark: max_iterations ", options.max_iterations, "; give 1 or more");
+    if (!(options.tolerance > 0 && options.tolerance < 1))
+      throw Error("Newmark: a tolerance of ", options.tolerance,
+                  "; give a number between 0 and 1, relative to the forces");
   }
 
-  /// Takes steps. Throws Error where one does not converge; the body is then at the end of the last one
-  /// that did.
+  /// Takes steps. Throws Error where one does not converge; the body is then exactly as the last one
+  /// that did left it.
   template <class TheBody>
   void operator()(TheBody& body, int steps = 1) {
     static_assert(!TheBody::has_internal_variables,
                   "Newmark takes laws without internal variables: step viscous bodies with "
                   "CentralDifference");
-    System<TheBody> system(body, options_.mass);
-    State now{system.problem.start(), vector_of(body.velocities()), {}};
+    using Problem = detail::StaticProblem<TheBody>;
+    System<TheBody> const system(body, options_.mass);
+    State now{system.problem.start(), Problem::flat(body.velocities()), {}};
     // Velocities of driven nodes, which a body does not keep, and digits beyond its precision go on.
-    if (body_ == &body && revision_ == body.revision() && now.u == seen_.u && now.v == seen_.v)
-      now = last_;
-    else
-      now.a = system.acceleration(now);
-    for (int step = 0; step < steps; ++step) {
-      body.tick(options_.step, 1);
-      try {
-        now = next(system, now);
-      } catch (...) {
-        body.tick(-options_.step, -1);
-        store(body, now);
-        throw;
+    bool const goes_on = parts_ == &body.parts() && revision_ == body.parts().revision &&
+                         now.u == seen_.u && now.v == seen_.v;
+    if (goes_on) now = last_;
+    if (!goes_on || system.problem.external != external_) now.a = acceleration(system, now);
+    external_ = system.problem.external;
+    double time = body.time();
+    int done = 0;
+    try {
+      for (; done < steps; ++done) {
+        now = next(system, now, time + options_.step);
+        time += options_.step;
       }
+    } catch (...) {
+      if (done > 0) store(body, now, time, done);
+      throw;
     }
-    store(body, now);
+    store(body, now, time, done);
   }
 
  private:
@@ -64,39 +73,39 @@ class Newmark {
   /// The body as matrices and vectors over (node, direction).
   template <class TheBody>
   struct System {
-    static constexpr int dim = TheBody::dim;
     TheBody const& body;
     detail::StaticProblem<TheBody> problem;
     Eigen::SparseMatrix<double> mass;
-    Eigen::VectorXd external;
+    bool conservative;
 
     System(TheBody const& b, MassMatrix kind)
-        : body(b), problem(b), mass(assemble_mass(b, kind)), external(problem.external) {
-      // Gravity on these masses instead of lumped ones.
-      Eigen::VectorXd gravity(external.size()), lumped(external.size());
-      for (Index i = 0; i < body.nodes(); ++i)
-        for (int k = 0; k < dim; ++k) {
-          gravity[dim * i + k] = body.gravity()[static_cast<std::size_t>(k)];
-          lumped[dim * i + k] = body.masses()[static_cast<std::size_t>(i)] * gravity[dim * i + k];
-        }
-      external += mass * gravity - lumped;
-    }
-    /// In balance with the forces at u and v; zero where nodes are held or driven.
-    Eigen::VectorXd acceleration(State const& s) const {
-      auto const force = assemble(body, s.u, Assemble::energy_and_force).force;
-      Eigen::VectorXd const pull = force + external - body.damping() * (mass * s.v);
-      Eigen::VectorXd a = Eigen::VectorXd::Zero(s.u.size());
-      problem.add(a, detail::solve("Newmark", problem.restrict(mass), problem.restrict(pull), true),
-                  1);
-      return a;
-    }
+        : body(b),
+          problem(b, kind),
+          mass(assemble_mass(b, kind)),
+          conservative(detail::is_conservative(b)) {}
   };
 
+  /// In balance with the forces at u and v; zero where nodes are held or driven.
   template <class TheBody>
-  State next(System<TheBody> const& system, State const& now) const {
+  Eigen::VectorXd acceleration(System<TheBody> const& system, State const& s) {
+    auto const force = assemble(system.body, s.u, Assemble::energy_and_force).force;
+    Eigen::VectorXd const pull =
+        force + system.problem.external - system.body.state().damping * (system.mass * s.v);
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(s.u.size());
+    system.problem.add(
+        a,
+        by_mass_.solve(system.problem.restrict(system.mass), system.problem.restrict(pull), true),
+        1);
+    return a;
+  }
+
+  /// The state at a time, one step on.
+  template <class TheBody>
+  State next(System<TheBody> const& system, State const& now, double time) {
     double const dt = options_.step, beta = options_.beta, gamma = options_.gamma;
-    double const damping = system.body.damping();
+    double const damping = system.body.state().damping;
     double const a_by_u = 1 / (beta * dt * dt), v_by_u = gamma / (beta * dt);
+    auto const& external = system.problem.external;
     Eigen::VectorXd const coast = now.u + dt * now.v + dt * dt * (0.5 - beta) * now.a;
     Eigen::VectorXd const coasting = now.v + dt * (1 - gamma) * now.a;
     Eigen::SparseMatrix<double> const inertia =
@@ -106,62 +115,52 @@ class Newmark {
     then.u = now.u;  // held where it is
     system.problem.add(
         then.u, system.problem.restrict(Eigen::VectorXd(dt * now.v + dt * dt / 2 * now.a)), 1);
-    system.problem.prescribe(then.u, 1);
-    interpolate_slaves(system.body, then.u);
+    system.problem.prescribe(then.u, time);
     double last_change = std::numeric_limits<double>::infinity();
     for (int iteration = 0;; ++iteration) {
       then.a = a_by_u * (then.u - coast);
       then.v = coasting + gamma * dt * then.a;
       auto const state = assemble(system.body, then.u);
-      Eigen::VectorXd const pull = state.force + system.external;
+      Eigen::VectorXd const pull = state.force + external;
       Eigen::VectorXd const inert = system.mass * (then.a + damping * then.v);
       Eigen::VectorXd const residual = system.problem.restrict(Eigen::VectorXd(pull - inert));
-      double const scale = std::max({system.external.norm(), state.force.norm(), inert.norm()});
+      double const scale = std::max({external.norm(), state.force.norm(), inert.norm()});
       double const size = residual.norm();
       // Where forces cancel to rounding, the displacement tells.
       bool const settled = last_change <= 1e-14 * (then.u.norm() + dt * then.v.norm());
       if (std::isfinite(size) && (size <= options_.tolerance * scale || settled)) return then;
       if (iteration == options_.max_iterations || !std::isfinite(size))
-        throw Error("Newmark: no convergence in the step to time ", system.body.time(), " s after ",
-                    iteration, " iterations, residual ", size,
+        throw Error("Newmark: no convergence in the step to time ", time, " s after ", iteration,
+                    " iterations, residual ", size,
                     " N; take smaller steps, or a law that does not soften");
       Eigen::SparseMatrix<double> const matrix = system.problem.restrict(state.stiffness) + inertia;
-      Eigen::VectorXd const du =
-          detail::solve("Newmark", matrix, residual, system.body.pressures().empty());
+      Eigen::VectorXd const du = direct_.solve(matrix, residual, system.conservative);
       system.problem.add(then.u, du, 1);
       last_change = du.norm();
     }
   }
 
-  template <std::size_t Dim>
-  static Eigen::VectorXd vector_of(std::vector<std::array<double, Dim>> const& points) {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(Dim * points.size()));
-    for (std::size_t i = 0; i < points.size(); ++i)
-      for (std::size_t k = 0; k < Dim; ++k)
-        values[static_cast<Eigen::Index>(Dim * i + k)] = points[i][k];
-    return values;
-  }
   template <class TheBody>
-  void store(TheBody& body, State const& state) {
-    auto const points = [&](Eigen::VectorXd const& values) {
-      std::vector<Point<TheBody::dim>> list(static_cast<std::size_t>(body.nodes()));
-      for (std::size_t i = 0; i < list.size(); ++i)
-        for (std::size_t k = 0; k < TheBody::dim; ++k)
-          list[i][k] = values[static_cast<Eigen::Index>(TheBody::dim * i + k)];
-      return list;
-    };
-    body.set_displacements(points(state.u));
-    body.set_velocities(points(state.v));
-    body_ = &body;
-    revision_ = body.revision();
+  void store(TheBody& body, State const& state, double time, int steps) {
+    using Problem = detail::StaticProblem<TheBody>;
+    auto const u = Problem::per_node(state.u), v = Problem::per_node(state.v);
+    detail::check_field<typename TheBody::scalar>("Newmark (velocities)", v, body.nodes());
+    body.set_displacements(u);
+    body.set_velocities(v);
+    body.parts().state.time = time;
+    body.parts().state.steps += steps;
+    parts_ = &body.parts();
+    revision_ = body.parts().revision;
     last_ = state;
-    seen_ = {vector_of(body.displacements()), vector_of(body.velocities()), {}};
+    seen_ = {Problem::flat(body.displacements()), Problem::flat(body.velocities()), {}};
   }
 
   NewmarkOptions options_;
-  void const* body_ = nullptr;
+  detail::DirectSolver direct_{"Newmark"}, by_mass_{"Newmark"};
+  void const* parts_ = nullptr;
   long revision_ = 0;
-  State last_, seen_;  // as it was left, and as the body has it
+  Eigen::VectorXd external_;  // of last_
+  State last_, seen_;         // as it was left, and as the body has it
 };
 
 }  // namespace pliant

@@ -1,133 +1,185 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
-
-#include <pliant/solver/assemble.hpp>
+#include <pliant/solver/direct_solver.hpp>
+#include <pliant/solver/least_jacobian.hpp>
+#include <pliant/solver/static_problem.hpp>
 
 namespace pliant {
 
 struct NewtonOptions {
-  int load_steps = 1;        // gravity, loads, pressures and motions grow in so many equal steps
-  int max_iterations = 50;   // per load step
-  double tolerance = 1e-11;  // of the residual, relative to the external forces and reactions
+  int load_steps = 1;       // gravity, loads, pressures and motions grow in so many equal steps
+  int max_iterations = 50;  // per load step
+  double tolerance =
+      1e-11;  // of the residual, relative to the external forces and reactions; below 1
+  /// On which masses gravity acts. Consistent, ∫ ρ N g, is as accurate as the elements are; lumped is the
+  /// gravity of explicit dynamics, whose rest it finds.
+  MassMatrix gravity = MassMatrix::consistent;
+  bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
 
 struct NewtonReport {
   Index unknowns = 0;
-  int iterations = 0;   // in all
-  double residual = 0;  // N, the last
-  double energy = 0;    // strain energy, J
+  int iterations = 0;                           // in all
+  int factorisations = 0;                       // of the stiffness
+  int assemblies = 0;                           // of the stiffness
+  double residual = 0;                          // N, the last
+  double energy = 0;                            // strain energy, J
+  MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
+  LeastJacobian least_J{};  // det F where it is least, at points of elements and between them
 };
 
 namespace detail {
 
-/// A body's unknowns, loads and prescribed displacements as vectors over (node, direction).
+inline void check_options(NewtonOptions const& options) {
+  if (options.load_steps < 1 || options.max_iterations < 1)
+    throw Error("solve_static: load_steps ", options.load_steps, " and max_iterations ",
+                options.max_iterations, "; give 1 or more");
+  if (!(options.tolerance > 0 && options.tolerance < 1))
+    throw Error("solve_static: a tolerance of ", options.tolerance,
+                "; give a number between 0 and 1, relative to the forces");
+}
+
+/// Newton's method on one body: see solve_static.
 template <class TheBody>
-class StaticProblem {
+class StaticNewton {
  public:
-  static constexpr int dim = TheBody::dim;
+  using Vector = Eigen::VectorXd;
 
-  explicit StaticProblem(TheBody const& body)
-      : body_(body), unknown_(static_cast<std::size_t>(dim * body.nodes()), -1) {
-    std::vector<bool> fixed(unknown_.size(), false);
-    for (auto const& condition : body.conditions())
-      for (Index node : condition.nodes)
-        for (int k = 0; k < dim; ++k)
-          if (condition.directions >> k & 1) fixed[at(dim * node + k)] = true;
-    for (Index i = 0; i < body.nodes(); ++i)
-      if (!(body.masses()[at(i)] > 0))  // slaves, and nodes of no element
-        for (int k = 0; k < dim; ++k) fixed[at(dim * i + k)] = true;
-    for (std::size_t i = 0; i < fixed.size(); ++i)
-      if (!fixed[i]) unknown_[i] = unknowns_++;
-    external = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknown_.size()));
-    for (Index i = 0; i < body.nodes(); ++i)
-      for (int k = 0; k < dim; ++k) {
-        external[dim * i + k] = body.masses()[at(i)] * body.gravity()[at(k)];
-        if (!body.loads().empty()) external[dim * i + k] += body.loads()[at(i)][at(k)];
-      }
-    for (auto const& slave : body.layout().slave_list)
-      for (int k = 0; k < dim; ++k) {
-        double const own = std::exchange(external[dim * slave.node + k], 0.0);
-        for (auto const& [master, weight] : slave.masters)
-          external[dim * master + k] += weight * own;
-      }
+  StaticNewton(TheBody const& body, NewtonOptions const& options)
+      : body_(body),
+        options_(options),
+        problem_(body, options.gravity),
+        conservative_(is_conservative(body)),
+        u_(StaticProblem<TheBody>::flat(place_before_drives(body.parts()))) {
+    report_.unknowns = problem_.unknowns();
+    report_.gravity = options.gravity;
   }
 
-  Eigen::VectorXd external;  // N
-
-  Index unknowns() const { return unknowns_; }
-
-  /// The present displacement.
-  Eigen::VectorXd start() const {
-    auto const points = body_.displacements();
-    Eigen::VectorXd u(static_cast<Eigen::Index>(unknown_.size()));
-    for (Index i = 0; i < body_.nodes(); ++i)
-      for (int k = 0; k < dim; ++k) u[dim * i + k] = points[at(i)][at(k)];
-    return u;
-  }
-  /// Puts driven nodes at a share of their motion at the body's time.
-  void prescribe(Eigen::VectorXd& u, double share) const {
-    for (auto const& condition : body_.conditions()) {
-      if (!condition.motion) continue;
-      auto const to = condition.motion(body_.time());
-      for (Index node : condition.nodes)
-        for (int k = 0; k < dim; ++k)
-          if (condition.directions >> k & 1) u[dim * node + k] = share * to[at(k)];
+  /// The displacement in equilibrium.
+  Vector const& solve() {
+    Vector const from = u_;
+    Vector to = u_;
+    problem_.prescribe(to, body_.time());
+    // What is in balance where the body is: loads grow from there.
+    Vector balance = Vector::Zero(problem_.size());
+    if (options_.load_steps > 1) {
+      share_ = 0;
+      balance = evaluate(u_).force;
+      if (!balance.allFinite())
+        throw Error(
+            "solve_static: the forces of the body where it starts are not finite: it is folded; "
+            "start from displacements without folds");
+      problem_.keep_unknowns(balance);
     }
+    for (int step = 1; step <= options_.load_steps; ++step) {
+      step_ = step;
+      share_ = static_cast<double>(step) / options_.load_steps;
+      load_ = share_ * problem_.external - (1 - share_) * balance;
+      target_ = from + share_ * (to - from);
+      if (step == options_.load_steps) target_ = to;
+      iterate();
+    }
+    report_.factorisations = direct_.factorisations();
+    report_.least_J = least_jacobian_at(body_.parts(), u_, true);
+    auto const folded = least_jacobian_at(body_.parts(), u_, false);
+    if (!options_.accept_folded && !(folded.value > 0))
+      throw Error("solve_static: the answer is folded: det F comes to ", folded.value, " in ",
+                  folded.element, " element ", folded.number,
+                  ", perhaps between the points of its quadrature; take more points, a finer mesh "
+                  "there or more load_steps, or accept it by accept_folded");
+    return u_;
   }
-  Eigen::VectorXd restrict(Eigen::VectorXd const& full) const {
-    Eigen::VectorXd reduced(unknowns_);
-    for (std::size_t i = 0; i < unknown_.size(); ++i)
-      if (unknown_[i] >= 0) reduced[unknown_[i]] = full[static_cast<Eigen::Index>(i)];
-    return reduced;
-  }
-  Eigen::SparseMatrix<double> restrict(Eigen::SparseMatrix<double> const& full) const {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int column = 0; column < full.outerSize(); ++column)
-      for (Eigen::SparseMatrix<double>::InnerIterator it(full, column); it; ++it)
-        if (unknown_[at(it.row())] >= 0 && unknown_[at(column)] >= 0)
-          entries.emplace_back(unknown_[at(it.row())], unknown_[at(column)], it.value());
-    Eigen::SparseMatrix<double> reduced(unknowns_, unknowns_);
-    reduced.setFromTriplets(entries.begin(), entries.end());
-    return reduced;
-  }
-  void add(Eigen::VectorXd& u, Eigen::VectorXd const& reduced, double factor) const {
-    for (std::size_t i = 0; i < unknown_.size(); ++i)
-      if (unknown_[i] >= 0) u[static_cast<Eigen::Index>(i)] += factor * reduced[unknown_[i]];
-    interpolate_slaves(body_, u);
-  }
+  NewtonReport const& report() const { return report_; }
 
  private:
-  template <class I>
-  static std::size_t at(I i) {
-    return static_cast<std::size_t>(i);
+  Assembled evaluate(Vector const& u) const {
+    return assembled_at(body_.parts(), u, Assemble::energy_and_force,
+                        std::numeric_limits<double>::infinity(), share_);
   }
-  TheBody const& body_;
-  std::vector<Index> unknown_;
-  Index unknowns_ = 0;
-};
+  bool is_unfolded(Vector const& u) const {
+    return least_jacobian_at(body_.parts(), u, false).value > 0;
+  }
+  /// One load step.
+  void iterate() {
+    auto now = evaluate(u_);
+    bool settled = false;
+    for (int iteration = 0;; ++iteration) {
+      Vector const increment = target_ - u_;  // of driven nodes, with their slaves
+      bool const driving = is_driven_by(increment);
+      Vector const residual = problem_.restrict(Vector(now.force + load_));
+      double const scale = std::max(load_.norm(), now.force.norm());
+      report_.residual = residual.norm();
+      report_.energy = now.energy;
+      bool const finite = std::isfinite(report_.residual) && std::isfinite(now.energy);
+      if (!driving && finite && (settled || report_.residual <= options_.tolerance * scale)) return;
+      if (iteration == options_.max_iterations || !finite)
+        throw Error("solve_static: no convergence in load step ", step_, " of ",
+                    options_.load_steps, " after ", iteration, " iterations, residual ",
+                    report_.residual, " N; use more load_steps, or a law that does not soften");
+      auto const k = assembled_at(body_.parts(), u_, Assemble::stiffness,
+                                  std::numeric_limits<double>::infinity(), share_)
+                         .stiffness;
+      ++report_.assemblies;
+      Vector pull = residual;
+      Vector prescribed = Vector::Zero(problem_.size());
+      if (driving) {
+        problem_.copy_prescribed(increment, prescribed);
+        pull -= problem_.restrict(Vector(k * prescribed));
+      }
+      Vector const du = direct_.solve(problem_.restrict(k), pull, conservative_);
+      double const factor = search(now, residual, du, prescribed, driving);
+      settled = factor == 1 && !driving && du.norm() <= 1e-14 * u_.norm();
+      ++report_.iterations;
+    }
+  }
+  bool is_driven_by(Vector const& increment) const {
+    Vector prescribed = Vector::Zero(problem_.size());
+    problem_.copy_prescribed(increment, prescribed);
+    return (prescribed.array() != 0).any();
+  }
+  /// Goes along a step as far as it leads down: on the potential energy, or on the work of the residual
+  /// along the step where there is none. A step that moves driven nodes has neither to compare with: it goes as far as
+  /// nothing folds. Returns the share of it taken; `now` is then of the new u.
+  double search(Assembled& now, Vector const& residual, Vector const& du, Vector const& prescribed,
+                bool driving) {
+    double const potential = now.energy - load_.dot(u_);
+    bool const unfolded = driving && is_unfolded(u_);
+    for (int halving = 0;; ++halving) {
+      double const factor = std::ldexp(1.0, -halving);
+      Vector trial = u_ + factor * prescribed;
+      if (factor == 1) problem_.copy_prescribed(target_, trial);
+      problem_.add(trial, du, factor);
+      auto next = evaluate(trial);
+      Vector const left = problem_.restrict(Vector(next.force + load_));
+      bool const finite = left.allFinite() && std::isfinite(next.energy);
+      bool better = false;
+      if (driving)
+        better = !unfolded || is_unfolded(trial);
+      else if (conservative_)
+        better = next.energy - load_.dot(trial) <= potential || left.norm() < residual.norm();
+      else
+        better =
+            std::abs(du.dot(left)) < std::abs(du.dot(residual)) || left.norm() < residual.norm();
+      if (halving < 20 && !(finite && better)) continue;
+      u_ = std::move(trial);
+      now = std::move(next);
+      return factor;
+    }
+  }
 
-/// `solver`: whose errors these are.
-inline Eigen::VectorXd solve(char const* solver, Eigen::SparseMatrix<double> const& k,
-                             Eigen::VectorXd const& r, bool is_symmetric) {
-  Error const singular(std::string(solver) +
-                       ": the matrix is singular; hold the body against rigid motion, or look for "
-                       "a collapsed element");
-  if (Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric;
-      is_symmetric && (symmetric.compute(k), symmetric.info() == Eigen::Success)) {
-    Eigen::VectorXd const pivots = symmetric.vectorD().cwiseAbs();
-    // Rounding makes a pivot that should be zero some 1e-16 of the others.
-    if (pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) throw singular;
-    Eigen::VectorXd x = symmetric.solve(r);
-    if (x.allFinite()) return x;
-  }
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> general(k);
-  if (general.info() != Eigen::Success) throw singular;
-  return general.solve(r);
-}
+  TheBody const& body_;
+  NewtonOptions options_;
+  StaticProblem<TheBody> problem_;
+  bool conservative_;
+  DirectSolver direct_{"solve_static"};
+  Vector u_, load_, target_;
+  double share_ = 1;
+  int step_ = 1;
+  NewtonReport report_;
+};
 
 }  // namespace detail
 
@@ -135,66 +187,23 @@ inline Eigen::VectorXd solve(char const* solver, Eigen::SparseMatrix<double> con
 /// the assembled matrix, in double precision whatever the body's own, with load steps and a line
 /// search: on the potential energy, or, as pressures that follow a surface have none, on the work of
 /// the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
-/// Engineering 14 (1979) 1613). Done within the tolerance, or when a step no longer moves anything but
+/// Engineering 14 (1979) 1613). The first linear solve of a load step carries its increment of driven
+/// nodes. Load steps lead from where the body is, in balance with what it then bears, to all of its
+/// loads; the user's own force terms act in full. Done within the tolerance, or when a step no longer moves anything but
 /// the last digits. Internal variables are brought to rest. Velocities are left alone. Throws
-/// Error, with the body as it was, where the matrix is singular or the iteration does not converge.
+/// Error, with the body as it was, where the matrix is singular, the iteration does not converge, or the
+/// answer is folded (det F ≤ 0, looked for all over each element whose law is not linear).
 template <class TheBody>
-NewtonReport solve_static(TheBody& body, NewtonOptions options = {}) {
-  if (options.load_steps < 1 || options.max_iterations < 1 || !(options.tolerance > 0))
-    throw Error(
-        "solve_static: load_steps and max_iterations must be at least 1, and tolerance positive");
-  detail::StaticProblem<TheBody> const problem(body);
-  bool const conservative = body.pressures().empty();
-  Eigen::VectorXd u = problem.start();
-  NewtonReport report{.unknowns = problem.unknowns()};
-
-  for (int step = 1; step <= options.load_steps; ++step) {
-    double const share = static_cast<double>(step) / options.load_steps;
-    problem.prescribe(u, share);
-    problem.add(u, Eigen::VectorXd::Zero(problem.unknowns()), 0);
-    Eigen::VectorXd const load = share * problem.external;
-    auto state = assemble(body, u, Assemble::stiffness_too, share);
-    bool settled = false;
-    for (int iteration = 0;; ++iteration) {
-      Eigen::VectorXd const residual = problem.restrict(Eigen::VectorXd(state.force + load));
-      double const scale = std::max(load.norm(), state.force.norm());
-      report.residual = residual.norm();
-      report.energy = state.energy;
-      bool const finite = std::isfinite(report.residual) && std::isfinite(state.energy);
-      if (finite && (settled || report.residual <= options.tolerance * scale)) break;
-      if (iteration == options.max_iterations || !finite)
-        throw Error("solve_static: no convergence in load step ", step, " of ", options.load_steps,
-                    " after ", iteration, " iterations, residual ", report.residual,
-                    " N; use more load_steps, or a law that does not soften");
-      Eigen::VectorXd const du =
-          detail::solve("solve_static", problem.restrict(state.stiffness), residual, conservative);
-      double factor = 1;
-      Eigen::VectorXd trial;
-      double const potential = state.energy - load.dot(u);
-      for (int halving = 0;; ++halving, factor /= 2) {
-        trial = u;
-        problem.add(trial, du, factor);
-        auto const next = assemble(body, trial, Assemble::energy_and_force, share);
-        Eigen::VectorXd const left = problem.restrict(Eigen::VectorXd(next.force + load));
-        bool const better = conservative ? next.energy - load.dot(trial) <= potential
-                                         : std::abs(du.dot(left)) < std::abs(du.dot(residual));
-        if (halving == 20 || (std::isfinite(left.norm()) && std::isfinite(next.energy) &&
-                              (better || left.norm() < report.residual)))
-          break;
-      }
-      u = trial;
-      settled = factor == 1 && du.norm() <= 1e-14 * u.norm();
-      state = assemble(body, u, Assemble::stiffness_too, share);
-      ++report.iterations;
-    }
+NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
+  detail::check_options(options);
+  detail::StaticNewton<TheBody> newton(body, options);
+  body.set_displacements(detail::StaticProblem<TheBody>::per_node(newton.solve()));
+  body.parts().before_drives.clear();
+  if constexpr (TheBody::has_internal_variables) {
+    equilibrate(body.parts());
+    forget_forces(body.parts());
   }
-  std::vector<Point<TheBody::dim>> points(static_cast<std::size_t>(body.nodes()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t k = 0; k < points[i].size(); ++k)
-      points[i][k] = u[static_cast<Eigen::Index>(i * points[i].size() + k)];
-  body.set_displacements(points);
-  if constexpr (TheBody::has_internal_variables) body.equilibrate();
-  return report;
+  return newton.report();
 }
 
 }  // namespace pliant

@@ -1,0 +1,8 @@
+#pragma once
+
+// The solvers on sparse matrices, all of which need Eigen alone: static equilibrium, implicit dynamics, and
+// the matrices by themselves. Not part of pliant.hpp, for the sake of those that step explicitly.
+#include <pliant/solver/assemble.hpp>
+#include <pliant/solver/assemble_mass.hpp>
+#include <pliant/solver/newmark.hpp>
+#include <pliant/solver/newton.hpp>

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+
+#include <pliant/error.hpp>
+
+namespace pliant::detail {
+
+/// Solves with sparse matrices one after the other. The symbolic analysis is kept while the pattern stays
+/// the same, and the factors while the values do too.
+class DirectSolver {
+ public:
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  /// `name`: whose errors these are.
+  explicit DirectSolver(std::string name) : name_(std::move(name)) {}
+
+  int analyses() const { return analyses_; }
+  int factorisations() const { return factorisations_; }
+
+  /// k⁻¹ r, for a compressed k. Throws Error where k is singular.
+  Eigen::VectorXd solve(Matrix const& k, Eigen::VectorXd const& r, bool is_symmetric) {
+    if (!has_factors_ || is_symmetric != is_symmetric_ || !same_pattern(k) || !same_values(k))
+      factorise(k, is_symmetric);
+    if (by_symmetric_) {
+      Eigen::VectorXd x = symmetric_.solve(r);
+      if (x.allFinite()) return x;
+      factorise_general(true);
+    }
+    Eigen::VectorXd x = general_.solve(r);
+    if (!x.allFinite()) refuse();
+    return x;
+  }
+
+ private:
+  void factorise(Matrix const& k, bool is_symmetric) {
+    bool const same = has_matrix_ && is_symmetric == is_symmetric_ && same_pattern(k);
+    matrix_ = k;
+    has_matrix_ = true;
+    is_symmetric_ = is_symmetric;
+    has_factors_ = by_symmetric_ = false;
+    if (!same) symmetric_analysed_ = general_analysed_ = false;
+    if (is_symmetric) {
+      if (!symmetric_analysed_) {
+        symmetric_.analyzePattern(matrix_);
+        symmetric_analysed_ = true;
+        ++analyses_;
+      }
+      symmetric_.factorize(matrix_);
+      ++factorisations_;
+      if (symmetric_.info() == Eigen::Success) {
+        Eigen::VectorXd const pivots = symmetric_.vectorD().cwiseAbs();
+        // Rounding makes a pivot that should be zero some 1e-16 of the others.
+        if (pivots.size() > 0 && pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) refuse();
+        by_symmetric_ = has_factors_ = true;
+        return;
+      }
+    }
+    factorise_general(!general_analysed_);
+  }
+  void factorise_general(bool analyse) {
+    has_factors_ = by_symmetric_ = false;
+    if (analyse) {
+      general_.analyzePattern(matrix_);
+      general_analysed_ = true;
+      ++analyses_;
+    }
+    general_.factorize(matrix_);
+    ++factorisations_;
+    if (general_.info() != Eigen::Success) refuse();
+    has_factors_ = true;
+  }
+  [[noreturn]] void refuse() {
+    has_factors_ = false;
+    throw Error(name_,
+                ": the matrix is singular; hold the body against rigid motion, or look for a "
+                "collapsed element");
+  }
+  bool same_pattern(Matrix const& k) const {
+    return k.rows() == matrix_.rows() && k.nonZeros() == matrix_.nonZeros() &&
+           std::equal(k.outerIndexPtr(), k.outerIndexPtr() + k.outerSize() + 1,
+                      matrix_.outerIndexPtr()) &&
+           std::equal(k.innerIndexPtr(), k.innerIndexPtr() + k.nonZeros(), matrix_.innerIndexPtr());
+  }
+  bool same_values(Matrix const& k) const {
+    return std::equal(k.valuePtr(), k.valuePtr() + k.nonZeros(), matrix_.valuePtr());
+  }
+
+  std::string name_;
+  Matrix matrix_;
+  Eigen::SimplicialLDLT<Matrix> symmetric_;
+  Eigen::SparseLU<Matrix> general_;
+  bool has_matrix_ = false, has_factors_ = false, by_symmetric_ = false, is_symmetric_ = false;
+  bool symmetric_analysed_ = false, general_analysed_ = false;
+  int analyses_ = 0, factorisations_ = 0;
+};
+
+}  // namespace pliant::detail
