@@ -6,3 +6,4 @@
 #include <pliant/solver/assemble_mass.hpp>
 #include <pliant/solver/newmark.hpp>
 #include <pliant/solver/newton.hpp>
+#include <pliant/solver/static_reactions.hpp>
