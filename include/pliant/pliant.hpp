@@ -1,7 +1,6 @@
 #pragma once
 
-// Everything that is independent of a backend, but what works on sparse matrices: solver/newton.hpp,
-// solver/newmark.hpp, solver/assemble.hpp and solver/assemble_mass.hpp.
+// Everything that is independent of a backend, but what works on sparse matrices: solve.hpp.
 #include <pliant/adaptation/adaptation.hpp>
 #include <pliant/adaptation/criterion/combine.hpp>
 #include <pliant/adaptation/criterion/deformation.hpp>
