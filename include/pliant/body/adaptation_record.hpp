@@ -20,6 +20,16 @@ struct LedgerEntry {
   double strain_energy;             // change, J
   double kinetic_energy;            // change, J
   std::array<double, Dim> impulse;  // given to held nodes, N s
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("time", r.time...);
+    visit("action", r.action...);
+    visit("elements", r.elements...);
+    visit("strain energy", r.strain_energy...);
+    visit("kinetic energy", r.kinetic_energy...);
+    visit("impulse", r.impulse...);
+  }
 };
 
 /// The largest mesh that refinement may make.
@@ -32,6 +42,12 @@ struct MeshLimits {
 struct LastLook {
   std::uint64_t adaptation;  // which: see Adaptation
   std::int64_t step;
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("adaptation", r.adaptation...);
+    visit("step", r.step...);
+  }
 };
 
 /// What adaptation has done to a body beyond the present mesh.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/body/archive.hpp>
 #include <pliant/body/embedding.hpp>
 #include <pliant/body/groups.hpp>
 #include <pliant/body/set_state.hpp>
@@ -129,6 +130,21 @@ class Body {
     return parts_->layout.in_user_order(parts_->layout.f);
   }
 
+  /// Writes the state to a binary stream; nothing changes. Throws Error where the stream fails. User's force
+  /// terms, listeners and limits are not in it, motions by their names alone.
+  template <class Stream>
+  void save(Stream& stream) const {
+    save_state(stream, *parts_);
+  }
+  /// Takes the state that a body made alike (mesh, material, groups, scalar; any backend) wrote; the next
+  /// integrator goes on as if nothing had happened. This body has been given the motions of driven nodes
+  /// under the same names, and its force terms. Listeners are not called. Throws Error, with the body as
+  /// it was, for a wrong body, another version, damage, truncation, and a missing motion.
+  template <class Stream>
+  void load(Stream& stream) {
+    load_state(stream, *parts_);
+  }
+
   // For a simulator that owns its state: arrays in the backend's memory, node i at [stride i], which
   // are added to and never overwritten. Laws with internal variables need the time `dt` since they were
   // committed, s. Error where a stride is smaller than the dimension.
@@ -165,6 +181,7 @@ class Body {
                                                             .material = material,
                                                             .groups = std::move(groups),
                                                             .layout = std::move(layout)});
+    parts->first = topology;
     parts->state.topology = std::move(topology);
     parts->state.prescribed = std::make_shared<Prescribed<dim> const>();
     make_arrays(*parts);

@@ -19,6 +19,20 @@ struct IntegratorState {
   double first_energy = std::numeric_limits<double>::quiet_NaN();
   double last_energy = std::numeric_limits<double>::quiet_NaN();
   double scale = 0;  // the largest of strain and kinetic energy so far, J
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("active", r.active...);
+    visit("step", r.step...);
+    visit("slower", r.slower...);
+    visit("distortion", r.distortion...);
+    visit("next check", r.next_check...);
+    visit("next refresh", r.next_refresh...);
+    visit("next watch", r.next_watch...);
+    visit("first energy", r.first_energy...);
+    visit("last energy", r.last_energy...);
+    visit("scale", r.scale...);
+  }
 };
 
 }  // namespace pliant

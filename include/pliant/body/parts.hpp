@@ -43,7 +43,7 @@ struct Parts {
   Elastic material;
   std::tuple<Group<Fs>...> groups;
   MeshLimits limits{};
-  std::uint64_t fingerprint = 0;  // of the first mesh, the material and the laws
+  std::shared_ptr<Topology<M> const> first{};  // which saved states do not repeat
 
   state_type state{};
   layout_type layout;

@@ -43,6 +43,10 @@ class Motion {
 /// Names a condition or a pressure of one body for as long as it acts.
 struct Handle {
   Index id = -1;
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("handle", r.id...);
+  }
   friend bool operator==(Handle, Handle) = default;
 };
 
@@ -56,6 +60,16 @@ struct Condition {
   DirectionMask directions;
   std::string name;    // of the motion; empty: held where it is
   Motion<Dim> motion;  // empty: held where it is
+
+  /// All but the motion, which is a function: its name stands for it.
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("handle", r.handle...);
+    visit("facets", r.facets...);
+    visit("nodes", r.nodes...);
+    visit("directions", r.directions...);
+    visit("name", r.name...);
+  }
 };
 
 /// A pressure on facets that follows the surface.
@@ -64,6 +78,13 @@ struct Pressure {
   Handle handle;
   std::vector<Facet<Dim>> facets;
   double pascals;  // positive: against the outward normal
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("handle", r.handle...);
+    visit("facets", r.facets...);
+    visit("pascals", r.pascals...);
+  }
 };
 
 /// All that a body prescribes on its boundary. Never changed: a new condition makes another.
@@ -72,6 +93,13 @@ struct Prescribed {
   std::vector<Condition<Dim>> conditions;
   std::vector<Pressure<Dim>> pressures;
   Index next_id = 0;  // of handles
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("conditions", r.conditions...);
+    visit("pressures", r.pressures...);
+    visit("next handle", r.next_id...);
+  }
 };
 
 }  // namespace pliant

@@ -56,6 +56,11 @@ class Interpolation {
       }
   }
 
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("slaves", r.slaves_...);
+  }
+
  private:
   std::vector<Slave> slaves_;
 };

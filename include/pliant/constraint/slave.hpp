@@ -12,6 +12,12 @@ namespace pliant {
 struct Slave {
   Index node = -1;
   std::vector<std::pair<Index, double>> masters;  ///< (node, weight), ascending by node
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("node", r.node...);
+    visit("masters", r.masters...);
+  }
 };
 
 }  // namespace pliant

@@ -59,6 +59,13 @@ struct Mesh {
   std::vector<Slave>
       slaves{};  // nodes that hang between others, each after the slaves among its masters
 
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("nodes", r.nodes...);
+    visit("elements", r.tables...);
+    visit("boundaries", r.boundaries...);
+    visit("slaves", r.slaves...);
+  }
   template <Element E>
   std::vector<Connectivity<E>>& elements() {
     return std::get<std::vector<Connectivity<E>>>(tables);

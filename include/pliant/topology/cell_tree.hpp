@@ -21,6 +21,15 @@ struct HierarchyCell {
   Index parent = -1;
   Index first_child = -1;  ///< -1 for a leaf
   int level = 0;           ///< 0 for the cells of the initial mesh
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("sides", r.sides...);
+    visit("nodes", r.nodes...);
+    visit("parent", r.parent...);
+    visit("first child", r.first_child...);
+    visit("level", r.level...);
+  }
 };
 
 /// A node made by refinement: the mean of its first `count` parents, 2 for the midpoint of an edge
@@ -35,6 +44,7 @@ struct NewNode {
 /// Hierarchy, whose docstring says how children are numbered.
 class CellTree {
  public:
+  CellTree() = default;
   /// Takes the nodes' number and cells whose node numbers are in range. Throws Error where more
   /// than one cell lies on one side of an edge.
   CellTree(std::vector<HierarchyCell> cells, Index nodes)
@@ -132,6 +142,14 @@ class CellTree {
         set_side(first + 3, i, inner[last]);
       }
     }
+  }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("cells", r.cells_...);
+    visit("sides of cells", r.sides_...);
+    visit("edges", r.edges_...);
+    visit("number of nodes", r.nodes_...);
   }
 
  private:

@@ -21,6 +21,15 @@ class EdgeTree {
     Index parent = -1;                   ///< the edge of which it is a half
     Index middle = -1;                   ///< the node that halves it; -1 while it is whole
     Index first_half = -1;               ///< from nodes[0] to middle; the other half follows
+
+    template <class Visit, class... R>
+    static void for_each_member(Visit const& visit, R&... r) {
+      visit("nodes", r.nodes...);
+      visit("cells", r.cells...);
+      visit("parent", r.parent...);
+      visit("middle", r.middle...);
+      visit("first half", r.first_half...);
+    }
   };
 
   [[nodiscard]] Edge const& operator[](Index e) const { return edges_[at(e)]; }
@@ -89,6 +98,12 @@ class EdgeTree {
   void make_room(std::size_t more) {
     auto const needed = edges_.size() + more;
     if (needed > edges_.capacity()) edges_.reserve(std::max(needed, 2 * edges_.size()));
+  }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("edges", r.edges_...);
+    visit("initial edges", r.initial_...);
   }
 
  private:

@@ -54,6 +54,8 @@ class Hierarchy {
     std::array<Index, 2> nodes{-1, -1};
   };
 
+  /// Of no cells.
+  Hierarchy() = default;
   /// Takes points, and cells by their nodes; the triangles are numbered first. Throws Error for
   /// nodes out of range, points that are not finite, cells that are not strictly convex and
   /// counter-clockwise, and cells that overlap at an edge.
@@ -152,6 +154,14 @@ class Hierarchy {
     // The ends of an edge are older than its middle: ascending order has masters first.
     std::ranges::sort(hanging, {}, &Slave::node);
     return compose(std::move(hanging));
+  }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("points", r.points_...);
+    visit("cells", r.tree_...);
+    visit("marks", r.boundary_...);
+    visit("number of leaves", r.leaf_count_...);
   }
 
  private:

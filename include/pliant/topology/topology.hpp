@@ -16,6 +16,14 @@ struct Topology {
   Interpolation interpolation;                      ///< its hanging nodes
   std::shared_ptr<Hierarchy const> tree;            ///< null before the first refinement
   std::vector<std::vector<double>> element_values;  ///< per type: (elements, values) that laws read
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("mesh", r.mesh...);
+    visit("hanging nodes", r.interpolation...);
+    visit("refinement tree", r.tree...);
+    visit("values of elements", r.element_values...);
+  }
 };
 
 }  // namespace pliant

@@ -1,0 +1,1 @@
+#include "body/archive_suite.hpp"
