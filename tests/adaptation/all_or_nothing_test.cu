@@ -1,0 +1,1 @@
+#include "adaptation/all_or_nothing_suite.hpp"
