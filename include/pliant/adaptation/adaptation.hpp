@@ -4,6 +4,8 @@
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/adaptation/table_check.hpp>
 #include <pliant/backend/value_at.hpp>
+#include <pliant/body/checksum.hpp>
+#include <pliant/body/plain_type_name.hpp>
 
 namespace pliant {
 
@@ -21,9 +23,9 @@ struct SetZero {
 template <Rule... Rules>
 class Adaptation {
  public:
-  explicit Adaptation(Rules... rules) : rules_(std::move(rules)...) {}
+  explicit Adaptation(Rules... rules) : key_(key_of(rules...)), rules_(std::move(rules)...) {}
 
-  /// Looks at every n-th call only; 8 when not said.
+  /// Looks every n steps only; 8 when not said.
   Adaptation&& every(int calls) && {
     set_interval(calls);
     return std::move(*this);
@@ -32,10 +34,17 @@ class Adaptation {
     set_interval(calls);
     return *this;
   }
-  /// Call after each step.
+  /// Call after each step. The body's state remembers the step of the last look, so that a run that is
+  /// rolled back or loaded looks when the one before would have.
   template <class TheBody>
   void operator()(TheBody& body) {
-    if (++calls_ % interval_ == 0) now(body);
+    auto const& state = body.state();
+    auto& looks = body.parts().state.record.looks;
+    auto last = std::ranges::find(looks, key_, &LastLook::adaptation);
+    if (last == looks.end()) last = looks.insert(last, {key_, state.steps - 1});
+    if (interval_ > 1 && state.steps - last->step < interval_) return;
+    now(body);
+    last->step = state.steps;
   }
 
   /// Looks and acts at once, whatever the interval. When it throws (refinement would exceed the mesh's
@@ -118,8 +127,21 @@ class Adaptation {
     interval_ = calls;
   }
 
+  /// Tells rules of other types or numbers apart.
+  static std::uint64_t key_of(Rules const&... rules) {
+    std::string text;
+    auto const add = [&](auto const& rule) {
+      text += detail::plain_type_name<std::remove_cvref_t<decltype(rule)>>() +
+              detail::message({" ", rule.marking.amount, " ", rule.marking.floor, " ",
+                               rule.marking.budget, "\n"});
+    };
+    (add(rules), ...);
+    return checksum(text);
+  }
+
+  std::uint64_t key_;  // of the last look in a body's record
   std::tuple<Rules...> rules_;
-  int interval_ = 8, calls_ = 0;
+  int interval_ = 8;
 };
 
 }  // namespace pliant
