@@ -12,7 +12,8 @@ void make_arrays(Parts& parts) {
   auto& state = parts.state;
   state.u = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
   state.v = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
-  state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
+  if (state.work.size() == 0)  // else it is kept: work does not belong to a topology
+    state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
   parts.no_counters = zeros<double>(parts.backend, 1);
   parts.for_each_type([&](auto& table, auto& elements) {
     using Table = std::remove_reference_t<decltype(table)>;
