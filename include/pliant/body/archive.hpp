@@ -6,6 +6,7 @@
 #include <pliant/body/checksum.hpp>
 #include <pliant/body/member_bytes.hpp>
 #include <pliant/body/signature.hpp>
+#include <pliant/body/leapfrog_energy.hpp>
 
 // States in binary streams, in the byte order of the machine:
 //   magic (8 bytes)  version (4)  length of the content (8)  content  checksum of all before (8)
@@ -214,7 +215,7 @@ void load_state(Stream& stream, Parts& parts) {
   parts.checkpoint = std::move(checkpoint);
   parts.has_checkpoint = has_checkpoint;
   parts.watched_energy = nullptr;
-  if (watched) parts.watched_energy = [](Parts& p) { return total_energy_of(p); };
+  if (watched) parts.watched_energy = leapfrog_energy<Parts>;
   parts.integrator = nullptr;
 }
 

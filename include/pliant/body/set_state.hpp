@@ -42,14 +42,17 @@ Vector<T, int{Dim}> vector_of(std::array<double, Dim> const& x) {
 }
 }  // namespace detail
 
-/// Runs a change of loads; what it adds to the potential energy is booked as their work.
+/// Runs a change of loads; what it adds to the energy that is watched, or to the potential one, is booked as
+/// their work.
 template <class Parts, class Change>
 void change_loads(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
-  double const before = potential_energy_of(parts);
-  change();
-  ++parts.revision;
-  double const added = potential_energy_of(parts) - before;
+  double const before = parts.watched_energy ? 0 : potential_energy_of(parts);
+  double added = watched_change(parts, [&] {
+    change();
+    ++parts.revision;
+  });
+  if (!parts.watched_energy) added = potential_energy_of(parts) - before;
   if (!std::isfinite(added)) return;
   auto work = download<double>(parts.state.work);
   work[static_cast<std::size_t>(Work::changed_loads)] += added;

@@ -8,7 +8,7 @@
 #include <pliant/body/ledger.hpp>
 #include <pliant/solver/distortion.hpp>
 #include <pliant/solver/leapfrog.hpp>
-#include <pliant/solver/leapfrog_energy.hpp>
+#include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/solver/stable_step.hpp>
 
 namespace pliant {
