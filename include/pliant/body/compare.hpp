@@ -13,10 +13,16 @@ struct CompareMember {
   template <class U>
   void operator()(char const* name, U const& a, U const& b) const {
     if (!different.empty()) return;
-    std::string one, other;
-    ByteWriter(one).put(a);
-    ByteWriter(other).put(b);
-    if (one != other) different = name;
+    if constexpr (HasMembers<U const>) {
+      std::string within;
+      U::for_each_member(CompareMember{within}, a, b);
+      if (!within.empty()) different = message({name, ": ", within});
+    } else {
+      std::string one, other;
+      ByteWriter(one).put(a);
+      ByteWriter(other).put(b);
+      if (one != other) different = name;
+    }
   }
 };
 }  // namespace detail
