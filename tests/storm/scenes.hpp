@@ -1,0 +1,105 @@
+#pragma once
+
+#include "storm/storm.hpp"
+
+namespace pliant::storm {
+
+inline constexpr Elastic soft{5.2, 0.3, 1.5};
+
+/// Some of `count` elements.
+inline std::vector<Index> some(Index count, std::size_t one_in, test::Random& random) {
+  std::vector<Index> list;
+  for (Index e = 0; e < count; ++e)
+    if (random.below(one_in) == 0) list.push_back(e);
+  return list;
+}
+template <Element E, class TheBody>
+std::vector<Index> some_of(TheBody const& body, std::size_t one_in, test::Random& random) {
+  return some(static_cast<Index>(body.mesh().template elements<E>().size()), one_in, random);
+}
+
+/// Triangles and quadrilaterals of two and three laws, refined as they go.
+template <Backend B>
+struct Plane {
+  using TriLinear = Formulation<Tri3, Gauss<1>, Hooke>;
+  using TriRubber = Formulation<Tri3, Gauss<1>, NeoHookean>;
+  using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
+  using Middle = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+  using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+  using body_type = Body<B, Mesh<Tri3, Quad4>, TriRubber, TriLinear, Rubber, Middle, Linear>;
+
+  B backend{};
+  unsigned seed = 1;
+
+  body_type body() const {
+    body_type made{backend,
+                   test::mixed_mesh(5, seed),
+                   soft,
+                   Group<TriRubber>{},
+                   Group<TriLinear>{},
+                   Group<Rubber>{},
+                   Group<Middle>{},
+                   Group<Linear>{}};
+    set_mesh_limits(made, {.nodes = 150});
+    return made;
+  }
+  void switch_groups(body_type& body) const {
+    static Adaptation rules{when<TriLinear>(Rotation{}).above(0.02).template become<TriRubber>(),
+                            when<TriRubber>(Rotation{}).below(0.01).template become<TriLinear>(),
+                            when<Linear>(Rotation{}).above(0.01).template become<Middle>(),
+                            when<Middle>(Rotation{}).above(0.03).template become<Rubber>(),
+                            when<Rubber>(Rotation{}).below(0.02).template become<Middle>(),
+                            when<Middle>(Rotation{}).below(0.005).template become<Linear>()};
+    rules(body);
+  }
+  void make_finer(body_type& body) const {
+    static Adaptation finer = Adaptation{when<TriRubber>(ForceIntensity<>{})
+                                             .above_fraction_of_largest(0.98)
+                                             .refine({.max_level = 2})}
+                                  .every(60);
+    if (body.nodes() < 120) finer(body);
+  }
+  void refine(body_type& body, unsigned seed_of_marks) const {
+    test::Random random(seed_of_marks);
+    auto triangles = some_of<Tri3>(body, 30, random);
+    pliant::refine(body, {triangles, some_of<Quad4>(body, 30, random)}, 2);
+  }
+  void assign(body_type& body, unsigned seed_of_marks) const {
+    test::Random random(seed_of_marks);
+    body.template assign<TriLinear>(some_of<Tri3>(body, 10, random));
+    body.template assign<Rubber>(some_of<Quad4>(body, 10, random));
+    body.template assign<Middle>(some_of<Quad4>(body, 20, random));
+  }
+};
+
+/// Solid elements of two laws; those without internal variables switch between them.
+template <Backend B, Element E, template <class> class Second>
+struct Solid {
+  using First = Formulation<E, Gauss<E::cell::corners == 4 ? 1 : 2>, SaintVenantKirchhoff>;
+  using Other = Formulation<E, Gauss<E::cell::corners == 4 ? 1 : 2>, Second>;
+  using body_type = Body<B, Mesh<E>, First, Other>;
+
+  B backend{};
+  Group<Other> other{};
+  unsigned seed = 1;
+
+  body_type body() const {
+    return {backend, test::distorted_mesh<E>(4, seed), soft, Group<First>{}, other};
+  }
+  void switch_groups(body_type& body) const {
+    static Adaptation rules =
+        Adaptation{when<First>(Rotation{}).above(0.02).template become<Other>(),
+                   when<Other>(Rotation{}).below(0.01).template become<First>()}
+            .every(5);
+    rules(body);
+  }
+  void make_finer(body_type&) const {}
+  void refine(body_type&, unsigned) const {}
+  void assign(body_type& body, unsigned seed_of_marks) const {
+    test::Random random(seed_of_marks);
+    body.template assign<First>(some_of<E>(body, 10, random));
+    body.template assign<Other>(some_of<E>(body, 10, random));
+  }
+};
+
+}  // namespace pliant::storm
