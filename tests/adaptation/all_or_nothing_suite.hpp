@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/law/viscosity.hpp>
+#include <pliant/law/decorators/viscosity.hpp>
 
 #include "adaptation/plane_bodies.hpp"
 

@@ -10,7 +10,7 @@ using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 /// The energy that leapfrog keeps, J, less what is booked.
 template <class TheBody>
 double kept_energy(TheBody& body) {
-  return leapfrog_energy_of(body.parts()) - booked_energy(body.parts());
+  return leapfrog_energy(body.parts()).kept() - booked_energy(body.parts());
 }
 
 TEST_CASE("changes between steps are booked to rounding", "[body]") {

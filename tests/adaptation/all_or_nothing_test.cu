@@ -1,1 +1,0 @@
-#include "adaptation/all_or_nothing_suite.hpp"

@@ -1,1 +1,0 @@
-#include "body/archive_suite.hpp"
