@@ -11,18 +11,17 @@ template <class E, class B>
 void time_regroup(benchmark::State& state, B const& backend, int cells) {
   auto& [body, before, after] = made_once([&] {
     auto b = two_laws<E>(backend, cells);
-    auto const tags = [&b] {
-      return download<Tag>(b.parts().layout.template table<E>().elements.tags());
-    };
+    auto const tags = [&b] { return download<Tag>(std::get<0>(b.state().elements).tags); };
     auto const old_tags = tags();
     exchange_above<E>(ratio_exceeded_by<E>(0.01, b)).now(b);
     auto const new_tags = tags();
     return std::tuple{std::move(b), old_tags, new_tags};
   });
   auto& elements = body.parts().layout.template table<E>().elements;
+  auto& tags = std::get<0>(body.parts().state.elements).tags;
   bool there = true;
   for (auto _ : state) {
-    elements.tags().upload(there ? before : after);
+    tags.upload(there ? before : after);
     there = !there;
     state.SetIterationTime(seconds(backend, [&] { elements.regroup(); }));
   }

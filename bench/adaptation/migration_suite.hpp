@@ -72,8 +72,8 @@ void time_mixed_force(benchmark::State& state, B const& backend, int cells) {
     return b;
   });
   measure(state, backend, [&] {
-    body.forget_forces();
-    body.evaluate_forces();
+    forget_forces(body.parts());
+    evaluate_forces(body.parts());
   });
   report_elements(state, body);
 }

@@ -14,7 +14,9 @@ void time_copy(benchmark::State& state, Cuda<float> const& backend) {
   using Row = pliant::detail::Piece<float, 4>;
   constexpr Index count = 1 << 26;
   auto from = zeros<Row>(backend, count), to = zeros<Row>(backend, count);
-  measure(state, backend, [&] { backend.for_each(count, Copy<Row>{from.data(), to.data()}); });
+  measure(state, backend, [&] {
+    backend.for_each(count, detail::CopyValue<Row>{from.data(), to.data()});
+  });
   report_rate(state, "bytes_per_second", 2.0 * count * sizeof(Row));
 }
 

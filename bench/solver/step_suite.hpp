@@ -11,8 +11,10 @@ namespace pliant::bench {
 /// Steps of one size, without checks of the state in between.
 template <class TheBody>
 CentralDifference bare_steps(TheBody& body) {
-  return CentralDifference{
-      {.step = 0.3 * stable_step(body), .check_interval = 1 << 30, .refresh_interval = 1 << 30}};
+  return CentralDifference{{.step = 0.3 * stable_step(body),
+                            .check_interval = 1 << 30,
+                            .refresh_interval = 1 << 30,
+                            .watch_interval = 1 << 30}};
 }
 
 template <class F, class B>

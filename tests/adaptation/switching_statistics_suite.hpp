@@ -90,7 +90,7 @@ TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the l
     constexpr int most = std::numeric_limits<int>::max();
     constexpr std::int64_t later = 4 * std::int64_t{most};
     auto body = bending_body(backend);
-    auto& table = body.layout().template table<Quad4>();
+    auto& table = body.parts().layout.template table<Quad4>();
     auto const n = static_cast<std::size_t>(table.count());
     REQUIRE(n > 3);
     table.statistics.start(backend, table.count(), 10);
@@ -104,7 +104,7 @@ TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the l
       expected[static_cast<std::size_t>(table.user_element[1])] = most;
       CHECK(switch_counts<Quad4>(body) == expected);
     };
-    for (int k = 0; k < 4; ++k) body.tick(0, most);
+    for (int k = 0; k < 4; ++k) body.parts().state.steps += most;
 
     auto const go = when<Linear>(Rotation{}).above(-1);
     Adaptation{go.stay(later - 9).template become<Turning>()}.now(body);
@@ -115,7 +115,7 @@ TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the l
     auto const elements = static_cast<double>(n);
     CHECK(element_steps<Quad4>(body) ==
           std::vector<double>{elements * static_cast<double>(later - 10), 0});
-    body.tick(0, 7);
+    body.parts().state.steps += 7;
     Adaptation{when<Turning>(Rotation{}).above(-1).template become<Linear>()}.now(body);
     counts_are(most, 65537);
     CHECK(element_steps<Quad4>(body) ==

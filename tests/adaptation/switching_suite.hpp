@@ -116,7 +116,7 @@ TEST_CASE("an element stays as long as its rule says", "[adaptation]") {
     std::vector<long> since(model.size(), 0);
     int waiting = 0, switched = 0;
     for (int k = 0; k < 40; ++k) {
-      body.step(1e-9, 1 + static_cast<int>(random.below(2)));
+      take_steps(body.parts(), 1e-9, 1 + static_cast<int>(random.below(2)));
       body.set_displacements(random.field<2>(mesh.nodes.size(), 0.01));
       auto const value = evaluate<Quad4>(body, EdgeLengthRatio{});
       for (std::size_t e = 0; e < model.size(); ++e) {
@@ -340,7 +340,7 @@ TEST_CASE("a criterion that throws leaves groups and statistics as they were on 
       auto body = three_group_body(Reference<double>{}, mesh);
       body.set_displacements(Random(2).field<2>(mesh.nodes.size(), 0.01));
       body.template assign<Turning>({3, 5});
-      body.step(1e-9, 3);
+      take_steps(body.parts(), 1e-9, 3);
       auto const groups = body.template groups_of<Quad4>();
       auto const steps = element_steps<Quad4>(body);
       bool const throws = last <= all - 2;

@@ -106,7 +106,7 @@ TEST_CASE("no static solution is found with a node pushed through its element", 
   std::vector<Point<3>> u(4, Point<3>{});
   u[3] = {0, 0, -1.5};
   body.set_displacements(u);
-  CHECK_FALSE(std::isfinite(body.strain_energy()));
+  CHECK_FALSE(std::isfinite(strain_energy(body)));
   CHECK_THROWS_AS(solve_static(body), Error);
   CHECK(body.displacements()[3][2] == -1.5);
 }

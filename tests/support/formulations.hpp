@@ -168,7 +168,7 @@ auto body_of(B const& backend, M const& mesh, Elastic const& material = soft) {
 /// The law of a body of one formulation at a point of any element, at rest so far.
 template <class F, class TheBody>
 auto law_at_a_point(TheBody const& body) {
-  auto const law = body.template law_of<F>();
+  auto const law = body.parts().template law_of<F>();
   if constexpr (element_values<F> > 0) {
     Vector<double, element_values<F>> values;
     for (int k = 0; k < element_values<F>; ++k)
