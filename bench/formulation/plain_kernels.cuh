@@ -45,7 +45,7 @@ void launch_plain(Cuda<T> const& backend, CudaElements<T, Nodes> const& elements
   void (*const plain)(pliant::detail::ElementView<Nodes>, Kernel, NodeField<T, C>, Fields...) =
       plain_force<Which, Nodes, T, C, Kernel, Fields...>;
   pliant::detail::launch("plain force", {(elements.count() + threads - 1) / threads, threads},
-                         backend.stream(), plain, elements.view(), kernel, out, fields...);
+                         backend.stream(), plain, elements.view({nullptr}), kernel, out, fields...);
 }
 
 }  // namespace pliant::bench

@@ -8,18 +8,14 @@ using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<3>, SaintVenantKirchhoff>;
 using Rubber = Formulation<Quad4, Gauss<3>, NeoHookean>;
 
-/// The forces of some elements alone, from a body of the same nodes that has no others.
+/// The forces of some elements alone, from a body that has no others.
 template <class F, class B, class M>
-FieldOf<2> forces_of(B const& backend, M mesh, std::vector<Index> const& members,
+FieldOf<2> forces_of(B const& backend, M const& mesh, std::vector<Index> const& members,
                      FieldOf<2> const& u) {
-  using E = typename F::element;
-  Mesh<E> part;
-  part.nodes = mesh.nodes;
-  for (Index e : members)
-    part.template elements<E>().push_back(mesh.template elements<E>()[static_cast<std::size_t>(e)]);
   if (members.empty()) return FieldOf<2>(u.size());
-  auto body = body_of<F>(backend, part);
-  return forces_at(body, u);
+  PartOfMesh<typename F::element> const part(mesh, members);
+  auto body = body_of<F>(backend, part.mesh);
+  return part.put(forces_at(body, part.take(u)), u.size());
 }
 
 TEST_CASE("each element has the forces of its group", "[body]") {

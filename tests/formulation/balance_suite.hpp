@@ -28,7 +28,8 @@ TEST_CASE("masses add up to density times volume, about the right centre", "[for
   on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
     auto const mesh = distorted_mesh<typename F::element>(5);
 
-    auto const masses = body_of<F>(B{}, mesh).masses();
+    auto const body = body_of<F>(B{}, mesh);
+    auto const& masses = body.parts().layout.mass_list;
 
     double sum = 0;
     Point<F::dim> centre{};

@@ -32,7 +32,10 @@ FieldOf<TheBody::dim> tangent_product(TheBody& body, FieldOf<TheBody::dim> const
   constexpr std::size_t dim = TheBody::dim;
   auto const at = upload(body.backend(), flat<T>(u)), along = upload(body.backend(), flat<T>(du));
   auto f = upload(body.backend(), flat<T>(FieldOf<dim>(u.size())));
-  body.add_tangent_product(at.data(), along.data(), f.data());
+  if constexpr (TheBody::has_internal_variables)
+    body.add_tangent_product(at.data(), along.data(), f.data(), 1, TheBody::dim, 0);
+  else
+    body.add_tangent_product(at.data(), along.data(), f.data());
   return per_node<int{dim}>(download<T>(f));
 }
 

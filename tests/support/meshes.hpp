@@ -106,4 +106,42 @@ inline Mesh<Tri3, Quad4> mixed_mesh(int n, unsigned seed = 1) {
   return shuffled(mesh, seed);
 }
 
+/// Some elements of a mesh, with their nodes alone.
+template <Element E>
+struct PartOfMesh {
+  Mesh<E> mesh;
+  std::vector<Index> nodes;  // in the whole mesh
+
+  PartOfMesh(Mesh<E> const& whole, std::vector<Index> const& members) {
+    std::vector<Index> number(whole.nodes.size(), -1);
+    for (Index e : members) {
+      auto element = whole.template elements<E>()[static_cast<std::size_t>(e)];
+      for (Index& node : element) {
+        Index& own = number[static_cast<std::size_t>(node)];
+        if (own < 0) {
+          own = static_cast<Index>(nodes.size());
+          nodes.push_back(node);
+          mesh.nodes.push_back(whole.nodes[static_cast<std::size_t>(node)]);
+        }
+        node = own;
+      }
+      mesh.template elements<E>().push_back(element);
+    }
+  }
+  /// The values at the part's nodes, and the way back.
+  template <class V>
+  std::vector<V> take(std::vector<V> const& values) const {
+    std::vector<V> own;
+    for (Index node : nodes) own.push_back(values[static_cast<std::size_t>(node)]);
+    return own;
+  }
+  template <class V>
+  std::vector<V> put(std::vector<V> const& own, std::size_t count) const {
+    std::vector<V> values(count, V{});
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      values[static_cast<std::size_t>(nodes[i])] = own[i];
+    return values;
+  }
+};
+
 }  // namespace pliant::test

@@ -94,7 +94,6 @@ class Adaptation {
   void switch_groups(Parts& parts) const {
     if (parts.backend.sum(1, detail::ValueAt<double>{parts.moves.data()}) == 0) return;
     parts.timers.criteria.start();
-    leave_half_kick_pending(parts);
     evaluate_accelerations(parts);
     for_each_check(parts, [](auto const& check) { check.act(); });
     parts.timers.criteria.stop();
@@ -131,9 +130,12 @@ class Adaptation {
   static std::uint64_t key_of(Rules const&... rules) {
     std::string text;
     auto const add = [&](auto const& rule) {
-      text += detail::plain_type_name<std::remove_cvref_t<decltype(rule)>>() +
-              detail::message({" ", rule.marking.amount, " ", rule.marking.floor, " ",
-                               rule.marking.budget, "\n"});
+      text += detail::plain_type_name<std::remove_cvref_t<decltype(rule)>>();
+      for (double number :
+           {rule.marking.amount, rule.marking.floor, static_cast<double>(rule.marking.budget)}) {
+        text += ' ';
+        detail::MessagePiece(number).add_to(text);
+      }
     };
     (add(rules), ...);
     return checksum(text);

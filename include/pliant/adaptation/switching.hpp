@@ -14,7 +14,8 @@ struct SwitchTarget {
   std::int64_t* since;     // step of the last change of group
   std::int32_t* switches;  // changes of group so far
   std::int64_t step;
-  T pending_half_kick;  // s
+  T half_step;      // s: of the integrator, 0 where there is none
+  bool is_pending;  // whether the last half-kick is still to be given
 };
 
 /// Moves the elements whose next group is another: tags change, and statistics are updated.
@@ -66,10 +67,10 @@ struct ActVisitor {
   static constexpr bool goes = From != To && (goes_by<From, To, Rules>() || ...);
 
   /// Seldom called, so kept out of line; constexpr is what lets device code call it. What leapfrog keeps is its
-  /// modified energy; with velocities v₋ of the half step before and accelerations a it is
-  /// W + v₋·M·v₋/2 − Δt/2 v₋·∇W + Δt²/12 (v₋·∇²W v₋ + a·M·a) to second order (Hairer, Lubich and Wanner,
-  /// Geometric Numerical Integration, IX.3). Of its change, all but the square of the forces' is an
-  /// element's own.
+  /// modified energy (Hairer, Lubich and Wanner, Geometric Numerical Integration, IX.3), to second order
+  /// W + v·M·v/2 + Δt² (v·∇²W v − a·M·a/2)/12 with velocities of the present time, and with those of the half
+  /// step before, while a half-kick is pending, W + v·M·v/2 − Δt/2 v·∇W + Δt² (v·∇²W v + a·M·a)/12. Of
+  /// its change, all but the square of the forces' is an element's own.
   template <int From, int To, class Again, class Tally>
   [[gnu::noinline]] constexpr void move(Index e, Again const& again, Tally const& tally) const {
     using Old = typename Table::template formulation<From>;
@@ -91,10 +92,10 @@ struct ActVisitor {
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];
     }
     T const stiffer = stiff_before - dot(tangent_product<New>(new_law, rest, u, v), v);  // v·ΔK v
-    T const half = target.pending_half_kick;
-    tally(Counters::kinetic(From, To),
-          static_cast<double>(half * dot(difference, v) +
-                              half * half / T(3) * (stiffer + T(2) * dot(difference, a))));
+    T const half = target.half_step, turn = dot(difference, a);
+    T const first = target.is_pending ? half * dot(difference, v) : T(0);
+    T const second = target.is_pending ? stiffer + T(2) * turn : stiffer - turn;
+    tally(Counters::kinetic(From, To), static_cast<double>(first + half * half / T(3) * second));
     tally(Counters::steps_of(From), static_cast<double>(target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);
     tally(Counters::energy(From, To), static_cast<double>(after - before));

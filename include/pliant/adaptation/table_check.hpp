@@ -108,8 +108,13 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
   SwitchTarget<T> target() const {
     auto& statistics = elements_.statistics;
-    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
-            parts_.state.steps, static_cast<T>(parts_.state.pending_half_kick)};
+    return {elements_.tags.data(),       statistics.since.data(),
+            statistics.switches.data(),  parts_.state.steps,
+            static_cast<T>(half_step()), parts_.state.pending_half_kick != 0};
+  }
+  double half_step() const {
+    double const pending = parts_.state.pending_half_kick;
+    return pending != 0 ? pending : parts_.state.integrator.step / 2;
   }
   template <class Visit>
   void each_kept(Visit const& visit) const {

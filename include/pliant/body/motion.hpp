@@ -89,8 +89,8 @@ struct Accelerate {
   }
 };
 
-/// The work of mass damping in the two half-kicks of an Advance, J: what they change beyond the work of the other
-/// forces, m (v'² − v²)/2 less (a·v_half h/2 ∓ a² h²/8) for each, so that it is zero without damping.
+/// The work of mass damping in one half-kick of an Advance, J: what it changes beyond the work of the other
+/// forces, m (v'² − v²)/2 − h a·v_half ∓ h² a²/2 of time h, so that it is zero without damping.
 template <class T, int Dim>
 struct DampingWork {
   NodeField<T const, Dim> v, f;
@@ -98,7 +98,8 @@ struct DampingWork {
   DirectionMask const* held;
   ExternalForces<T, Dim> external;
   HalfKick<T> lag, kick;
-  double lag_time, kick_time;  // s
+  double time;  // s: of the half-kick that is looked at
+  bool first;   // whether that is the lag
 
   PLIANT_HOST_DEVICE double operator()(Index i) const {
     T const m = mass[i];
@@ -109,14 +110,13 @@ struct DampingWork {
       T force = f(i, k);
       if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
       T const a = force / m + external.gravity[k];
-      T const before = v(i, k), now = lag(before, a), after = kick(now, a);
-      auto const half = [&](T half_speed, T from, T to, double time, double sign) {
-        double const x = static_cast<double>(from), y = static_cast<double>(to);
-        double const p = static_cast<double>(a), h = static_cast<double>(half_speed);
-        return (y * y - x * x) / 2 - time * p * h + sign * time * time * p * p / 2;
-      };
-      work += static_cast<double>(m) *
-              (half(before, before, now, lag_time, -1) + half(after, now, after, kick_time, 1));
+      T const start = v(i, k), middle = lag(start, a);
+      double const from = static_cast<double>(first ? start : middle);
+      double const to = static_cast<double>(first ? middle : kick(middle, a));
+      double const pull = static_cast<double>(a);
+      double const half = first ? from : to, sign = first ? -1 : 1;
+      work += static_cast<double>(m) * ((to * to - from * from) / 2 - time * pull * half +
+                                        sign * time * time * pull * pull / 2);
     }
     return work;
   }

@@ -81,7 +81,10 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
   if (node < 0 || node >= parts.layout.nodes)
     throw Error("body.set_load: there is no node ", node, "; nodes are numbered 0 to ",
                 parts.layout.nodes - 1);
-  for (double x : force) detail::check_number<T>("body.set_load (a force)", x);
+  for (double x : force)
+    if (!std::isfinite(static_cast<T>(x)))
+      throw Error("body.set_load: the force at node ", node,
+                  std::isfinite(x) ? " is too large for single precision" : " is not finite");
   synchronize_velocities(parts);
   make_loads(parts);
   parts.backend.for_each(1, detail::SetLoad<T, Parts::dim>{

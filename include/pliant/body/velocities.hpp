@@ -42,15 +42,20 @@ void book_work(Parts& parts, double lag, double kick, bool drifts) {
   auto const external = external_forces(parts);
   double* const work = parts.state.work.data();
   typename Parts::ConstField const v{parts.state.v.data()}, f{layout.f.data()};
-  if (parts.state.damping > 0)
-    parts.backend.add_sum(
-        layout.nodes,
-        DampingWork<T, dim>{v, f, layout.mass.data(), layout.held.data(), external,
-                            half_kick(parts, lag), half_kick(parts, kick), lag, kick},
-        work + static_cast<int>(Work::damping));
-  for (auto const& driven : parts.driven)
-    driven.add_work(parts.backend, v, f, layout.mass.data(), external.gravity, external.load, lag,
-                    kick, drifts, work + static_cast<int>(Work::motions));
+  // One sum for each half-kick: reading the velocities between them changes no bit of the sums.
+  for (bool first : {true, false}) {
+    if ((first ? lag : kick) == 0) continue;
+    if (parts.state.damping > 0)
+      parts.backend.add_sum(layout.nodes,
+                            DampingWork<T, dim>{v, f, layout.mass.data(), layout.held.data(),
+                                                external, half_kick(parts, lag),
+                                                half_kick(parts, kick), first ? lag : kick, first},
+                            work + static_cast<int>(Work::damping));
+    for (auto const& driven : parts.driven)
+      driven.add_work(parts.backend, v, f, layout.mass.data(), external.gravity, external.load,
+                      first ? lag : 0, first ? 0 : kick, drifts && !first,
+                      work + static_cast<int>(Work::motions));
+  }
 }
 
 }  // namespace detail
@@ -92,18 +97,6 @@ void synchronize_velocities(Parts& parts) {
   evaluate_forces(parts);
   advance(parts, parts.state.pending_half_kick, 0, 0);
   parts.state.pending_half_kick = 0;
-}
-
-/// The inverse of synchronize_velocities, where an integrator has taken a step: with velocities of the half step
-/// before, a change of forces changes the energy that leapfrog keeps, W + v₋·M·v₊/2 with v₊ = v₋ + Δt a,
-/// by ΔW + Δt/2 Δf·v₋ exactly, which each element knows of itself.
-template <class Parts>
-void leave_half_kick_pending(Parts& parts) {
-  double const half = parts.state.integrator.step / 2;
-  if (parts.state.pending_half_kick != 0 || half == 0) return;
-  evaluate_forces(parts);
-  advance(parts, -half, 0, 0);
-  parts.state.pending_half_kick = half;
 }
 
 /// Brings parts.acceleration up to the present forces, those of slaves interpolated.
