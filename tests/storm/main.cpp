@@ -1,9 +1,10 @@
 // Long runs of random events; see storm.hpp.
 //
-//   storm [STEPS] [--seed N] [--ledger] [--scene NAME]
+//   storm [STEPS] [--seed N] [--cells N] [--ledger] [--scene NAME]
 //
 //   STEPS         of each scene on each backend; 2000 when not said
 //   --seed N      of the random numbers; 1 when not said
+//   --cells N     along the edges of meshes; few when not said, too few for several threads
 //   --ledger      leave out what the energy ledger does not know, and check that it closes
 //   --scene NAME  plane, tetrahedra or hexahedra alone
 
@@ -48,15 +49,21 @@ void run_on(B const& backend, std::string const& scene, storm::Options options) 
   using Relaxing = Prony<NeoHookean>::law<double>;
   auto const called = [&](char const* name) { return std::string(B::name()) + ", " + name; };
   if (scene.empty() || scene == "plane")
-    run(called("plane").c_str(), storm::Plane<B>{backend, options.seed}, options);
+    run(called("plane").c_str(),
+        storm::Plane<B>{backend, options.seed, options.cells ? options.cells : 5}, options);
   if (scene.empty() || scene == "tetrahedra")
-    run(called("tetrahedra").c_str(), storm::Solid<B, Tet4, NeoHookean>{backend, {}, options.seed},
+    run(called("tetrahedra").c_str(),
+        storm::Solid<B, Tet4, NeoHookean>{
+            backend, {}, options.seed, options.cells ? options.cells : 4},
         options);
   // Laws with internal variables dissipate.
   if (!options.ledger && (scene.empty() || scene == "hexahedra"))
     run(called("hexahedra").c_str(),
         storm::Solid<B, Hex8, Prony<NeoHookean>::law>{
-            backend, {Relaxing{NeoHookean<double>::from(storm::soft), {0.4}, {2.0}}}, options.seed},
+            backend,
+            {Relaxing{NeoHookean<double>::from(storm::soft), {0.4}, {2.0}}},
+            options.seed,
+            options.cells ? options.cells : 4},
         options);
 }
 
@@ -71,6 +78,8 @@ int main(int count, char** arguments) {
       options.ledger = true;
     else if (argument == "--seed" && k + 1 < count)
       options.seed = static_cast<unsigned>(std::strtoul(arguments[++k], nullptr, 10));
+    else if (argument == "--cells" && k + 1 < count)
+      options.cells = static_cast<int>(std::strtol(arguments[++k], nullptr, 10));
     else if (argument == "--scene" && k + 1 < count)
       scene = arguments[++k];
     else if (char* end = nullptr; std::strtoll(argument.c_str(), &end, 10) > 0 && *end == '\0')

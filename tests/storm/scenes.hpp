@@ -30,19 +30,21 @@ struct Plane {
 
   B backend{};
   unsigned seed = 1;
+  int cells = 5;  // along an edge
 
   body_type body() const {
     body_type made{backend,
-                   test::mixed_mesh(5, seed),
+                   test::mixed_mesh(cells, seed),
                    soft,
                    Group<TriRubber>{},
                    Group<TriLinear>{},
                    Group<Rubber>{},
                    Group<Middle>{},
                    Group<Linear>{}};
-    set_mesh_limits(made, {.nodes = 150});
+    set_mesh_limits(made, {.nodes = most_nodes()});
     return made;
   }
+  std::size_t most_nodes() const { return static_cast<std::size_t>(6 * cells * cells); }
   void switch_groups(body_type& body) const {
     static Adaptation rules{when<TriLinear>(Rotation{}).above(0.02).template become<TriRubber>(),
                             when<TriRubber>(Rotation{}).below(0.01).template become<TriLinear>(),
@@ -57,7 +59,7 @@ struct Plane {
                                              .above_fraction_of_largest(0.98)
                                              .refine({.max_level = 2})}
                                   .every(60);
-    if (body.nodes() < 120) finer(body);
+    if (body.nodes() < static_cast<Index>(most_nodes() - most_nodes() / 5)) finer(body);
   }
   void refine(body_type& body, unsigned seed_of_marks) const {
     test::Random random(seed_of_marks);
@@ -82,9 +84,10 @@ struct Solid {
   B backend{};
   Group<Other> other{};
   unsigned seed = 1;
+  int cells = 4;  // along an edge
 
   body_type body() const {
-    return {backend, test::distorted_mesh<E>(4, seed), soft, Group<First>{}, other};
+    return {backend, test::distorted_mesh<E>(cells, seed), soft, Group<First>{}, other};
   }
   void switch_groups(body_type& body) const {
     static Adaptation rules =

@@ -15,6 +15,7 @@ namespace pliant::storm {
 struct Options {
   std::int64_t steps = 2000;
   unsigned seed = 1;
+  int cells = 0;        // along the edges of meshes; 0: few
   bool ledger = false;  // leave out what the ledger does not know, and check that it closes
 };
 
