@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include <pliant/body/leapfrog_energy.hpp>
@@ -95,11 +96,11 @@ class CentralDifference {
     parts.watched_energy = leapfrog_energy<Parts>;
     auto& own = parts.state.integrator;
     bool const resumed = own.active && parts.integrator == nullptr;
-    if (own.active && (parts.integrator == this || resumed)) {
-      parts.integrator = this;
+    if (own.active && (parts.integrator == identity_ || resumed)) {
+      parts.integrator = identity_;
       return;
     }
-    parts.integrator = this;
+    parts.integrator = identity_;
     parts.has_checkpoint = false;
     own = IntegratorState{.active = true};
     own.next_check = own.next_refresh = own.next_watch = parts.state.steps;
@@ -177,6 +178,7 @@ class CentralDifference {
   }
 
   CentralDifferenceOptions options_;
+  std::shared_ptr<void const> identity_ = std::make_shared<char>();  // copies share it
   double step_ = 0;
   int retries_ = 0;
 };

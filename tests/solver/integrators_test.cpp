@@ -1,0 +1,1 @@
+#include "solver/integrators_suite.hpp"
