@@ -238,7 +238,7 @@ void pushed_through(Table& table) {
     std::vector<Point<3>> u(4);
     u[3] = {0, 0, -1.5};
     body.set_displacements(u);
-    double const finite = std::isfinite(body.strain_energy()) ? 1 : 0;
+    double const finite = std::isfinite(strain_energy(body)) ? 1 : 0;
     table.compare({"6, a corner pushed through, W is finite", name_of<F>(), "one element"}, finite,
                   takes_inversion<F> ? Printed{1, 0, "1"} : Printed{0, 0, "0"});
   };

@@ -68,10 +68,6 @@ class StaticNewton {
     if (options_.load_steps > 1) {
       share_ = 0;
       balance = evaluate(u_).force;
-      if (!balance.allFinite())
-        throw Error(
-            "solve_static: the forces of the body where it starts are not finite: it is folded; "
-            "start from displacements without folds");
       problem_.keep_unknowns(balance);
     }
     for (int step = 1; step <= options_.load_steps; ++step) {
@@ -115,6 +111,10 @@ class StaticNewton {
       report_.energy = now.energy;
       bool const finite = std::isfinite(report_.residual) && std::isfinite(now.energy);
       if (!driving && finite && (settled || report_.residual <= options_.tolerance * scale)) return;
+      if (!finite && iteration == 0)
+        throw Error("solve_static: energy or forces are not finite where load step ", step_, " of ",
+                    options_.load_steps,
+                    " starts: an element is folded there; start from displacements without folds");
       if (iteration == options_.max_iterations || !finite)
         throw Error("solve_static: no convergence in load step ", step_, " of ",
                     options_.load_steps, " after ", iteration, " iterations, residual ",
