@@ -44,6 +44,9 @@ auto body_of(M const& mesh, Elastic const& material) {
 
 /// For elements much smaller than their body: their large forces cancel, and leave fewer digits.
 inline constexpr NewtonOptions where_forces_cancel{.tolerance = 1e-7};
+/// For corners where the exact solution folds or is about to, with elements graded towards them: the smallest fold
+/// between the points of their rules, far from the places of interest.
+inline constexpr NewtonOptions where_corners_fold{.tolerance = 1e-7, .accept_folded = true};
 
 template <class M>
 void add(std::vector<M>& sum, std::vector<M> const& more) {
