@@ -98,12 +98,15 @@ void approaches_incompressible(Table& table, std::vector<int> const& sizes) {
 
 double const mu = .4225, lambda = 2 * mu * .3 / (1 - 2 * .3), bulk = lambda + 2 * mu / 3;
 
+/// The smallest element at the upper corner of the clamp, where the strain is singular, may fold between points.
 template <template <class> class L>
 void finite_strain(Table& table, std::string const& variant, L<double> const& law,
                    Results const& expected) {
   using F = Formulation<Quad9, Gauss<3>, L>;
-  compare<F>(table, variant, bent<F>(law, 1, {12, 24, 48}, 2, {.load_steps = 4, .tolerance = 1e-8}),
-             expected);
+  compare<F>(
+      table, variant,
+      bent<F>(law, 1, {12, 24, 48}, 2, {.load_steps = 4, .tolerance = 1e-8, .accept_folded = true}),
+      expected);
 }
 
 void plane(Table& table) {
