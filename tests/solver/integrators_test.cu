@@ -1,1 +1,0 @@
-#include "solver/integrators_suite.hpp"
