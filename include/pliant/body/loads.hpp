@@ -6,20 +6,32 @@
 namespace pliant {
 
 namespace detail {
-/// Sets one row of the loads; what that adds to the potential energy, −Δload·u, is summed where it is.
+/// Sets one row of the loads; what that adds to the energy that is watched is summed where it is: −Δload·u, and
+/// −Δt² m (a'² − a²)/8 of what leapfrog keeps, with the node's acceleration before and after. (Of the loads
+/// of slaves, the second part is left out.)
 template <class T, int Dim>
 struct SetLoad {
   NodeField<T, Dim> load;
-  NodeField<T const, Dim> u;
+  NodeField<T const, Dim> u, f;
+  T const* mass;
+  DirectionMask const* held;
+  ExternalForces<T, Dim> external;  // before
+  double step;                      // s; 0: no integrator watches
   Index node;
   Vector<T, Dim> force;
   double* work;
 
   PLIANT_HOST_DEVICE void operator()(Index) const {
     double added = 0;
-    for (int k = 0; k < Dim; ++k)
-      added -= (static_cast<double>(force[k]) - static_cast<double>(load(node, k))) *
-               static_cast<double>(u(node, k));
+    for (int k = 0; k < Dim; ++k) {
+      double const change = static_cast<double>(force[k]) - static_cast<double>(load(node, k));
+      added -= change * static_cast<double>(u(node, k));
+      double const m = static_cast<double>(mass[node]);
+      if (!(m > 0) || (held[node] >> k & 1)) continue;
+      T pull = f(node, k) + mass[node] * external.gravity[k];
+      if (external.load) pull += NodeField<T const, Dim>{external.load}(node, k);
+      added -= step * step * change * (2 * static_cast<double>(pull) + change) / (8 * m);
+    }
     load.set(node, force);
     *work += added;
   }

@@ -170,14 +170,15 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
   condition.handle = {prescribed.next_id++};
   if (condition.motion) {
     if (condition.name.empty()) condition.name = "motion " + std::to_string(condition.handle.id);
-    if (parts.motions.contains(condition.name))
+    if (std::ranges::find(prescribed.conditions, condition.name, &Condition<Parts::dim>::name) !=
+        prescribed.conditions.end())
       throw Error("body.drive: there is a motion called \"", condition.name,
                   "\" already; give each a name of its own");
     for (Index node : condition.nodes)
       (void)detail::position_at<Parts::dim>(
           condition.motion, parts.state.topology->mesh.nodes[static_cast<std::size_t>(node)], node,
           parts.state.time);
-    parts.motions.emplace(condition.name, condition.motion);
+    parts.motions.insert_or_assign(condition.name, condition.motion);
   }
   Handle const handle = condition.handle;
   if (condition.motion) parts.before_drives = place_before_drives(parts);
