@@ -36,7 +36,7 @@ class Adaptation {
   }
   /// Call after each step. The body's state remembers the step of the last look, so that a run that is
   /// rolled back or loaded looks when the one before would have.
-  template <class TheBody>
+  template <DeformableBody TheBody>
   void operator()(TheBody& body) {
     auto const& state = body.state();
     auto& looks = body.parts().state.record.looks;
@@ -49,7 +49,7 @@ class Adaptation {
 
   /// Looks and acts at once, whatever the interval. When it throws (refinement would exceed the mesh's
   /// limits, or a criterion throws on a backend that lets it), the body is as it was.
-  template <class TheBody>
+  template <DeformableBody TheBody>
   void now(TheBody& body) {
     static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
                   "a rule is for an element type that the body's mesh does not have");
@@ -131,8 +131,9 @@ class Adaptation {
     std::string text;
     auto const add = [&](auto const& rule) {
       text += detail::plain_type_name<std::remove_cvref_t<decltype(rule)>>();
-      for (double number :
-           {rule.marking.amount, rule.marking.floor, static_cast<double>(rule.marking.budget)}) {
+      double const numbers[] = {rule.marking.amount, rule.marking.floor,
+                                static_cast<double>(rule.marking.budget)};
+      for (double number : numbers) {
         text += ' ';
         detail::MessagePiece(number).add_to(text);
       }
@@ -145,5 +146,13 @@ class Adaptation {
   std::tuple<Rules...> rules_;
   int interval_ = 8;
 };
+
+/// Lets body.parts().timers measure where the time of adaptation goes.
+template <DeformableBody TheBody>
+void measure_adaptation(TheBody& body) {
+  auto& parts = body.parts();
+  parts.timers.criteria.timer.emplace(parts.backend.timer());
+  parts.timers.migration.timer.emplace(parts.backend.timer());
+}
 
 }  // namespace pliant

@@ -213,7 +213,7 @@ RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> 
 /// conditions and loads on nodes stay with their nodes. What it did to the energy is in ledger(body).
 /// Throws Error, with the body as it was, where an element is unknown or the body's limits would be
 /// exceeded.
-template <class TheBody>
+template <DeformableBody TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {
   static_assert(detail::can_be_split<typename TheBody::mesh_type>,
@@ -223,7 +223,7 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
 }
 
 /// The largest mesh that refinements of a body may make.
-template <class TheBody>
+template <DeformableBody TheBody>
 void set_mesh_limits(TheBody& body, MeshLimits limits) {
   body.parts().limits = limits;
 }

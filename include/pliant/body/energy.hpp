@@ -6,20 +6,20 @@
 namespace pliant {
 
 /// Of the elements and of force terms that have an energy; pressures that follow a surface have none.
-template <class TheBody>
+template <DeformableBody TheBody>
 double strain_energy(TheBody const& body) {
   return energy_at(body.parts(), body.parts().u());
 }
-template <class TheBody>
+template <DeformableBody TheBody>
 double kinetic_energy(TheBody& body) {
   return kinetic_energy_of(body.parts());
 }
 /// −(gravity + loads)·u
-template <class TheBody>
+template <DeformableBody TheBody>
 double potential_energy(TheBody& body) {
   return potential_energy_of(body.parts());
 }
-template <class TheBody>
+template <DeformableBody TheBody>
 double total_energy(TheBody& body) {
   return total_energy_of(body.parts());
 }

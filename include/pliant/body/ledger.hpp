@@ -56,7 +56,7 @@ std::vector<std::vector<double>> closed_totals(Parts const& parts) {
 }  // namespace detail
 
 /// How many steps elements of a type have spent in each of its groups, summed over elements.
-template <Element E, class TheBody>
+template <Element E, DeformableBody TheBody>
 std::vector<double> element_steps(TheBody const& body) {
   std::vector<double> sums;
   detail::for_each_numbered_type(
@@ -72,7 +72,7 @@ std::vector<double> element_steps(TheBody const& body) {
 
 /// How often each element changed its group, by the user's number; from zero again for all elements
 /// after a refinement. Counts stay at the largest `int` once there.
-template <Element E, class TheBody>
+template <Element E, DeformableBody TheBody>
 std::vector<int> switch_counts(TheBody const& body) {
   std::vector<int> counts;
   body.parts().for_each_type([&](auto const& table, auto const& elements) {
@@ -102,7 +102,7 @@ double adaptation_energy_of(Parts const& parts) {
       });
   return sum;
 }
-template <class TheBody>
+template <DeformableBody TheBody>
 double adaptation_energy(TheBody const& body) {
   return adaptation_energy_of(body.parts());
 }
@@ -126,7 +126,7 @@ ExternalWork external_work_of(Parts const& parts) {
   return {at(Work::changed_loads), at(Work::damping),          at(Work::motions),
           at(Work::pressures),     parts.state.energy_by_hand, parts.state.energy_of_steps};
 }
-template <class TheBody>
+template <DeformableBody TheBody>
 ExternalWork external_work(TheBody const& body) {
   return external_work_of(body.parts());
 }
@@ -139,7 +139,7 @@ double booked_energy(Parts const& parts) {
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved
 /// between, summed over time, and one per refinement.
-template <class TheBody>
+template <DeformableBody TheBody>
 auto ledger(TheBody const& body) {
   auto entries = body.state().record.refinements;
   detail::for_each_numbered_type(

@@ -85,7 +85,7 @@ double potential_energy_of(Parts& parts) {
 }
 
 /// The loads of all nodes, N, in the user's order; empty where none was set.
-template <class TheBody>
+template <DeformableBody TheBody>
 auto nodal_loads(TheBody const& body) {
   auto const& parts = body.parts();
   std::vector<Point<TheBody::dim>> loads;

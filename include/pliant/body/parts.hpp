@@ -122,4 +122,15 @@ struct Parts {
   }
 };
 
+/// A body that integrators, solvers and adaptation take: it has parts, and a state that they advance.
+template <class TheBody>
+concept DeformableBody = requires(std::remove_const_t<TheBody>& body) {
+  typename TheBody::backend_type;
+  typename TheBody::scalar;
+  typename TheBody::mesh_type;
+  { body.parts() } -> std::same_as<typename TheBody::parts_type&>;
+  { body.time() } -> std::convertible_to<double>;
+  { body.steps() } -> std::convertible_to<std::int64_t>;
+};
+
 }  // namespace pliant

@@ -19,16 +19,15 @@ namespace detail {
 template <class Parts>
 bool evaluate_terms_without_energy(Parts& parts) {
   bool any = false;
-  for (auto const* terms : {&parts.pressures, &parts.terms})
-    for (auto const& term : *terms) any = any || !term->has_energy();
+  for_each_added_term(parts, [&](auto const& term) { any = any || !term.has_energy(); });
   if (!any) return false;
   if (parts.without_energy.size() != parts.layout.f.size())
     parts.without_energy = zeros<typename Parts::T>(parts.backend, parts.layout.f.size());
   typename Parts::Field const f{parts.without_energy.data()};
   clear_rows(parts, f);
-  for (auto const* terms : {&parts.pressures, &parts.terms})
-    for (auto const& term : *terms)
-      if (!term->has_energy()) term->add_force(parts.backend, std::as_const(parts).here(), f);
+  for_each_added_term(parts, [&](auto const& term) {
+    if (!term.has_energy()) term.add_force(parts.backend, std::as_const(parts).here(), f);
+  });
   parts.layout.interpolation.apply_transpose(parts.backend, f);
   return true;
 }

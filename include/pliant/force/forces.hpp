@@ -5,12 +5,17 @@
 // The sum of a body's force terms.
 namespace pliant {
 
-/// visit(term) for the element groups, the pressures and the user's own terms.
+/// visit(term) for the pressures and the user's own terms.
+template <class Parts, class Visit>
+void for_each_added_term(Parts const& parts, Visit const& visit) {
+  for (auto const& term : parts.pressures) visit(*term);
+  for (auto const& term : parts.terms) visit(*term);
+}
+/// visit(term) for the element groups and these.
 template <class Parts, class Visit>
 void for_each_force_term(Parts const& parts, Visit const& visit) {
   visit(parts.elements());
-  for (auto const& term : parts.pressures) visit(*term);
-  for (auto const& term : parts.terms) visit(*term);
+  for_each_added_term(parts, visit);
 }
 
 /// f += all internal forces and those of terms at displacements u, N, those of slaves handed on; the

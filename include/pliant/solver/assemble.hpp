@@ -215,7 +215,7 @@ Assembled assembled_at(Parts const& parts, Eigen::VectorXd const& u, Assemble wh
 /// variables were committed; infinite: at rest. Rows and columns of slaves are handed to their masters:
 /// their own are zero. `u` must give the slaves their interpolated displacement (see
 /// `interpolate_slaves`). Throws Error for a u of another size, and a dt that is negative or not a number.
-template <class TheBody>
+template <DeformableBody TheBody>
 Assembled assemble(TheBody const& body, Eigen::VectorXd const& u, double dt,
                    Assemble what = Assemble::stiffness_too) {
   Eigen::Index const size = Eigen::Index{TheBody::dim} * body.nodes();
@@ -228,7 +228,7 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u, double dt,
   return detail::assembled_at(body.parts(), u, what, dt, 1);
 }
 /// The same of a body whose laws have no internal variables.
-template <class TheBody>
+template <DeformableBody TheBody>
 Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
                    Assemble what = Assemble::stiffness_too) {
   static_assert(!TheBody::has_internal_variables,
@@ -238,7 +238,7 @@ Assembled assemble(TheBody const& body, Eigen::VectorXd const& u,
 }
 
 /// Gives slaves the displacement that follows from their masters'.
-template <class TheBody>
+template <DeformableBody TheBody>
 void interpolate_slaves(TheBody const& body, Eigen::VectorXd& u) {
   constexpr int dim = TheBody::dim;
   body.state().topology->interpolation.apply(

@@ -11,7 +11,7 @@ enum class MassMatrix { consistent, lumped };
 
 /// The mass matrix of a body, kg: rows run over (node, direction) in the user's order. Slaves' rows and
 /// columns are handed to their masters.
-template <class TheBody>
+template <DeformableBody TheBody>
 Eigen::SparseMatrix<double> assemble_mass(TheBody const& body,
                                           MassMatrix kind = MassMatrix::consistent) {
   constexpr int dim = TheBody::dim;

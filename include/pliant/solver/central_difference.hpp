@@ -60,7 +60,7 @@ class CentralDifference {
   int retries() const { return retries_; }
 
   /// Takes steps.
-  template <class TheBody>
+  template <DeformableBody TheBody>
   Advanced operator()(TheBody& body, int steps = 1) {
     if (steps < 0) throw Error("CentralDifference: ", steps, " steps; give 0 or more");
     auto& parts = body.parts();

@@ -37,7 +37,7 @@ class Newmark {
 
   /// Takes steps. Throws Error where one does not converge; the body is then exactly as the last one
   /// that did left it.
-  template <class TheBody>
+  template <DeformableBody TheBody>
   void operator()(TheBody& body, int steps = 1) {
     static_assert(!TheBody::has_internal_variables,
                   "Newmark takes laws without internal variables: step viscous bodies with "
@@ -71,7 +71,7 @@ class Newmark {
   };
 
   /// The body as matrices and vectors over (node, direction).
-  template <class TheBody>
+  template <DeformableBody TheBody>
   struct System {
     TheBody const& body;
     detail::StaticProblem<TheBody> problem;
@@ -86,7 +86,7 @@ class Newmark {
   };
 
   /// In balance with the forces at u and v; zero where nodes are held or driven.
-  template <class TheBody>
+  template <DeformableBody TheBody>
   Eigen::VectorXd acceleration(System<TheBody> const& system, State const& s) {
     auto const force = assemble(system.body, s.u, Assemble::energy_and_force).force;
     Eigen::VectorXd const pull =
@@ -100,7 +100,7 @@ class Newmark {
   }
 
   /// The state at a time, one step on.
-  template <class TheBody>
+  template <DeformableBody TheBody>
   State next(System<TheBody> const& system, State const& now, double time) {
     double const dt = options_.step, beta = options_.beta, gamma = options_.gamma;
     double const damping = system.body.state().damping;
@@ -140,7 +140,7 @@ class Newmark {
     }
   }
 
-  template <class TheBody>
+  template <DeformableBody TheBody>
   void store(TheBody& body, State const& state, double time, int steps) {
     using Problem = detail::StaticProblem<TheBody>;
     auto const u = Problem::per_node(state.u), v = Problem::per_node(state.v);

@@ -43,7 +43,7 @@ inline void check_options(NewtonOptions const& options) {
 }
 
 /// Newton's method on one body: see solve_static.
-template <class TheBody>
+template <DeformableBody TheBody>
 class StaticNewton {
  public:
   using Vector = Eigen::VectorXd;
@@ -193,7 +193,7 @@ class StaticNewton {
 /// the last digits. Internal variables are brought to rest. Velocities are left alone. Throws
 /// Error, with the body as it was, where the matrix is singular, the iteration does not converge, or the
 /// answer is folded (det F ≤ 0, looked for all over each element whose law is not linear).
-template <class TheBody>
+template <DeformableBody TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
   detail::check_options(options);
   detail::StaticNewton<TheBody> newton(body, options);

@@ -108,8 +108,7 @@ double squared_frequency_bound(Parts& parts) {
   };
   // Terms beside the elements have no mass of their own: only their rows bound them.
   double by_terms = 0;
-  for (auto const* terms : {&parts.pressures, &parts.terms})
-    for (auto const& term : *terms) term->add_row_sums(backend, at, rows);
+  for_each_added_term(parts, [&](auto const& term) { term.add_row_sums(backend, at, rows); });
   if (!parts.pressures.empty() || !parts.terms.empty()) {
     parts.layout.interpolation.apply_transpose(backend, rows);
     by_terms = largest_row();
@@ -171,7 +170,7 @@ double stable_step_of(Parts& parts) {
   }
 }
 
-template <class TheBody>
+template <DeformableBody TheBody>
 double stable_step(TheBody& body) {
   return stable_step_of(body.parts());
 }

@@ -12,7 +12,7 @@ namespace pliant::detail {
 
 /// A body's unknowns, loads and prescribed displacements as vectors over (node, direction) in the user's
 /// order; the unknowns among them are those that nothing holds, drives or interpolates.
-template <class TheBody>
+template <DeformableBody TheBody>
 class StaticProblem {
  public:
   static constexpr int dim = TheBody::dim;
@@ -144,7 +144,7 @@ class StaticProblem {
 };
 
 /// Whether all forces have a potential: then the stiffness is symmetric.
-template <class TheBody>
+template <DeformableBody TheBody>
 bool is_conservative(TheBody const& body) {
   bool all = body.parts().pressures.empty();
   for (auto const& term : body.parts().terms) all = all && term->has_energy();

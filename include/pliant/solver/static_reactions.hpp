@@ -10,7 +10,7 @@ namespace pliant {
 /// order: what balances internal forces, loads and gravity there. As reactions(body, handle), with gravity
 /// on the masses that solve_static put it on, so that all reactions together bear the body's weight.
 /// Throws Error for a handle that names no condition of the body.
-template <class TheBody>
+template <DeformableBody TheBody>
 std::vector<Point<TheBody::dim>> static_reactions(TheBody const& body, Handle handle,
                                                   MassMatrix gravity = MassMatrix::consistent) {
   constexpr int dim = TheBody::dim;
