@@ -96,11 +96,43 @@ void check_twins(M const& mesh) {
   }
 }
 
-/// Throws Error where a node lies inside an edge of the boundary that does not have it, between two edges
-/// that do: the mesh would come apart there.
+/// Where a point lies on an edge, or on a side between two edges, that begin at one corner.
+enum class Lies { elsewhere, on_first, on_second, between };
+
+/// `x` and the ends of the edges are relative to the corner; plane meshes have only the first edge.
+template <std::size_t Dim>
+Lies where_on_side(std::array<double, Dim> const& x, std::array<double, Dim> const& first,
+                   std::array<double, Dim> const& second, bool is_triangle) {
+  auto const product = [](auto const& p, auto const& q) {
+    double sum = 0;
+    for (std::size_t k = 0; k < Dim; ++k) sum += p[k] * q[k];
+    return sum;
+  };
+  double const a = product(first, first), c = product(second, second), xa = product(x, first);
+  double s = xa / a, t = 0;
+  if constexpr (Dim == 3) {
+    double const b = product(first, second), xc = product(x, second), det = a * c - b * b;
+    s = (xa * c - xc * b) / det;
+    t = (xc * a - xa * b) / det;
+  }
+  constexpr double zero = 1e-6;
+  double const most = is_triangle ? s + t : std::max(s, t);
+  if (!(s > -zero && t > -zero && most < 1 - zero && std::max(s, t) > zero)) return Lies::elsewhere;
+  if (t < zero) t = 0;
+  if (s < zero) s = 0;
+  double off = 0;
+  for (std::size_t k = 0; k < Dim; ++k) {
+    double const o = x[k] - s * first[k] - t * second[k];
+    off += o * o;
+  }
+  if (!(off < 1e-18 * std::max(a, c))) return Lies::elsewhere;
+  return t == 0 ? Lies::on_first : s == 0 ? Lies::on_second : Lies::between;
+}
+
+/// Throws Error where a node that is not listed as a slave lies inside an edge or a flat side of the boundary that
+/// does not have it, beside a corner that they share: the mesh would come apart there.
 template <class M>
 void check_hanging(M const& mesh) {
-  using Side = Facet<M::dim>;
   std::vector<bool> known(mesh.nodes.size(), false);
   for (auto const& slave : mesh.slaves) known[static_cast<std::size_t>(slave.node)] = true;
   auto const sides = mesh::outer_sides(mesh);
@@ -111,40 +143,35 @@ void check_hanging(M const& mesh) {
       side_of_corner.push_back(static_cast<Index>(s));
     }
   auto const at_node = group_by_key(corner, static_cast<Index>(mesh.nodes.size()));
-  auto const place = [&](Index node) { return mesh.nodes[static_cast<std::size_t>(node)]; };
-  auto const is_inside = [&](Index node, Index a, Index b) {
-    double along = 0, length = 0, apart = 0;
-    auto const x = place(node), p = place(a), q = place(b);
-    for (std::size_t k = 0; k < M::dim; ++k) {
-      along += (x[k] - p[k]) * (q[k] - p[k]);
-      length += (q[k] - p[k]) * (q[k] - p[k]);
-    }
-    double const share = along / length;
-    if (!(share > 1e-6 && share < 1 - 1e-6)) return false;
-    for (std::size_t k = 0; k < M::dim; ++k) {
-      double const off = x[k] - p[k] - share * (q[k] - p[k]);
-      apart += off * off;
-    }
-    return apart < 1e-18 * length;
-  };
-  auto const look_at = [&](Side const& side, Index a, Index b) {
-    auto const i = static_cast<std::size_t>(a);
-    for (Index k = at_node.first[i]; k < at_node.first[i + 1]; ++k) {
-      auto const& other = sides[static_cast<std::size_t>(
-          side_of_corner[static_cast<std::size_t>(at_node.order[static_cast<std::size_t>(k)])])];
-      for (Index node : other)
-        if (std::find(side.begin(), side.end(), node) == side.end() &&
-            !known[static_cast<std::size_t>(node)] && is_inside(node, a, b))
-          throw Error("mesh: node ", node, " at ", place(node), " hangs on the edge from node ", a,
-                      " to node ", b,
-                      "; list it in mesh.slaves with its masters, or split the element beside it");
-    }
+  auto const from = [&](Index origin, Index node) {
+    auto x = mesh.nodes[static_cast<std::size_t>(node)];
+    for (std::size_t k = 0; k < x.size(); ++k)
+      x[k] -= mesh.nodes[static_cast<std::size_t>(origin)][k];
+    return x;
   };
   for (auto const& side : sides)
-    for (std::size_t c = 0; c < side.corners(); ++c) {
-      Index const a = side[c], b = side[(c + 1) % side.corners()];
-      look_at(side, a, b);
-      look_at(side, b, a);
+    for (std::size_t c = 0, n = side.corners(); c < n; ++c) {
+      Index const a = side[c], b = side[(c + 1) % n], d = side[(c + n - 1) % n];
+      auto const i = static_cast<std::size_t>(a);
+      auto const first = from(a, b), second = from(a, d);
+      for (Index k = at_node.first[i]; k < at_node.first[i + 1]; ++k) {
+        auto const& other = sides[static_cast<std::size_t>(
+            side_of_corner[static_cast<std::size_t>(at_node.order[static_cast<std::size_t>(k)])])];
+        if (&other == &side) continue;
+        for (Index node : other) {
+          if (known[static_cast<std::size_t>(node)]) continue;
+          if (std::find(side.begin(), side.end(), node) != side.end()) continue;
+          auto const lies = where_on_side(from(a, node), first, second, n == 3);
+          if (lies == Lies::elsewhere) continue;
+          std::string on = message({"edge from node ", a, " to node "});
+          on += message({lies == Lies::on_second ? d : b});
+          if (lies == Lies::between)
+            on = message({"side between the nodes ", b, ", ", a, " and ", d});
+          throw Error("mesh: node ", node, " at ", mesh.nodes[static_cast<std::size_t>(node)],
+                      " hangs on the ", on,
+                      "; list it in mesh.slaves with its masters, or split the element beside it");
+        }
+      }
     }
 }
 
@@ -170,7 +197,7 @@ void check_slaves(M const& mesh) {
 
 /// Throws Error when the mesh has no elements, a node that is not finite or belongs to no element, an index out
 /// of range, an element that is inverted, has no volume or is there twice, or a node that hangs on an
-/// edge and is not listed as a slave; the message names the first culprit.
+/// edge or a flat side and is not listed as a slave; the message names the first culprit.
 template <Element... Es>
 void check(Mesh<Es...> const& mesh) {
   if ((mesh.template elements<Es>().empty() && ...))

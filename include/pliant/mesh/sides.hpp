@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <map>
 
 #include <pliant/math/group_by_key.hpp>
@@ -56,30 +58,71 @@ std::array<Index, 4> key_of(Facet<Dim> const& facet) {
   return key;
 }
 
+namespace detail {
+
+/// A number that scatters node numbers over 64 bits (the finalizer of SplitMix64, Steele et al. 2014).
+inline std::uint64_t scattered(Index node) {
+  auto x = static_cast<std::uint64_t>(node) + 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+/// Calls visit(the smallest corner, the sum of the scattered corners) for each side of an element.
+template <Element E, class Visit>
+void for_each_side_sum(Connectivity<E> const& element, Visit const& visit) {
+  static constexpr auto sides = E::cell::sides();
+  std::array<std::uint64_t, E::cell::corners> scatter;
+  for (std::size_t a = 0; a < scatter.size(); ++a) scatter[a] = scattered(element[a]);
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    std::uint64_t sum = 0;
+    Index smallest = std::numeric_limits<Index>::max();
+    for (int corner : sides[s])
+      if (corner >= 0) {
+        sum += scatter[static_cast<std::size_t>(corner)];
+        smallest = std::min(smallest, element[static_cast<std::size_t>(corner)]);
+      }
+    visit(s, smallest, sum);
+  }
+}
+
+}  // namespace detail
+
 /// The sides of elements that have no element behind them: the boundary of a mesh, in the order of their
 /// smallest corner. Throws Error for an element of nodes that the mesh has not.
 template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
-  std::vector<Facet<Mesh<Es...>::dim>> sides, outer;
-  auto const look_at = [&]<Element E>(E) {
-    for (auto const& element : mesh.template elements<E>())
-      for (std::size_t s = 0; s < E::cell::sides().size(); ++s)
-        sides.push_back(side_of<E>(element, static_cast<int>(s)));
+  auto const count = static_cast<Index>(mesh.nodes.size());
+  // Sides that are there twice cancel in the exclusive or over the sides of one smallest corner, so that most
+  // corners are done with; 64 bits make an accidental zero as good as impossible.
+  std::vector<std::uint64_t> left(mesh.nodes.size(), 0);
+  auto const add = [&]<Element E>(E) {
+    for (auto const& element : mesh.template elements<E>()) {
+      for (Index node : element)
+        if (node < 0 || node >= count)
+          throw Error("mesh: an element refers to node ", node, ", but the mesh has ",
+                      mesh.nodes.size(), " nodes; correct the connectivity");
+      detail::for_each_side_sum<E>(element, [&](std::size_t, Index corner, std::uint64_t sum) {
+        left[static_cast<std::size_t>(corner)] ^= sum;
+      });
+    }
   };
-  (look_at(Es{}), ...);
-  // Two elements that share a side see the same corners: look for them among those of one corner.
+  (add(Es{}), ...);
+  std::vector<Facet<Mesh<Es...>::dim>> sides, outer;
   std::vector<std::array<Index, 4>> keys;
   std::vector<Index> smallest;
-  for (auto const& side : sides) {
-    for (Index node : side)
-      if (node < 0 || node >= static_cast<Index>(mesh.nodes.size()))
-        throw Error("mesh: an element refers to node ", node, ", but the mesh has ",
-                    mesh.nodes.size(), " nodes; correct the connectivity");
-    keys.push_back(key_of(side));
-    smallest.push_back(keys.back()[4 - side.corners()]);
-  }
-  auto const at_corner =
-      pliant::detail::group_by_key(smallest, static_cast<Index>(mesh.nodes.size()));
+  auto const collect = [&]<Element E>(E) {
+    for (auto const& element : mesh.template elements<E>())
+      detail::for_each_side_sum<E>(element, [&](std::size_t s, Index corner, std::uint64_t) {
+        if (left[static_cast<std::size_t>(corner)] == 0) return;
+        sides.push_back(side_of<E>(element, static_cast<int>(s)));
+        keys.push_back(key_of(sides.back()));
+        smallest.push_back(corner);
+      });
+  };
+  (collect(Es{}), ...);
+  // Two elements that share a side see the same corners: look for them among those of one corner.
+  auto const at_corner = pliant::detail::group_by_key(smallest, count);
   for (std::size_t corner = 0; corner < mesh.nodes.size(); ++corner)
     for (Index i = at_corner.first[corner]; i < at_corner.first[corner + 1]; ++i) {
       auto const side = [&](Index k) {
@@ -91,6 +134,53 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
       if (times == 1) outer.push_back(sides[side(i)]);
     }
   return outer;
+}
+
+/// Facets told by their corners as the mesh has them: with all nodes of a side of an element, outer sides as they
+/// are seen from outside. Throws Error for a facet that is no side of an element.
+template <Element... Es>
+std::vector<Facet<Mesh<Es...>::dim>> sides_of(Mesh<Es...> const& mesh,
+                                              std::vector<Facet<Mesh<Es...>::dim>> facets) {
+  constexpr int Dim = Mesh<Es...>::dim;
+  std::map<std::array<Index, 4>, Facet<Dim>> found;
+  std::vector<bool> named(mesh.nodes.size(), false);
+  auto const refuse = [](Facet<Dim> const& facet, char const* why) {
+    std::string nodes;
+    for (Index node : facet) nodes += pliant::detail::message({" ", node});
+    throw Error("mesh: the facet with the nodes", nodes, why);
+  };
+  for (auto const& facet : facets) {
+    for (Index node : facet)
+      if (node < 0 || node >= static_cast<Index>(mesh.nodes.size()))
+        throw Error("mesh: a facet names node ", node, ", but nodes are numbered 0 to ",
+                    mesh.nodes.size() - 1);
+    if (facet.size() < facet.corners()) refuse(facet, " has too few of them; give its corners");
+    found.emplace(key_of(facet), Facet<Dim>{});
+    for (Index node : facet) named[static_cast<std::size_t>(node)] = true;
+  }
+  auto const look_at = [&]<Element E>(E) {
+    for (auto const& element : mesh.template elements<E>()) {
+      int corners = 0;
+      for (int a = 0; a < E::cell::corners; ++a)
+        corners += named[static_cast<std::size_t>(element[static_cast<std::size_t>(a)])];
+      if (corners < Dim) continue;
+      for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
+        auto const side = side_of<E>(element, static_cast<int>(s));
+        auto const entry = found.find(key_of(side));
+        if (entry != found.end() && entry->second.size() < side.size()) entry->second = side;
+      }
+    }
+  };
+  (look_at(Es{}), ...);
+  for (auto& facet : facets) {
+    auto const& side = found.at(key_of(facet));
+    if (side.size() == 0)
+      refuse(facet,
+             " is no side of an element; give facets of the present mesh, which after a refinement "
+             "is another");
+    facet = side;
+  }
+  return facets;
 }
 
 /// The outer sides all of whose nodes satisfy a condition on their place: belongs(Point) -> bool.
