@@ -148,8 +148,11 @@ auto plan_refinement(Parts const& parts, std::vector<std::vector<Index>> const& 
   auto const origins = [&]<Element... Es>(Mesh<Es...> const&) {
     return std::vector<std::vector<Transfer<2>::Origin>>{detail::origins_of<Es>(*before, *tree)...};
   }(old.mesh);
+  std::vector<std::size_t> old_elements;
+  for (std::size_t type = 0; type < types; ++type)
+    old_elements.push_back(detail::element_count(old.mesh, type));
   Transfer<2> transfer(static_cast<Index>(old.mesh.nodes.size()),
-                       detail::interpolated_nodes(done.new_nodes), origins);
+                       detail::interpolated_nodes(done.new_nodes), old_elements, origins);
 
   auto topology = std::make_shared<Topology<M>>();
   M& mesh = topology->mesh;
@@ -167,7 +170,7 @@ auto plan_refinement(Parts const& parts, std::vector<std::vector<Index>> const& 
   mesh.slaves = tree->slaves();
   for (std::size_t type = 0; type < types; ++type) {
     auto const& values = old.element_values[type];
-    std::size_t const count = detail::element_count(old.mesh, type);
+    std::size_t const count = old_elements[type];
     topology->element_values.push_back(
         transfer.carry_elements(values, type, count > 0 ? values.size() / count : 0));
   }

@@ -12,7 +12,7 @@
 namespace pliant {
 
 /// Replaces masters that are slaves themselves by their own masters, until every master is free;
-/// a master reached along several ways appears once, with the sum of the weights.
+/// a master reached along several ways appears once, with the sum of the weights. The result ascends by node.
 /// A slave must come after the slaves among its masters. Throws Error where one does not (which is
 /// so for any circle of slaves) and where a node is a slave twice.
 [[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> slaves) {
@@ -47,6 +47,7 @@ namespace pliant {
         masters.emplace_back(free, weight);
     }
   }
+  std::ranges::stable_sort(slaves, {}, &Slave::node);  // as an Interpolation wants them
   return slaves;
 }
 

@@ -28,9 +28,13 @@ class Transfer {
     int child;
   };
 
-  Transfer(Index old_nodes, std::vector<NewNode> new_nodes,
+  /// How many nodes, and elements of each type, there were, and where the new ones come from.
+  Transfer(Index old_nodes, std::vector<NewNode> new_nodes, std::vector<std::size_t> old_elements,
            std::vector<std::vector<Origin>> origins)
-      : old_nodes_(old_nodes), new_nodes_(std::move(new_nodes)), origins_(std::move(origins)) {
+      : old_nodes_(old_nodes),
+        new_nodes_(std::move(new_nodes)),
+        old_elements_(std::move(old_elements)),
+        origins_(std::move(origins)) {
     for (NewNode const& n : new_nodes_)
       if (n.parents.size() == 2)
         middles_[std::minmax(n.parents[0].first, n.parents[1].first)] = n.node;
@@ -59,13 +63,11 @@ class Transfer {
   template <class V>
   std::vector<V> carry_elements(std::vector<V> const& values, std::size_t type = 0,
                                 std::size_t width = 1) const {
+    check(values.size(), old_elements_[type] * width, "elements");
     std::vector<V> carried;
     carried.reserve(origins(type).size() * width);
     for (Origin const& origin : origins(type)) {
       auto const first = width * static_cast<std::size_t>(origin.element);
-      if (first + width > values.size())
-        throw Error("transfer: got ", values.size(), " values of elements, but element ",
-                    origin.element, " was one of them; give ", width, " per element");
       for (std::size_t k = 0; k < width; ++k) carried.push_back(values[first + k]);
     }
     return carried;
@@ -81,8 +83,8 @@ class Transfer {
  private:
   static void check(std::size_t got, std::size_t wanted, char const* what) {
     if (got != wanted)
-      throw Error("transfer: got values for ", got, " ", what, ", but there were ", wanted,
-                  " before the change");
+      throw Error("transfer: got ", got, " values of ", what, ", but those before the change take ",
+                  wanted, "; give the arrays from before it");
   }
   static void add(double& sum, double weight, double value) { sum += weight * value; }
   static void add(float& sum, double weight, float value) {
@@ -104,6 +106,7 @@ class Transfer {
 
   Index old_nodes_;
   std::vector<NewNode> new_nodes_;
+  std::vector<std::size_t> old_elements_;  // by type
   std::vector<std::vector<Origin>> origins_;
   std::map<std::pair<Index, Index>, Index> middles_;  // of edges that were halved, by their ends
 };
