@@ -4,9 +4,10 @@
 
 #include <pliant/body/change_topology.hpp>
 #include <pliant/body/checksum.hpp>
+#include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/body/member_bytes.hpp>
 #include <pliant/body/signature.hpp>
-#include <pliant/body/leapfrog_energy.hpp>
+#include <pliant/constraint/press.hpp>
 
 // States in binary streams, in the byte order of the machine:
 //   magic (8 bytes)  version (4)  length of the content (8)  content  checksum of all before (8)

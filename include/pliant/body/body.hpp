@@ -4,6 +4,8 @@
 #include <pliant/body/embedding.hpp>
 #include <pliant/body/groups.hpp>
 #include <pliant/body/set_state.hpp>
+#include <pliant/constraint/press.hpp>
+#include <pliant/constraint/reactions.hpp>
 #include <pliant/force/connected_term.hpp>
 #include <pliant/mesh/check.hpp>
 #include <pliant/topology/compose.hpp>

@@ -1,17 +1,27 @@
 #pragma once
 
+#include <span>
+
 #include <pliant/body/velocities.hpp>
-#include <pliant/force/pressure.hpp>
+#include <pliant/mesh/sides.hpp>
 
 // What a body's conditions make of its nodes, in the backend's memory.
 namespace pliant {
 
-/// v = 0 in the directions that are held.
+namespace detail {
+/// v = 0 in some directions of each node.
+template <class Parts>
+void stop(Parts& parts, DirectionMask const* directions) {
+  parts.backend.for_each(parts.layout.nodes,
+                         StopHeld<typename Parts::T, Parts::dim>{parts.v(), directions});
+  parts.layout.interpolation.apply(parts.backend, parts.v());
+}
+}  // namespace detail
+
+/// v = 0 in the directions that are held or driven.
 template <class Parts>
 void stop_held(Parts& parts) {
-  parts.backend.for_each(parts.layout.nodes, StopHeld<typename Parts::T, Parts::dim>{
-                                                 parts.v(), parts.layout.held.data()});
-  parts.layout.interpolation.apply(parts.backend, parts.v());
+  detail::stop(parts, parts.layout.held.data());
 }
 
 /// Asks all motions for a time, s, reached over `over` seconds. Throws Error before anything changes.
@@ -47,11 +57,12 @@ std::vector<Point<Parts::dim>> place_before_drives(Parts const& parts) {
   return before;
 }
 
-/// Which directions of each node are held or driven, by internal numbers.
+/// Which directions of each node some conditions hold or drive, by internal numbers.
 template <class Parts>
-std::vector<DirectionMask> held_directions(Parts const& parts) {
+std::vector<DirectionMask> held_directions(Parts const& parts,
+                                           std::span<Condition<Parts::dim> const> conditions) {
   std::vector<DirectionMask> held(static_cast<std::size_t>(parts.layout.nodes), 0);
-  for (auto const& condition : parts.state.prescribed->conditions)
+  for (auto const& condition : conditions)
     for (Index node : condition.nodes)
       held[static_cast<std::size_t>(parts.layout.internal_of(node))] |= condition.directions;
   return held;
@@ -67,22 +78,8 @@ void upload_conditions(Parts& parts) {
     for (Index node : condition.nodes) internal.push_back(parts.layout.internal_of(node));
     parts.driven.emplace_back(parts.backend, condition, internal, parts.state.topology->mesh.nodes);
   }
-  parts.layout.held.upload(held_directions(parts));
+  parts.layout.held.upload(held_directions<Parts>(parts, parts.state.prescribed->conditions));
   ++parts.revision;
-}
-
-/// Makes the force terms of state.prescribed's pressures.
-template <class Parts>
-void upload_pressures(Parts& parts) {
-  parts.pressures.clear();
-  for (auto const& pressure : parts.state.prescribed->pressures) {
-    if (pressure.pascals == 0) continue;
-    auto internal = pressure.facets;
-    for (auto& facet : internal)
-      for (Index& node : facet) node = parts.layout.internal_of(node);
-    add_pressure_terms<typename Parts::mesh_type>(parts.backend, internal, pressure.pascals,
-                                                  parts.layout.nodes, parts.pressures);
-  }
 }
 
 /// Runs `change()`, and returns what it added to the energy that an integrator watches and keeps, J; 0 while
@@ -161,7 +158,10 @@ void prescribe(Parts& parts, Prescribed<Parts::dim> prescribed) {
 /// Adds a condition; see Body::hold and Body::drive. Facets stand for the nodes on them.
 template <class Parts>
 Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
-  if (!condition.facets.empty()) condition.nodes = nodes_of(condition.facets);
+  if (!condition.facets.empty()) {
+    condition.facets = mesh::sides_of(parts.state.topology->mesh, condition.facets);
+    condition.nodes = nodes_of(condition.facets);
+  }
   std::sort(condition.nodes.begin(), condition.nodes.end());
   condition.nodes.erase(std::unique(condition.nodes.begin(), condition.nodes.end()),
                         condition.nodes.end());
@@ -175,20 +175,25 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
       throw Error("body.drive: there is a motion called \"", condition.name,
                   "\" already; give each a name of its own");
     for (Index node : condition.nodes)
-      (void)detail::position_at<Parts::dim>(
+      (void)detail::position_at<Parts::dim, typename Parts::T>(
           condition.motion, parts.state.topology->mesh.nodes[static_cast<std::size_t>(node)], node,
           parts.state.time);
     parts.motions.insert_or_assign(condition.name, condition.motion);
   }
   Handle const handle = condition.handle;
   if (condition.motion) parts.before_drives = place_before_drives(parts);
+  bool const moves = static_cast<bool>(condition.motion);
+  auto const own =
+      upload(parts.backend, held_directions<Parts>(parts, std::span(&std::as_const(condition), 1)));
   prescribed.conditions.push_back(std::move(condition));
   change_by_hand(parts, [&] {
     detail::prescribe(parts, std::move(prescribed));
     upload_conditions(parts);
-    stop_held(parts);
-    ask_motions(parts, parts.state.time, 0);
-    place_driven_nodes(parts);
+    detail::stop(parts, own.data());  // what others drive goes on
+    if (!moves) return;
+    parts.driven.back().ask(parts.state.time, 0);
+    parts.driven.back().place(parts.backend, parts.u(), parts.v());
+    parts.layout.interpolation.apply(parts.backend, parts.u());
   });
   return handle;
 }
@@ -213,70 +218,6 @@ void release(Parts& parts, Handle handle) {
       make_room_for_forces(parts);
     }
   });
-}
-
-/// Adds a pressure, or gives one that acts on the same facets another value; see Body::press.
-template <class Parts>
-Handle press(Parts& parts, std::vector<Facet<Parts::dim>> const& facets, double pascals) {
-  using Scalar = typename Parts::T;
-  if (!std::isfinite(static_cast<Scalar>(pascals)))
-    throw Error("body.press: the pressure is not finite");
-  for (auto const& facet : facets)
-    for (Index node : facet)
-      if (node < 0 || node >= parts.layout.nodes)
-        throw Error("body.press: a facet names node ", node, ", but nodes are numbered 0 to ",
-                    parts.layout.nodes - 1);
-  auto prescribed = *parts.state.prescribed;
-  auto const pressed = [&](std::vector<Facet<Parts::dim>> const& as) {
-    return std::ranges::find(prescribed.pressures, as, &Pressure<Parts::dim>::facets);
-  };
-  auto same = pressed(facets);
-  if (same == prescribed.pressures.end()) {
-    auto own = detail::outer_facets(parts.state.topology->mesh, facets);
-    same = pressed(own);
-    if (same == prescribed.pressures.end()) {
-      prescribed.pressures.push_back({{prescribed.next_id++}, std::move(own), 0});
-      same = prescribed.pressures.end() - 1;
-    }
-  }
-  same->pascals = pascals;
-  Handle const handle = same->handle;
-  change_by_hand(parts, [&] {
-    detail::prescribe(parts, std::move(prescribed));
-    parts.upload_pressures = [](Parts& p) { upload_pressures(p); };
-    parts.upload_pressures(parts);
-    make_room_for_forces(parts);
-  });
-  return handle;
-}
-
-/// The forces that a condition exerts on its nodes in its directions, N: what balances internal forces, loads
-/// and gravity there. The inertia of driven nodes (their lumped mass times the motion's acceleration)
-/// is not in them.
-template <class Parts>
-std::vector<Point<Parts::dim>> reactions(Parts& parts, Handle handle) {
-  auto const& conditions = parts.state.prescribed->conditions;
-  auto const found = std::ranges::find(conditions, handle, &Condition<Parts::dim>::handle);
-  if (found == conditions.end())
-    throw Error("body.reactions: handle ", handle.id, " names no condition of this body");
-  evaluate_forces(parts);
-  auto const external = external_forces(parts);
-  auto const f = parts.layout.in_user_order(parts.layout.f);
-  std::vector<Point<Parts::dim>> load;
-  if (external.load != nullptr)
-    load = parts.layout.in_user_order(parts.layout.load.size() > 0 ? parts.layout.load
-                                                                   : parts.state.load);
-  std::vector<Point<Parts::dim>> forces;
-  for (Index node : found->nodes) {
-    auto const i = static_cast<std::size_t>(node);
-    Point<Parts::dim> force{};
-    for (std::size_t k = 0; k < Parts::dim; ++k)
-      if (found->directions >> k & 1)
-        force[k] = -(f[i][k] + parts.layout.mass_list[i] * parts.state.gravity[k] +
-                     (load.empty() ? 0.0 : load[i][k]));
-    forces.push_back(force);
-  }
-  return forces;
 }
 
 }  // namespace pliant

@@ -62,14 +62,15 @@ struct MotionWork {
   }
 };
 
-template <int Dim>
+/// Where a motion wants a node. Throws Error where that is not finite in the precision T.
+template <int Dim, class T = double>
 Point<Dim> position_at(Motion<Dim> const& motion, Point<Dim> const& place, Index node,
                        double time) {
   Point<Dim> const u = motion(place, time);
   for (double x : u)
-    if (!std::isfinite(x))
+    if (!std::isfinite(static_cast<T>(x)))
       throw Error("body.drive: the motion of node ", node, " is ", u, " at time ", time,
-                  " s; it must be finite");
+                  " s; it must be finite", std::isfinite(x) ? " in single precision" : "");
   return u;
 }
 
@@ -97,12 +98,16 @@ class DrivenNodes {
   void ask(double time, double over) {
     auto const ask_one = [&](Point<Dim> const& place, Index node, auto& displacement,
                              auto& velocity) {
-      Point<Dim> const to = detail::position_at<Dim>(condition_.motion, place, node, time);
+      Point<Dim> const to = detail::position_at<Dim, T>(condition_.motion, place, node, time);
       Point<Dim> const from =
-          over > 0 ? detail::position_at<Dim>(condition_.motion, place, node, time - over) : to;
+          over > 0 ? detail::position_at<Dim, T>(condition_.motion, place, node, time - over) : to;
       for (std::size_t k = 0; k < Dim; ++k) {
         displacement[static_cast<int>(k)] = static_cast<T>(to[k]);
-        velocity[static_cast<int>(k)] = over > 0 ? static_cast<T>((to[k] - from[k]) / over) : T(0);
+        T const speed = over > 0 ? static_cast<T>((to[k] - from[k]) / over) : T(0);
+        if (!std::isfinite(speed))
+          throw Error("body.drive: the motion of node ", node, " goes from ", from, " to ", to,
+                      " within ", over, " s; this speed is not finite");
+        velocity[static_cast<int>(k)] = speed;
       }
     };
     if (condition_.nodes.empty()) return;
