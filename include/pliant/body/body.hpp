@@ -83,8 +83,7 @@ class Body {
     return add_condition(*parts_, driven({}, nodes, std::move(motion), std::move(options)));
   }
   /// A pressure that follows the surface, Pa, positive against the outward normal, on facets of the
-  /// boundary told by their corners, from either side. Pressing the same facets again replaces it. The
-  /// stable step does not know its stiffness.
+  /// boundary told by their corners, from either side. Pressing the same facets again replaces it.
   Handle press(Facets const& facets, double pascals) {
     return pliant::press(*parts_, facets, pascals);
   }
@@ -93,18 +92,23 @@ class Body {
   /// The forces that a condition exerts, N, at each of its nodes in ascending order.
   Points reactions(Handle handle) { return pliant::reactions(*parts_, handle); }
   /// Adds a force term of the user's own: a physics on sets of nodes, which stays with them when the mesh
-  /// changes (see ConnectedTerm).
+  /// changes (see ConnectedTerm). The stable step knows its stiffness at the moment it is asked.
   template <template <class> class Physics, std::size_t Nodes>
   void add(std::vector<std::array<Index, Nodes>> sets, Physics<double> const& physics) {
+    static_assert(NodalPhysics<Physics>,
+                  "a physics for body.add has energy(rest, u) or force(rest, u)");
+    static_assert(Physics<double>::dim == dim, "a physics for body.add has the body's dimension");
+    static_assert(Physics<double>::nodes == int{Nodes},
+                  "each set has as many nodes as the physics");
     check_sets(sets);
-    add([sets = std::move(sets), physics](
+    add([sets = std::move(sets), physics, origin = parts_->layout.middle](
             B const& b,
             std::vector<Index> const& internal) -> std::unique_ptr<AnyForceTerm<B, dim>> {
       auto own = sets;
       for (auto& set : own)
         for (Index& node : set) node = internal[static_cast<std::size_t>(node)];
-      return std::make_unique<ConnectedTerm<B, Physics>>(b, std::move(own), physics,
-                                                         static_cast<Index>(internal.size()));
+      return std::make_unique<ConnectedTerm<B, Physics>>(
+          b, std::move(own), physics, static_cast<Index>(internal.size()), origin);
     });
   }
   /// Any other: `make` is called again when the numbering of nodes changes.
@@ -198,6 +202,8 @@ class Body {
   }
   template <std::size_t Nodes>
   void check_sets(std::vector<std::array<Index, Nodes>> const& sets) const {
+    if (sets.empty())
+      throw Error("body.add: there are no sets of nodes; give those that the force term acts on");
     for (auto const& set : sets)
       for (Index node : set)
         if (node < 0 || node >= nodes())

@@ -34,6 +34,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   std::vector<double> mass_list;                // kg, in the user's order, slaves' handed on
   std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
   Index nodes = 0;
+  Point<dim> middle{};  // m, of the box around the body: `rest` is relative to it
   Array<Index> user_node_array;
   Array<T> rest, f;           // (nodes, 4); f with scratch rows behind
   Array<T> mass;              // (nodes)
@@ -175,6 +176,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// Positions relative to the middle of the body: single precision keeps its digits.
   void upload_rest(B const& backend, Mesh<Es...> const& mesh) {
     auto const box = extent(mesh);
+    middle = box.middle;
     std::vector<Point<dim>> relative = mesh.nodes;
     for (auto& p : relative)
       for (std::size_t k = 0; k < dim; ++k) p[k] -= box.middle[k];

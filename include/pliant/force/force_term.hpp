@@ -14,7 +14,7 @@ namespace pliant {
 /// Where a force term is asked: positions at rest and displacements of all nodes, in a backend's memory.
 template <class T, int Dim>
 struct Placement {
-  NodeField<T const, Dim> rest, u;  // (nodes, dim), m
+  NodeField<T const, Dim> rest, u;  // (nodes, dim), m; rest relative to the body's middle
 };
 
 /// What a force term makes of one of its elements, on the host in double precision.
@@ -67,7 +67,8 @@ class AnyForceTerm {
                                    Field f) const = 0;
   virtual void add_diagonal(B const& backend, At const& at, int column, Field diagonal) const = 0;
   virtual void add_row_sums(B const& backend, At const& at, Field rows) const = 0;
-  /// Calls visit for each element; rest(node), u(node) give a node's place and displacement.
+  /// Calls visit for each element; rest(node), u(node) give a node's place, relative to the body's middle,
+  /// and displacement.
   using HostField = std::function<Point<Dim>(Index)>;
   virtual void for_each_element(HostField const& rest, HostField const& u, bool with_stiffness,
                                 std::function<void(ElementMatrix const&)> const& visit) const = 0;

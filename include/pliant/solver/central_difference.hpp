@@ -164,10 +164,10 @@ class CentralDifference {
       throw Error(what,
                   ", and there is no earlier state to go back to since the mesh, a condition or "
                   "the state was changed by hand; start from a finite state, with a smaller step");
-    double const slower = own.slower;
+    double const slower = own.slower, step = own.step;
     roll_back(parts);
     if (slower >= 8)
-      throw Error(what, ", with an eighth of the step too (", own.step, " s); it is now at step ",
+      throw Error(what, ", with an eighth of the step too (", step, " s); it is now at step ",
                   state.steps, " and time ", state.time,
                   " s, before that: look at its loads, and at laws that soften or cannot invert");
     own.slower = 2 * slower;
