@@ -1,0 +1,5 @@
+#include <pliant/openmp.hpp>
+
+#include "write_a_force_term.hpp"
+
+int main() { write_a_force_term::run(pliant::OpenMP<double>{}); }
