@@ -154,6 +154,7 @@ TEST_CASE("slaves need masters whose weights add up to one", "[mesh][errors]") {
   refused({4, {{2, 0.5}, {3, 0.4}}});
   refused({4, {{2, 1.5}, {3, -0.5}}});
   refused({4, {{2, 0.5}, {3, NAN}}});
+  refused({4, {{2, 0.25}, {3, 0.75}}});  // elsewhere on the edge
   refused({4, {}});
   refused({4, {{4, 0.5}, {3, 0.5}}});
   refused({4, {{2, 0.5}, {8, 0.5}}});

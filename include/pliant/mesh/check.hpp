@@ -43,11 +43,11 @@ void check_elements(M const& mesh) {
     }
     // Corners and quadrature points: where a map first folds, and where the forces look.
     double const smallest = 1e-12 * std::pow(size, E::dim);
+    auto const coefficients = Coefficients<E, double>::of(rest);
     auto const check = [&]<class Q>(Q) {
       constexpr auto table = tabulate<E, Q, double>();
       for (int q = 0; q < table.count; ++q) {
-        double const det =
-            RestMap<E, double>::at(Coefficients<E, double>::of(rest), table, q).volume;
+        double const det = RestMap<E, double>::at(coefficients, table, q).volume;
         if (!(det > smallest))
           throw Error("mesh: ", describe<E>(mesh, e), " is ",
                       det < -smallest ? "inverted" : "degenerate", " (Jacobian determinant ", det,
@@ -175,8 +175,8 @@ void check_hanging(M const& mesh) {
     }
 }
 
-/// Throws Error where slaves name nodes that there are not, twice, or with weights that are not positive or do
-/// not add up to one.
+/// Throws Error where slaves name nodes that there are not, with weights that are not positive or do not add up to
+/// one, or that put the slave elsewhere: a rotation would strain the elements there.
 template <class M>
 void check_slaves(M const& mesh) {
   auto const count = static_cast<Index>(mesh.nodes.size());
@@ -190,6 +190,19 @@ void check_slaves(M const& mesh) {
     if (!good || !(std::abs(sum - 1) < 1e-9))
       throw Error("mesh: slave ", node,
                   " needs masters among the mesh's nodes, with positive weights that add up to 1");
+    auto const& place = mesh.nodes[static_cast<std::size_t>(node)];
+    Point<M::dim> off{};
+    double reach = 0;
+    for (auto const& [master, weight] : masters)
+      for (std::size_t k = 0; k < M::dim; ++k) {
+        double const apart = mesh.nodes[static_cast<std::size_t>(master)][k] - place[k];
+        off[k] += weight * apart;
+        reach = std::max(reach, std::abs(apart));
+      }
+    for (double x : off)
+      if (!(std::abs(x) <= 1e-5 * reach))
+        throw Error("mesh: slave ", node, " at ", place, " is ", off,
+                    " away from where its masters and weights put it; correct one of them");
   }
 }
 
