@@ -190,6 +190,75 @@ TEST_CASE("a call that is refused leaves the body as it was", "[body]") {
   });
 }
 
+/// Like NeoHookean, with λ and μ of each element.
+using Graded = Formulation<Quad4, Gauss<2>, PerElement<NeoHookean>::template law>;
+
+TEST_CASE("numbers that single precision cannot hold are refused", "[body][errors]") {
+  on_each_backend<Backends<float>>([]<class B>(B const& backend) {
+    auto const mesh = sheet();
+    auto body = body_of<Rubber>(backend, mesh);
+    body.set_velocities(Random(1).field<2>(9, 0.1));
+    CentralDifference step{{.step = 1e-3}};
+    step(body, 3);
+    auto const before = all_of(body);
+    FieldOf<2> big(9);
+    big[4][1] = 1e39;
+    std::string const large = " is too large for single precision";
+
+    CHECK_THROWS_WITH(body.set_loads(big), says("body.set_loads: the value at node 4" + large));
+    CHECK_THROWS_WITH(body.set_load(3, {0, -1e39}), says("set_load: the force at node 3" + large));
+    CHECK_THROWS_WITH(body.set_velocities(big),
+                      says("set_velocities: the value at node 4" + large));
+    CHECK_THROWS_WITH(body.set_displacements(big), says("set_displacements: the value at node 4"));
+    CHECK_THROWS_WITH(body.set_gravity({0, -1e39}), says("set_gravity: -1e+39" + large));
+    CHECK_THROWS_WITH(body.set_damping(1e39), says("set_damping: 1e+39" + large));
+    CHECK_THROWS_WITH(body.press(mesh.boundary("left"), 1e39), says("single precision"));
+    CHECK_THROWS_WITH(body.drive(std::vector<Index>{5},
+                                 [](double) {
+                                   return Point<2>{1e39, 0};
+                                 }),
+                      says("node 5") && says("single precision"));
+    CHECK((all_of(body) == before));
+
+    CHECK_THROWS_WITH(body_of<Rubber>(backend, mesh, {1e39, 0.3, 1}), says("32 bits cannot hold"));
+    for (double density : {1e39, 1e-46})
+      CHECK_THROWS_WITH(body_of<Rubber>(backend, mesh, {1, 0.3, density}),
+                        says("32 bits cannot hold the mass of a node"));
+    auto vast = mesh;
+    for (auto& x : vast.nodes) x = {1e39 * x[0], 1e39 * x[1]};
+    CHECK_THROWS_WITH(body_of<Rubber>(backend, vast), says("32 bits cannot hold"));
+    CHECK_THROWS_WITH(
+        (Body{backend, mesh, soft, Group<Graded>{.values = {{3, 2}, {3, 2}, {1e39, 2}, {3, 2}}}}),
+        says("value 0 of Quad4 element 2 is too large for single precision"));
+  });
+}
+
+TEST_CASE("double precision takes what single precision refuses", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = body_of<Rubber>(backend, sheet());
+    CHECK_NOTHROW(body.set_load(3, {0, -1e39}));
+    CHECK_NOTHROW(body.set_gravity({0, -1e39}));
+    CHECK_NOTHROW(body_of<Rubber>(backend, sheet(), {1e39, 0.3, 1}));
+    CHECK_NOTHROW((Body{backend, sheet(), soft, Group<Graded>{.values = {{1e39, 1e39}}}}));
+  });
+}
+
+TEST_CASE("central differences refuse options that are no numbers or negative", "[body][errors]") {
+  for (double bad : {double{NAN}, -1e-3}) {
+    CHECK_THROWS_WITH(CentralDifference({.step = bad}), says("step"));
+    CHECK_THROWS_AS(CentralDifference({.safety = bad}), Error);
+    CHECK_THROWS_AS(CentralDifference({.energy_growth = bad}), Error);
+    CHECK_THROWS_AS(CentralDifference({.energy_drift = bad}), Error);
+  }
+  CHECK_THROWS_AS(CentralDifference({.step = INFINITY}), Error);
+  CHECK_THROWS_AS(CentralDifference({.safety = 1.5}), Error);
+  CHECK_THROWS_AS(CentralDifference({.check_interval = 0}), Error);
+  auto body = body_of<Rubber>(MainBackend{}, sheet());
+  CentralDifference step;
+  CHECK_THROWS_WITH(step(body, -1), says("-1 steps"));
+  CHECK(body.steps() == 0);
+}
+
 TEST_CASE("a motion that ends in nowhere stops the body with a message", "[body]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, sheet());

@@ -163,15 +163,24 @@ TEST_CASE("pressures that are not finite or nowhere are refused", "[body][errors
   CHECK_THROWS_WITH(body.press({Facet<2>{1}}, 1), says("is not on the boundary"));
   CHECK_THROWS_WITH(body.press({Facet<2>{0, 1}, Facet<2>{1, 0}}, 1), says("twice"));
   CHECK(body.state().prescribed->pressures.empty());
-  body.press({Facet<2>{6, 3}}, 1);
+  CHECK_THROWS_WITH(body.press({}, 1), says("there is no facet"));
+}
+
+TEST_CASE("pressing the facets of a refined mesh replaces what they inherited", "[body]") {
+  using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+  auto const mesh = mesh::rectangle<Tri3>({.size = {1, 1}, .cells = {2, 2}});
+  auto body = body_of<F>(MainBackend{}, mesh);
+  auto const pressed = body.press(mesh.boundary("left"), 1);
   refine(body, {{5}});
-  CHECK_THROWS_WITH(
-      body.press(body.mesh().boundary("left"), 1),
-      says("before the first refinement") && says("body.state().prescribed->pressures[k].facets"));
-  body.press(body.state().prescribed->pressures[0].facets, 2);
+  auto const left = body.mesh().boundary("left");
+  REQUIRE(left.size() == 3);
+
+  CHECK(body.press(left, 2) == pressed);
+
   REQUIRE(body.state().prescribed->pressures.size() == 1);
-  CHECK(body.state().prescribed->pressures[0].facets.size() == 2);
+  CHECK(body.state().prescribed->pressures[0].facets == left);
   CHECK(body.state().prescribed->pressures[0].pascals == 2);
+  CHECK_THROWS_WITH(body.press(mesh.boundary("left"), 1), says("is not on the boundary"));
 }
 
 }  // namespace pliant::test

@@ -66,7 +66,7 @@ void assign_group(Parts& parts, std::vector<Index> const& elements) {
 namespace detail {
 
 /// What laws read per element, for the elements of one type: (elements, values), by the user's number.
-template <Element E, class... Fs>
+template <class T, Element E, class... Fs>
 std::vector<double> element_values_of(std::tuple<Group<Fs>...> const& groups,
                                       Elastic const& material, std::size_t count) {
   std::vector<std::vector<double>> columns;  // by value
@@ -80,9 +80,10 @@ std::vector<double> element_values_of(std::tuple<Group<Fs>...> const& groups,
         columns.emplace_back(count);
         for (std::size_t e = 0; e < count; ++e) {
           double const x = group.values[group.values.size() == 1 ? 0 : e][k];
-          if (!std::isfinite(x))
+          if (!std::isfinite(static_cast<T>(x)))
             throw Error("body: value ", k, " of ", E::name(), " element ", e,
-                        " is not finite; mend the group's values");
+                        std::isfinite(x) ? " is too large for single precision" : " is not finite",
+                        "; mend the group's values");
           columns.back()[e] = x;
         }
       }

@@ -72,6 +72,15 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     std::vector<T> masses(mass_list.size());
     for (std::size_t i = 0; i < masses.size(); ++i)
       masses[static_cast<std::size_t>(internal_node[i])] = static_cast<T>(mass_list[i]);
+    bool held_by_T = std::isfinite(static_cast<T>(material.density));
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      T const m = masses[static_cast<std::size_t>(internal_node[i])];
+      held_by_T = held_by_T && std::isfinite(m) && (m > T(0) || !(mass_list[i] > 0));
+    }
+    if (!held_by_T)
+      throw Error("body: ", 8 * sizeof(T),
+                  " bits cannot hold the mass of a node under the density ", material.density,
+                  " kg/m³; take double, or other units");
     mass = upload(backend, masses);
   }
 
@@ -180,7 +189,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     std::vector<Point<dim>> relative = mesh.nodes;
     for (auto& p : relative)
       for (std::size_t k = 0; k < dim; ++k) p[k] -= box.middle[k];
-    rest = upload(backend, padded(relative));
+    auto const places = padded(relative);
+    for (T x : places)
+      if (!std::isfinite(x))
+        throw Error("body: the mesh reaches over ", 2 * box.reach, " m, which ", 8 * sizeof(T),
+                    " bits cannot hold; take other units");
+    rest = upload(backend, places);
   }
 
   void lump_mass(Topology<Mesh<Es...>> const& topology, double density) {
