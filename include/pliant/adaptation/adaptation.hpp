@@ -98,6 +98,7 @@ class Adaptation {
     for_each_check(parts, [](auto const& check) { check.act(); });
     parts.timers.criteria.stop();
     regroup(parts);
+    book_switching(parts);
   }
   /// Call after tags changed.
   template <class Parts>

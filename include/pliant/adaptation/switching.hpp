@@ -70,7 +70,8 @@ struct ActVisitor {
   /// modified energy (Hairer, Lubich and Wanner, Geometric Numerical Integration, IX.3), to second order
   /// W + v·M·v/2 + Δt² (v·∇²W v − a·M·a/2)/12 with velocities of the present time, and with those of the half
   /// step before, while a half-kick is pending, W + v·M·v/2 − Δt/2 v·∇W + Δt² (v·∇²W v + a·M·a)/12. Of
-  /// its change, all but the square of the forces' is an element's own.
+  /// its change, all but the square of the forces' is an element's own; that is
+  /// booked by book_switching.
   template <int From, int To, class Again, class Tally>
   [[gnu::noinline]] constexpr void move(Index e, Again const& again, Tally const& tally) const {
     using Old = typename Table::template formulation<From>;

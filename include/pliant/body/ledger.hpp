@@ -90,7 +90,7 @@ std::vector<int> switch_counts(TheBody const& body) {
 /// What switching and refining have added to the strain and kinetic energy so far, J.
 template <class Parts>
 double adaptation_energy_of(Parts const& parts) {
-  double sum = 0;
+  double sum = download<double>(parts.state.work)[static_cast<std::size_t>(Work::switching)];
   for (auto const& entry : parts.state.record.refinements)
     sum += entry.strain_energy + entry.kinetic_energy;
   detail::for_each_numbered_type(
@@ -138,7 +138,8 @@ double booked_energy(Parts const& parts) {
 }
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved
-/// between, summed over time, and one per refinement.
+/// between, summed over time, one of what elements that moved together added beyond that, and one per
+/// refinement.
 template <DeformableBody TheBody>
 auto ledger(TheBody const& body) {
   auto entries = body.state().record.refinements;
@@ -160,6 +161,9 @@ auto ledger(TheBody const& body) {
                    {}});
           }
       });
+  double const together =
+      download<double>(body.state().work)[static_cast<std::size_t>(Work::switching)];
+  if (together != 0) entries.push_back({body.time(), "groups together", 0, 0, together, {}});
   return entries;
 }
 

@@ -67,7 +67,22 @@ struct Advance {
   }
 };
 
-/// The acceleration of a node, zero in directions that are held.
+/// The acceleration of a node of mass m > 0, zero in directions that are held.
+template <class T, int Dim>
+PLIANT_HOST_DEVICE Vector<T, Dim> acceleration_of(Index i, NodeField<T const, Dim> f, T m,
+                                                  DirectionMask held,
+                                                  ExternalForces<T, Dim> const& external) {
+  auto a = Vector<T, Dim>::zero();
+  for (int k = 0; k < Dim; ++k) {
+    if (held >> k & 1) continue;
+    T force = f(i, k);
+    if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
+    a[k] = force / m + external.gravity[k];
+  }
+  return a;
+}
+
+/// The accelerations of all nodes, zero where there is no mass.
 template <class T, int Dim>
 struct Accelerate {
   NodeField<T, Dim> acceleration;
@@ -77,15 +92,25 @@ struct Accelerate {
   ExternalForces<T, Dim> external;
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    auto a = Vector<T, Dim>::zero();
     T const m = mass[i];
-    for (int k = 0; k < Dim && m > T(0); ++k) {
-      if (held[i] >> k & 1) continue;
-      T force = f(i, k);
-      if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
-      a[k] = force / m + external.gravity[k];
-    }
-    acceleration.set(i, a);
+    acceleration.set(
+        i, m > T(0) ? acceleration_of(i, f, m, held[i], external) : Vector<T, Dim>::zero());
+  }
+};
+
+/// scale m |a' − a|² of a node, J, where a are accelerations of before and a' those of the present forces.
+template <class T, int Dim>
+struct SwitchingWork {
+  NodeField<T const, Dim> before, f;
+  T const* mass;
+  DirectionMask const* held;
+  ExternalForces<T, Dim> external;
+  double scale;  // s²
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    T const m = mass[i];
+    if (!(m > T(0))) return 0;
+    auto const change = acceleration_of(i, f, m, held[i], external) - before.at(i);
+    return scale * static_cast<double>(m) * static_cast<double>(dot(change, change));
   }
 };
 

@@ -13,8 +13,8 @@
 namespace pliant {
 
 /// Work that is summed where loops run, J: of changes of loads, of mass damping, of driven nodes, of
-/// pressures.
-enum class Work : int { changed_loads, damping, motions, pressures, count };
+/// pressures; and of changes of group, what no element knows alone (see SwitchingWork).
+enum class Work : int { changed_loads, damping, motions, pressures, switching, count };
 
 /// What a run changes of the elements of one type, in internal order.
 template <Backend B, int Groups>
