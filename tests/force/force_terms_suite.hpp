@@ -52,7 +52,7 @@ using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Stiffer = Formulation<Quad4, Gauss<3>, SaintVenantKirchhoff>;
 using Sets = std::vector<std::array<Index, 2>>;
 
-static_assert(NodalPhysics<Spring> && NodalPhysics<Swirl>);
+static_assert(NodalPhysics<Spring<double>> && NodalPhysics<Swirl<double>>);
 static_assert(detail::HasEnergy<Spring<double>, double> &&
               !detail::HasEnergy<Swirl<double>, double>);
 

@@ -130,17 +130,18 @@ class Adaptation {
   /// Tells rules of other types or numbers apart.
   static std::uint64_t key_of(Rules const&... rules) {
     std::string text;
-    auto const add = [&](auto const& rule) {
-      text += detail::plain_type_name<std::remove_cvref_t<decltype(rule)>>();
-      double const numbers[] = {rule.marking.amount, rule.marking.floor,
-                                static_cast<double>(rule.marking.budget)};
-      for (double number : numbers) {
-        text += ' ';
-        detail::MessagePiece(number).add_to(text);
-      }
-    };
-    (add(rules), ...);
+    (name_rule(text, rules), ...);
     return checksum(text);
+  }
+  template <class TheRule>
+  static void name_rule(std::string& text, TheRule const& rule) {
+    text += detail::plain_type_name<TheRule>();
+    double const numbers[] = {rule.marking.amount, rule.marking.floor,
+                              static_cast<double>(rule.marking.budget)};
+    for (double number : numbers) {
+      text += ' ';
+      detail::MessagePiece(number).add_to(text);
+    }
   }
 
   std::uint64_t key_;  // of the last look in a body's record

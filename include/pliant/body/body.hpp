@@ -95,7 +95,7 @@ class Body {
   /// changes (see ConnectedTerm). The stable step knows its stiffness at the moment it is asked.
   template <template <class> class Physics, std::size_t Nodes>
   void add(std::vector<std::array<Index, Nodes>> sets, Physics<double> const& physics) {
-    static_assert(NodalPhysics<Physics>,
+    static_assert(NodalPhysics<Physics<double>>,
                   "a physics for body.add has energy(rest, u) or force(rest, u)");
     static_assert(Physics<double>::dim == dim, "a physics for body.add has the body's dimension");
     static_assert(Physics<double>::nodes == int{Nodes},

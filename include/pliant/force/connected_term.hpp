@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-/// What a ConnectedTerm takes: an energy or forces of a set of nodes.
-template <template <class> class Physics>
+/// What a ConnectedTerm takes, with parameters of type double: an energy or forces of a set of nodes.
+template <class P>
 concept NodalPhysics = requires {
-  { Physics<double>::nodes } -> std::convertible_to<int>;
-  { Physics<double>::dim } -> std::convertible_to<int>;
-} && (detail::HasEnergy<Physics<double>, double> || detail::HasForce<Physics<double>, double>);
+  { P::nodes } -> std::convertible_to<int>;
+  { P::dim } -> std::convertible_to<int>;
+} && (detail::HasEnergy<P, double> || detail::HasForce<P, double>);
 
 /// A force term of one physics on a list of small sets of nodes: faces under pressure, springs, nodes above
 /// a floor. A Physics<T> is an aggregate of parameters of type T, as a law is, with
@@ -22,7 +22,7 @@ concept NodalPhysics = requires {
 ///   force(rest, u)             (nodes, dim), N, where there is no energy
 /// for scalars of every kind: T, packs, dual numbers. All else is derived.
 template <Backend B, template <class> class Physics>
-  requires NodalPhysics<Physics>
+  requires NodalPhysics<Physics<double>>
 class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
   using Base = AnyForceTerm<B, Physics<double>::dim>;
   static constexpr int Nodes = Physics<double>::nodes, Dim = Physics<double>::dim;
