@@ -73,6 +73,27 @@ TEST_CASE("a simulator's own arrays follow the mesh of a body", "[topology]") {
   });
 }
 
+TEST_CASE("forces of arrays that a simulator carried over are those of the body", "[topology]") {
+  on_plane_meshes<AllBackends>(4, []<class B, class M>(B const& backend, M const& mesh) {
+    using T = typename B::scalar;
+    auto body = plane_body(backend, mesh);
+    auto u = rounded<T>(Random(4).field<2>(mesh.nodes.size(), 0.02));
+    body.set_displacements(u);
+    body.on_change([&](auto const& change) { u = change.transfer.carry_nodes(std::move(u)); });
+    Random random(3);
+    for (int k = 0; k < 2; ++k) refine(body, random_marks(body, random, 3));
+
+    auto const at = upload(backend, flat<T>(u));
+    auto f = upload(backend, flat<T>(FieldOf<2>(u.size())));
+    body.add_force(at.data(), f.data());
+
+    auto const own = body.forces();
+    double const rounding = 4096 * epsilon_of<decltype(body)>;
+    REQUIRE(u.size() == own.size());
+    CHECK(difference(per_node<2>(download<T>(f)), own) < rounding * largest(own));
+  });
+}
+
 /// The strain along x of an element.
 struct Longer {
   template <class State>
