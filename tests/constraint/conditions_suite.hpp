@@ -188,13 +188,16 @@ TEST_CASE("facets told by their corners hold the nodes between these too", "[con
 
 TEST_CASE("motions have names of their own", "[constraint][errors]") {
   auto body = body_of<Rubber>(MainBackend{}, strip());
-  body.drive(std::vector<Index>{0}, drawn_at(1), {.name = "pull"});
+  auto const pull = body.drive(std::vector<Index>{0}, drawn_at(1), {.name = "pull"});
   CHECK_THROWS_WITH(body.drive(std::vector<Index>{1}, drawn_at(1), {.name = "pull"}),
                     says("a motion called \"pull\" already"));
   CHECK(body.state().prescribed->conditions.size() == 1);
   body.drive(std::vector<Index>{1}, drawn_at(1));
   body.drive(std::vector<Index>{2}, drawn_at(1));
   CHECK(body.parts().motions.size() == 3);
+  body.release(pull);  // its name is free again
+  body.drive(std::vector<Index>{0}, drawn_at(2), {.name = "pull"});
+  CHECK(body.parts().motions.at("pull")({}, 1) == Point<2>{2, 0});
 }
 
 TEST_CASE("a motion that turns NaN stops a run before anything changes", "[constraint][errors]") {

@@ -371,7 +371,8 @@ TEST_CASE("the stable step knows springs that are stiffer than the body", "[forc
     CHECK(total_energy(body) < 1.5 * energy);
     CentralDifference without{{.step = 0.9 * before}};  // the step if it did not know them
     step(body);
-    CHECK_THROWS_WITH(without(body, 3000), says("with an eighth of the step too") && !says("(0 s)"));
+    CHECK_THROWS_WITH(without(body, 3000),
+                      says("with an eighth of the step too") && !says("(0 s)"));
   });
 }
 
