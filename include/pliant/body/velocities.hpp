@@ -120,19 +120,18 @@ void evaluate_accelerations(Parts& parts) {
 template <class Parts>
 void book_switching(Parts& parts) {
   bool const pending = parts.state.pending_half_kick != 0;
-  double const half =
-      pending ? parts.state.pending_half_kick : parts.state.integrator.step / 2;
+  double const half = pending ? parts.state.pending_half_kick : parts.state.integrator.step / 2;
   if (half == 0) return;
   evaluate_forces(parts);
-  parts.backend.add_sum(parts.layout.nodes,
-                        SwitchingWork<typename Parts::T, Parts::dim>{
-                            {parts.acceleration.data()},
-                            {parts.layout.f.data()},
-                            parts.layout.mass.data(),
-                            parts.layout.held.data(),
-                            external_forces(parts),
-                            half * half * (pending ? 1.0 / 3 : -1.0 / 6)},
-                        parts.state.work.data() + static_cast<int>(Work::switching));
+  parts.backend.add_sum(
+      parts.layout.nodes,
+      SwitchingWork<typename Parts::T, Parts::dim>{{parts.acceleration.data()},
+                                                   {parts.layout.f.data()},
+                                                   parts.layout.mass.data(),
+                                                   parts.layout.held.data(),
+                                                   external_forces(parts),
+                                                   half * half * (pending ? 1.0 / 3 : -1.0 / 6)},
+      parts.state.work.data() + static_cast<int>(Work::switching));
 }
 
 /// Σ m v²/2, J.
