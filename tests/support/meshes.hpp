@@ -112,7 +112,8 @@ struct PartOfMesh {
   Mesh<E> mesh;
   std::vector<Index> nodes;  // in the whole mesh
 
-  PartOfMesh(Mesh<E> const& whole, std::vector<Index> const& members) {
+  template <class M>
+  PartOfMesh(M const& whole, std::vector<Index> const& members) {
     std::vector<Index> number(whole.nodes.size(), -1);
     for (Index e : members) {
       auto element = whole.template elements<E>()[static_cast<std::size_t>(e)];

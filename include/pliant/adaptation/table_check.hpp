@@ -125,6 +125,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
       visit(statistics.since, kept.since);
       visit(statistics.switches, kept.switches);
       visit(statistics.counters, kept.counters);
+      visit(parts_.state.work, kept.work);  // of all tables, in each the same
       visit(elements_.internal_variables, kept.internal_variables);
     }
   }

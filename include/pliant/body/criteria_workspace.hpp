@@ -81,6 +81,7 @@ struct CriteriaWorkspace {
     Array<std::int64_t> since;
     Array<std::int32_t> switches;
     Array<double> counters;
+    Array<double> work;
     Array<T> internal_variables;
   } kept;
 
