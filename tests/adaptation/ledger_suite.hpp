@@ -20,7 +20,7 @@ double modified_energy(TheBody& body) {
   auto const held =
       held_directions(parts, std::span(std::as_const(parts.state.prescribed->conditions)));
   std::size_t const nodes = u.size();
-  std::vector<double> place, after, before, product(2 * nodes, 0.0);
+  std::vector<double> place, after, before;
   double sum = 0;
   for (std::size_t i = 0; i < nodes; ++i)
     for (std::size_t k = 0; k < 2; ++k) {
@@ -33,7 +33,10 @@ double modified_energy(TheBody& body) {
       after.push_back(v[i][k] + step / 2 * a);
       before.push_back(v[i][k] - step / 2 * a);
     }
-  body.add_tangent_product(place.data(), after.data(), product.data(), -1);
+  auto const here = upload(parts.backend, place), along = upload(parts.backend, after);
+  auto pull = zeros<double>(parts.backend, 2 * nodes);
+  body.add_tangent_product(here.data(), along.data(), pull.data(), -1);
+  auto const product = download<double>(pull);
   for (std::size_t i = 0; i < product.size(); ++i) sum += before[i] * product[i];
   return kept + step * step / 12 * sum;
 }

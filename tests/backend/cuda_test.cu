@@ -11,6 +11,7 @@
 #include "support/catch.hpp"
 
 using namespace pliant;
+using pliant::test::Approx;
 
 static_assert(Backend<Cuda<float>> && Backend<Cuda<double>>);
 

@@ -14,15 +14,21 @@ HalfKick<typename Parts::T> half_kick(Parts const& parts, double time) {
 
 namespace detail {
 
+/// Whether some terms have no energy; makes room for their forces, which a recorded step cannot.
+template <class Parts>
+bool reserve_terms_without_energy(Parts& parts) {
+  bool any = false;
+  for_each_added_term(parts, [&](auto const& term) { any = any || !term.has_energy(); });
+  if (any && parts.without_energy.size() != parts.layout.f.size())
+    parts.without_energy = zeros<typename Parts::T>(parts.backend, parts.layout.f.size());
+  return any;
+}
+
 /// Brings parts.without_energy up to date: the forces of the terms that have no energy, and so do work that the
 /// energies do not tell.
 template <class Parts>
 bool evaluate_terms_without_energy(Parts& parts) {
-  bool any = false;
-  for_each_added_term(parts, [&](auto const& term) { any = any || !term.has_energy(); });
-  if (!any) return false;
-  if (parts.without_energy.size() != parts.layout.f.size())
-    parts.without_energy = zeros<typename Parts::T>(parts.backend, parts.layout.f.size());
+  if (!reserve_terms_without_energy(parts)) return false;
   typename Parts::Field const f{parts.without_energy.data()};
   clear_rows(parts, f);
   for_each_added_term(parts, [&](auto const& term) {

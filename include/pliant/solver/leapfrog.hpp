@@ -27,7 +27,9 @@ void take_steps(Parts& parts, double dt, int steps) {
     place_driven_nodes(parts);
   }
   if (steps == 0) return;
-  (void)external_forces(parts);  // hands loads on to masters, which is no part of a step
+  // What allocates or hands loads on to masters is no part of a step.
+  (void)external_forces(parts);
+  (void)detail::reserve_terms_without_energy(parts);
   if (!parts.recorded || parts.recorded->dt != dt || parts.recorded->revision != parts.revision) {
     parts.recorded =
         typename Parts::Recorded{parts.backend.record([&parts, dt] {
