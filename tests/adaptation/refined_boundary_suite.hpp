@@ -26,4 +26,25 @@ TEST_CASE("conditions, pressures and named boundaries go over to both halves of 
   });
 }
 
+TEST_CASE("a family keeps the momentum of distorted parents", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+    auto const mesh = distorted_mesh<Quad4>(4);
+    auto body = body_of<Rubber>(backend, mesh);
+    body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 1));
+    auto const momentum = [&] {
+      auto p = body.velocities();
+      for (std::size_t i = 0; i < p.size(); ++i)
+        for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
+      return total(p);
+    };
+    auto const before = momentum();
+
+    refine(body, {{3, 5}});
+
+    for (std::size_t k = 0; k < 2; ++k)
+      CHECK(momentum()[k] == Approx(before[k]).margin(1e-13 * soft.density));
+  });
+}
+
 }  // namespace pliant::test
