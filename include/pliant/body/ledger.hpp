@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/body/body.hpp>
+#include <pliant/body/parts.hpp>
 
 // What a user can read of a body's adaptation.
 namespace pliant {
