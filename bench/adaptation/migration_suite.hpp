@@ -63,19 +63,31 @@ void time_check(benchmark::State& state, B const& backend, int cells, double mov
   state.counters["moved"] = moves(body) - before;
 }
 
-/// Forces while half of the elements, at random, follow the other law.
-template <class E, class B>
-void time_mixed_force(benchmark::State& state, B const& backend, int cells) {
-  auto& body = made_once([&] {
-    auto b = two_laws<E>(backend, cells);
-    exchange_above<E>(ratio_exceeded_by<E>(0.5, b)).now(b);
-    return b;
-  });
+/// Forces of the body that make() makes.
+template <class B, class Make>
+void time_forces_of(benchmark::State& state, B const& backend, Make const& make) {
+  auto& body = made_once(make);
   measure(state, backend, [&] {
     forget_forces(body.parts());
     evaluate_forces(body.parts());
   });
   report_elements(state, body);
+}
+
+/// While half of the elements, at random, follow the other law.
+template <class E, class B>
+void time_mixed_force(benchmark::State& state, B const& backend, int cells) {
+  time_forces_of(state, backend, [&] {
+    auto b = two_laws<E>(backend, cells);
+    exchange_above<E>(ratio_exceeded_by<E>(0.5, b)).now(b);
+    return b;
+  });
+}
+
+/// While all elements follow the first of the laws; the others are compiled in, and have none.
+template <class... Fs, class B>
+void time_first_law(benchmark::State& state, B const& backend, int cells) {
+  time_forces_of(state, backend, [&] { return shaken_body<Fs...>(backend, cells); });
 }
 
 inline void add_migrations() {
@@ -91,6 +103,10 @@ inline void add_migrations() {
       add_one("check", [](auto& s, auto const& b, int n) { time_check<E>(s, b, n, 0); });
       add_one("migration", [](auto& s, auto const& b, int n) { time_check<E>(s, b, n, 0.01); });
       add_one("mixed_force", [](auto& s, auto const& b, int n) { time_mixed_force<E>(s, b, n); });
+      add_one("one law", [](auto& s, auto const& b, int n) { time_first_law<Better<E>>(s, b, n); });
+      add_one("second law", [](auto& s, auto const& b, int n) {
+        time_first_law<Better<E>, Usual<E, NeoHookean>>(s, b, n);
+      });
     };
     if (role == Role::scalar) return;
     if constexpr (sizeof(T) == 4) {

@@ -1,19 +1,31 @@
 #pragma once
 
+#include <algorithm>
+#include <memory>
+
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/adaptation/table_check.hpp>
-#include <pliant/backend/value_at.hpp>
+#include <pliant/backend/host_recording.hpp>
 #include <pliant/body/checksum.hpp>
 #include <pliant/body/plain_type_name.hpp>
 
 namespace pliant {
 
 namespace detail {
-struct SetZero {
-  double* value;
-  PLIANT_HOST_DEVICE void operator()(Index) const { *value = 0; }
+
+/// Begins a look: nothing moves so far, and the clock goes on to it.
+struct BeginLook {
+  double* moves;
+  std::int64_t* clock;
+  std::int64_t add;  // to what the clock says, or
+  std::int64_t set;  // what it says, where `add` is 0
+  PLIANT_HOST_DEVICE void operator()(Index) const {
+    *moves = 0;
+    *clock = add > 0 ? *clock + add : set;
+  }
 };
+
 }  // namespace detail
 
 /// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
@@ -38,13 +50,9 @@ class Adaptation {
   /// rolled back or loaded looks when the one before would have.
   template <DeformableBody TheBody>
   void operator()(TheBody& body) {
-    auto const& state = body.state();
-    auto& looks = body.parts().state.record.looks;
-    auto last = std::ranges::find(looks, key_, &LastLook::adaptation);
-    if (last == looks.end()) last = looks.insert(last, {key_, state.steps - 1});
-    if (interval_ > 1 && state.steps - last->step < interval_) return;
+    if (steps_to_look(body, body.steps() - 1) > 1) return;
     now(body);
-    last->step = state.steps;
+    last_look(body.parts(), body.steps()).step = body.steps();
   }
 
   /// Looks and acts at once, whatever the interval. When it throws (refinement would exceed the mesh's
@@ -54,11 +62,9 @@ class Adaptation {
     static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
                   "a rule is for an element type that the body's mesh does not have");
     auto& parts = body.parts();
-    parts.timers.criteria.start();
-    if (parts.moves.size() == 0) parts.moves = zeros<double>(parts.backend, 1);
-    parts.backend.for_each(1, detail::SetZero{parts.moves.data()});
-    for_each_check(parts, [](auto const& check) { check.decide(); });
-    parts.timers.criteria.stop();
+    prepare(parts);
+    begin_look(parts, 0);
+    decide(parts);
     if constexpr (switches && refines) {
       for_each_check(parts, [](auto const& check) { check.keep(); });
       try {
@@ -76,9 +82,94 @@ class Adaptation {
     }
   }
 
+  int interval() const { return interval_; }
+  /// How many calls it takes until one looks, 1 or more, when the last call was at the present step.
+  template <DeformableBody TheBody>
+  int steps_to_look(TheBody& body) {
+    return steps_to_look(body, body.steps());
+  }
+  /// For integrators: take(look) takes n steps in which each look is recorded together with the steps before
+  /// it (see take_stretches) and returns n; 0 where it took none.
+  template <DeformableBody TheBody, class Take>
+  int take_stretches(TheBody& body, Take const& take) {
+    auto& parts = body.parts();
+    int const taken = take(RecordedLook{*this});
+    if (taken > 0) last_look(parts, parts.state.steps).step = parts.state.steps;
+    return taken;
+  }
+
  private:
   static constexpr bool switches = (SwitchingRule<Rules> || ...);
   static constexpr bool refines = (RefiningRule<Rules> || ...);
+
+  /// What an integrator records of a look; lives on in the recording.
+  class RecordedLook {
+   public:
+    explicit RecordedLook(Adaptation const& adapt) : adapt_(adapt) {}
+
+    int interval() const { return adapt_.interval_; }
+    std::shared_ptr<void const> const& identity() const { return adapt_.identity_; }
+    /// Refining passes through the host, timers do not run in recordings; on the host nothing would be gained.
+    template <class Parts>
+    bool can_record(Parts const& parts) const {
+      return !refines && !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
+             !parts.timers.criteria.timer && !parts.timers.migration.timer;
+    }
+    template <class Parts>
+    void prepare(Parts& parts) const {
+      adapt_.prepare(parts);
+      adapt_.begin_look(parts, 0);  // the clock
+    }
+    /// No forces are current after it.
+    template <class Parts>
+    void loop_over_look(Parts& parts) const {
+      adapt_.begin_look(parts, adapt_.interval_);
+      adapt_.decide(parts);
+      if constexpr (switches)
+        parts.backend.if_set(parts.moves.data(), [&] {
+          adapt_.move_elements(parts);
+          forget_forces(parts);
+        });
+    }
+
+   private:
+    Adaptation adapt_;
+  };
+
+  template <class Parts>
+  LastLook& last_look(Parts& parts, std::int64_t first) const {
+    auto& looks = parts.state.record.looks;
+    auto const found = std::ranges::find(looks, key_, &LastLook::adaptation);
+    return found != looks.end() ? *found : *looks.insert(found, {key_, first});
+  }
+  /// When the last call was at a step. A first one counts as made after a look.
+  template <DeformableBody TheBody>
+  int steps_to_look(TheBody& body, std::int64_t step) {
+    auto const last = last_look(body.parts(), step).step;
+    return static_cast<int>(std::max<std::int64_t>(1, last + interval_ - step));
+  }
+
+  template <class Parts>
+  void prepare(Parts& parts) const {
+    if (parts.clock.size() == 0) {
+      parts.moves = zeros<double>(parts.backend, 1);
+      parts.clock = zeros<std::int64_t>(parts.backend, 1);
+    }
+    if constexpr (switches) reserve_accelerations(parts);
+    for_each_check(parts, [](auto const& check) { check.prepare(); });
+  }
+  /// `later` steps after the last one; 0: now.
+  template <class Parts>
+  static void begin_look(Parts& parts, int later) {
+    parts.backend.for_each(
+        1, detail::BeginLook{parts.moves.data(), parts.clock.data(), later, parts.state.steps});
+  }
+  template <class Parts>
+  void decide(Parts& parts) const {
+    parts.timers.criteria.start();
+    for_each_check(parts, [](auto const& check) { check.decide(); });
+    parts.timers.criteria.stop();
+  }
 
   template <class Parts, class Visit>
   void for_each_check(Parts& parts, Visit const& visit) const {
@@ -92,7 +183,11 @@ class Adaptation {
   }
   template <class Parts>
   void switch_groups(Parts& parts) const {
-    if (parts.backend.sum(1, detail::ValueAt<double>{parts.moves.data()}) == 0) return;
+    parts.backend.if_set(parts.moves.data(), [&] { move_elements(parts); });
+  }
+  /// Where some element goes to another group.
+  template <class Parts>
+  void move_elements(Parts& parts) const {
     parts.timers.criteria.start();
     evaluate_accelerations(parts);
     for_each_check(parts, [](auto const& check) { check.act(); });
@@ -145,6 +240,7 @@ class Adaptation {
   }
 
   std::uint64_t key_;  // of the last look in a body's record
+  std::shared_ptr<void const> identity_ = std::make_shared<char>();  // copies have the same rules
   std::tuple<Rules...> rules_;
   int interval_ = 8;
 };

@@ -24,10 +24,10 @@ struct Decision {
   Index const* number;  // (elements)
   Tag const* tags;
   std::int64_t const* since;
-  std::int64_t step;
-  Tag* next;                // (elements)
-  std::uint32_t* refining;  // (elements): bit R: rule R refines it
-  double* moves;            // (1): set to 1 where some element goes to another group
+  std::int64_t const* step;  // (1): of this look
+  Tag* next;                 // (elements)
+  std::uint32_t* refining;   // (elements): bit R: rule R refines it
+  double* moves;             // (1): set to 1 where some element goes to another group
 
   /// Takes the values of an element; decides at once if no rule ranks.
   template <int G, class V>
@@ -70,7 +70,7 @@ struct Decision {
     } else {
       using TheRule = typename All::template rule<R>;
       if constexpr (All::template group<R> == G && SwitchingRule<TheRule>)
-        if (holds<R>(own(All::template row<R>), e) && step - since[e] >= stay[R])
+        if (holds<R>(own(All::template row<R>), e) && *step - since[e] >= stay[R])
           return static_cast<Tag>(Table::template group_of<typename TheRule::to>);
       return next_group<G, R + 1>(e, own);
     }

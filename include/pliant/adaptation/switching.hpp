@@ -11,11 +11,11 @@ namespace pliant::detail {
 template <class T>
 struct SwitchTarget {
   Tag* tags;
-  std::int64_t* since;     // step of the last change of group
-  std::int32_t* switches;  // changes of group so far
-  std::int64_t step;
-  T half_step;      // s: of the integrator, 0 where there is none
-  bool is_pending;  // whether the last half-kick is still to be given
+  std::int64_t* since;       // step of the last change of group
+  std::int32_t* switches;    // changes of group so far
+  std::int64_t const* step;  // (1): of this look
+  T half_step;               // s: of the integrator, 0 where there is none
+  bool is_pending;           // whether the last half-kick is still to be given
 };
 
 /// Moves the elements whose next group is another: tags change, and statistics are updated.
@@ -97,11 +97,11 @@ struct ActVisitor {
     T const first = target.is_pending ? half * dot(difference, v) : T(0);
     T const second = target.is_pending ? stiffer + T(2) * turn : stiffer - turn;
     tally(Counters::kinetic(From, To), static_cast<double>(first + half * half / T(3) * second));
-    tally(Counters::steps_of(From), static_cast<double>(target.step - target.since[e]));
+    tally(Counters::steps_of(From), static_cast<double>(*target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);
     tally(Counters::energy(From, To), static_cast<double>(after - before));
     target.tags[e] = static_cast<Tag>(To);
-    target.since[e] = target.step;
+    target.since[e] = *target.step;
     target.switches[e] = one_more(target.switches[e]);
   }
 };

@@ -50,9 +50,14 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules)
       : parts_(parts), table_(table), elements_(elements), rules_{rules} {}
 
+  /// Allocates what `decide` and `act` need, in the first check of a mesh.
+  void prepare() const {
+    if constexpr (count > 0) {
+      if (reserve()) ++parts_.revision;
+    }
+  }
   void decide() const {
     if constexpr (count > 0) {
-      prepare();
       auto const decision = this->decision();
       evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, decision);
       if constexpr (switches)
@@ -109,7 +114,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   SwitchTarget<T> target() const {
     auto& statistics = elements_.statistics;
     return {elements_.tags.data(),       statistics.since.data(),
-            statistics.switches.data(),  parts_.state.steps,
+            statistics.switches.data(),  parts_.clock.data(),
             static_cast<T>(half_step()), parts_.state.pending_half_kick != 0};
   }
   double half_step() const {
@@ -129,24 +134,33 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
       visit(elements_.internal_variables, kept.internal_variables);
     }
   }
-  /// Allocates in the first check of a mesh.
-  void prepare() const {
+  /// Whether something was allocated.
+  bool reserve() const {
     using Workspace = CriteriaWorkspace<B>;
     auto& w = workspace();
     auto const n = static_cast<std::size_t>(table_.count());
+    bool made = false;
+    auto const hold = [&](auto& array, std::size_t size) {
+      made = Workspace::reserve(backend(), array, size) || made;
+    };
     if constexpr (switches) {
-      Workspace::reserve(backend(), w.next, n);
-      if (!elements_.statistics.open)
+      hold(w.next, n);
+      if (!elements_.statistics.open) {
         elements_.statistics.start(backend(), table_.count(), parts_.state.record.born);
+        made = true;
+      }
     }
-    if constexpr (refines) Workspace::reserve(backend(), w.refining, n);
-    if (refines || ranks())
-      Workspace::reserve(backend(), w.values, static_cast<std::size_t>(All::rows) * n);
+    if constexpr (refines) hold(w.refining, n);
+    if (refines || ranks()) hold(w.values, static_cast<std::size_t>(All::rows) * n);
     if (ranks()) {
-      if (w.number.size() < n) w.number = upload(backend(), table_.user_element);
-      Workspace::reserve(backend(), w.rankings, std::size_t{count});
-      Workspace::reserve(backend(), w.histogram, std::size_t{histogram_bins});
+      if (w.number.size() < n) {
+        w.number = upload(backend(), table_.user_element);
+        made = true;
+      }
+      hold(w.rankings, std::size_t{count});
+      hold(w.histogram, std::size_t{histogram_bins});
     }
+    return made;
   }
 
   template <class U>

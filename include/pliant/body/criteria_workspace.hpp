@@ -85,10 +85,12 @@ struct CriteriaWorkspace {
     Array<T> internal_variables;
   } kept;
 
-  /// Makes arrays that are too small anew.
+  /// Makes an array that is too small anew; whether it did.
   template <class U>
-  static void reserve(B const& backend, Array<U>& array, std::size_t count) {
-    if (array.size() < count) array = zeros<U>(backend, count);
+  static bool reserve(B const& backend, Array<U>& array, std::size_t count) {
+    if (array.size() >= count) return false;
+    array = zeros<U>(backend, count);
+    return true;
   }
 };
 

@@ -75,16 +75,20 @@ struct Parts {
     typename B::Recording recording;
     double dt;
     long revision;
+    std::shared_ptr<void const> look{};  // of which adaptation; null: of none
+    int steps = 1;
   };
-  std::optional<Recorded> recorded{};
+  std::optional<Recorded> recorded{};          // a step
+  std::optional<Recorded> recorded_stretch{};  // steps, and a look of an adaptation behind them
   struct Scratch {
     Array<T> u, du, f;
   };
   std::optional<Scratch> scratch{};
-  Array<T> without_energy{};  // (nodes, 4) and scratch rows, N: of terms that have no energy
-  Array<T> acceleration{};    // (nodes, 4), m/s²: of the present forces, while groups change
-  Array<double> moves{};      // (1): whether a check moves elements between groups
-  Array<T> row_sums{};        // (nodes, 4) and scratch rows, of the stable step
+  Array<T> without_energy{};    // (nodes, 4) and scratch rows, N: of terms that have no energy
+  Array<T> acceleration{};      // (nodes, 4), m/s²: of the present forces, while groups change
+  Array<double> moves{};        // (1): whether a look moves elements between groups
+  Array<std::int64_t> clock{};  // (1): the number of steps at that look
+  Array<T> row_sums{};          // (nodes, 4) and scratch rows, of the stable step
   mutable Array<double> no_counters{};
   AdaptationTimers<B> timers{};
 

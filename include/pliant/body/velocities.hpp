@@ -104,13 +104,19 @@ void synchronize_velocities(Parts& parts) {
   parts.state.pending_half_kick = 0;
 }
 
-/// Brings parts.acceleration up to the present forces, those of slaves interpolated.
+/// Makes room for parts.acceleration.
+template <class Parts>
+void reserve_accelerations(Parts& parts) {
+  if (parts.acceleration.size() == parts.layout.rest.size()) return;
+  parts.acceleration = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
+  ++parts.revision;
+}
+
+/// Brings parts.acceleration up to the present forces, those of slaves interpolated; there is room for them.
 template <class Parts>
 void evaluate_accelerations(Parts& parts) {
   using T = typename Parts::T;
   evaluate_forces(parts);
-  if (parts.acceleration.size() != parts.layout.rest.size())
-    parts.acceleration = zeros<T>(parts.backend, parts.layout.rest.size());
   NodeField<T, Parts::dim> const a{parts.acceleration.data()};
   parts.backend.for_each(parts.layout.nodes, Accelerate<T, Parts::dim>{a,
                                                                        {parts.layout.f.data()},

@@ -64,6 +64,30 @@ class CentralDifference {
   /// Takes steps.
   template <DeformableBody TheBody>
   Advanced operator()(TheBody& body, int steps = 1) {
+    return advance_by(body, steps,
+                      [](auto& parts, double dt, int count) { take_steps(parts, dt, count); });
+  }
+  /// Takes steps and lets an Adaptation look after each, as a loop over `step(body); adapt(body);` does; on a
+  /// GPU the steps between two looks and the look that follows are one launch where no rule of it refines.
+  template <DeformableBody TheBody, class TheAdaptation>
+  Advanced operator()(TheBody& body, int steps, TheAdaptation& adapt) {
+    return advance_by(body, steps, [&](auto& parts, double dt, int count) {
+      int const before = adapt.steps_to_look(body);
+      if (before == adapt.interval())
+        if (int const taken = adapt.take_stretches(
+                body,
+                [&](auto const& look) { return pliant::take_stretches(parts, dt, count, look); });
+            taken > 0)
+          return;
+      take_steps(parts, dt, std::min(count, before));
+      adapt(body);
+    });
+  }
+
+ private:
+  /// take(parts, dt, n) takes at least one and at most n steps of size dt.
+  template <DeformableBody TheBody, class Take>
+  Advanced advance_by(TheBody& body, int steps, Take const& take) {
     if (steps < 0) throw Error("CentralDifference: ", steps, " steps; give 0 or more");
     auto& parts = body.parts();
     auto& state = parts.state;
@@ -83,15 +107,13 @@ class CentralDifference {
       }
       if (state.steps >= own.next_refresh) refresh(parts);
       step_ = own.step;
-      take_steps(
-          parts, own.step,
-          static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch}) -
-                           state.steps));
+      take(parts, own.step,
+           static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch}) -
+                            state.steps));
     }
     return {state.steps - begun, state.time, own.step, false};
   }
 
- private:
   /// Takes over a state that another integrator, or none, has advanced so far.
   template <class Parts>
   void begin(Parts& parts) {

@@ -5,17 +5,21 @@
 // The steps of central differences (leapfrog, velocity Verlet) on the parts of a body.
 namespace pliant {
 
-/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error where a motion is
-/// not finite, at the end of the last step before that.
+namespace detail {
+
+/// Whether the next step is not like those that are recorded.
 template <class Parts>
-void take_steps(Parts& parts, double dt, int steps) {
+bool next_step_is_special(Parts const& parts, double dt) {
+  auto const& state = parts.state;
+  return state.pending_half_kick != dt / 2 || !parts.driven.empty() || parts.forces_current ||
+         (Parts::has_internal_variables && state.step_size != dt);
+}
+
+/// Steps that are not like the others: `steps` of them at the most. Returns how many are left.
+template <class Parts>
+int take_special_steps(Parts& parts, double dt, int steps) {
   auto& state = parts.state;
-  // Steps that are not like the others.
-  auto const special = [&] {
-    return state.pending_half_kick != dt / 2 || !parts.driven.empty() || parts.forces_current ||
-           (Parts::has_internal_variables && state.step_size != dt);
-  };
-  for (; steps > 0 && special(); --steps) {
+  for (; steps > 0 && next_step_is_special(parts, dt); --steps) {
     ask_motions(parts, state.time + dt, dt);
     evaluate_forces(parts);
     commit_at(parts, std::as_const(parts).u());
@@ -26,22 +30,61 @@ void take_steps(Parts& parts, double dt, int steps) {
     ++state.steps;
     place_driven_nodes(parts);
   }
-  if (steps == 0) return;
+  return steps;
+}
+
+/// The loops of a step like the others.
+template <class Parts>
+void loop_over_step(Parts& parts, double dt) {
+  accumulate_forces(parts, std::as_const(parts).u(), parts.f());
+  commit_at(parts, std::as_const(parts).u());
+  advance(parts, dt / 2, dt / 2, dt);
+}
+
+/// Replays `n` times what f() does in `steps` steps; records it where `kept` has something else.
+template <class Parts, class F>
+void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, double dt, int steps,
+                  std::shared_ptr<void const> const& look, int n, F const& f) {
   // What allocates or hands loads on to masters is no part of a step.
   (void)external_forces(parts);
-  (void)detail::reserve_terms_without_energy(parts);
-  if (!parts.recorded || parts.recorded->dt != dt || parts.recorded->revision != parts.revision) {
-    parts.recorded =
-        typename Parts::Recorded{parts.backend.record([&parts, dt] {
-                                   accumulate_forces(parts, std::as_const(parts).u(), parts.f());
-                                   commit_at(parts, std::as_const(parts).u());
-                                   advance(parts, dt / 2, dt / 2, dt);
-                                 }),
-                                 dt, parts.revision};
-  }
-  parts.recorded->recording.replay(steps);
-  for (int k = 0; k < steps; ++k) state.time += dt;  // the same bits however steps are grouped
-  state.steps += steps;
+  (void)reserve_terms_without_energy(parts);
+  if (!kept || kept->dt != dt || kept->revision != parts.revision || kept->look != look ||
+      kept->steps != steps)
+    kept = typename Parts::Recorded{parts.backend.record(f), dt, parts.revision, look, steps};
+  kept->recording.replay(n);
+  auto& state = parts.state;
+  for (int k = 0; k < n * steps; ++k) state.time += dt;  // the same bits however steps are grouped
+  state.steps += n * steps;
+}
+
+}  // namespace detail
+
+/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error where a motion is
+/// not finite, at the end of the last step before that.
+template <class Parts>
+void take_steps(Parts& parts, double dt, int steps) {
+  steps = detail::take_special_steps(parts, dt, steps);
+  if (steps > 0)
+    detail::replay_steps(parts, parts.recorded, dt, 1, nullptr, steps,
+                         [&parts, dt] { detail::loop_over_step(parts, dt); });
+}
+
+/// Takes as many whole stretches as fit into `steps`, each of look.interval() steps with a look behind them,
+/// as one recording, if the next steps are like the others and the look can be recorded. Returns how many
+/// steps it took.
+template <class Parts, class Look>
+int take_stretches(Parts& parts, double dt, int steps, Look const& look) {
+  int const interval = look.interval();
+  if (steps < interval || detail::next_step_is_special(parts, dt) || !look.can_record(parts))
+    return 0;
+  look.prepare(parts);
+  int const n = steps / interval;
+  detail::replay_steps(parts, parts.recorded_stretch, dt, interval, look.identity(), n,
+                       [&parts, dt, interval, look] {
+                         for (int k = 0; k < interval; ++k) detail::loop_over_step(parts, dt);
+                         look.loop_over_look(parts);
+                       });
+  return n * interval;
 }
 
 }  // namespace pliant

@@ -1,0 +1,8 @@
+#include <pliant/openmp.hpp>
+
+#include "compare/compare_suite.hpp"
+#include "support/program.hpp"
+
+int main(int argc, char** argv) {
+  return pliant::bench::run(argc, argv, pliant::bench::add_compared<pliant::OpenMP>);
+}
