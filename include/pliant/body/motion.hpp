@@ -206,7 +206,7 @@ struct PotentialEnergy {
   }
 };
 
-/// Moves rows between the user's numbering and stride and the padded internal one.
+/// Copies rows of the user's numbering and stride to those of the padded internal one.
 template <class T, int Dim>
 struct FromUser {
   NodeField<T, Dim> to;
@@ -220,6 +220,7 @@ struct FromUser {
     to.set(i, row);
   }
 };
+/// Adds rows of the padded internal numbering to those of the user's.
 template <class T, int Dim>
 struct AddToUser {
   NodeField<T const, Dim> from;
@@ -233,6 +234,7 @@ struct AddToUser {
   }
 };
 
+/// Adds masses to those of the user's numbering.
 template <class T>
 struct AddMass {
   T const* mass;

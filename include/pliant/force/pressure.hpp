@@ -48,7 +48,8 @@ struct FaceWith<3, 9> {
   using type = Quad9;
 };
 
-/// A pressure on a face that follows the surface: F_a = −p ∫ N_a n da over the deformed face, N.
+/// A pressure on a face that follows the surface: F_a = −p ∫ N_a n da over the deformed face, N (Hibbitt,
+/// International Journal for Numerical Methods in Engineering 14 (1979) 937).
 template <int Dim, Element Face>
 struct PressureOn {
   template <class T>
