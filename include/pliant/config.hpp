@@ -36,6 +36,7 @@ compiles without these checks."
 
 namespace pliant {
 
+/// The version of the library (semantic); its CMake package has the same.
 inline constexpr struct Version {
   int major = 0, minor = 1, patch = 0;
 } version{};

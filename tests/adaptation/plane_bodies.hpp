@@ -152,12 +152,6 @@ inline double gap(std::vector<Hanging> const& hanging, FieldOf<2> const& field) 
 }
 
 template <class TheBody>
-double total_mass(TheBody const& body) {
-  double sum = 0;
-  for (double m : body.parts().layout.mass_list) sum += m;
-  return sum;
-}
-template <class TheBody>
 Point<2> momentum(TheBody& body) {
   auto p = body.velocities();
   for (std::size_t i = 0; i < p.size(); ++i)

@@ -76,8 +76,10 @@ struct Fan {
   std::vector<std::array<Index, 3>> connectivity;
   std::vector<Tag> tags;
   std::vector<T> x;
+  typename B::template Elements<3> elements;
+  typename B::template Array<T> on_backend;  // x
 
-  Fan() : x(static_cast<std::size_t>(node_stride * nodes)) {
+  explicit Fan(B const& backend) : x(static_cast<std::size_t>(node_stride * nodes)) {
     for (Index e = 0; e < elements_count; ++e) {
       connectivity.push_back({e, e + 1, e + 2});
       tags.push_back(e % 7 == 0 ? no_group : static_cast<Tag>(e % 3 == 0));
@@ -86,7 +88,12 @@ struct Fan {
       x[static_cast<std::size_t>(4 * i)] = static_cast<T>(i % 11);
       x[static_cast<std::size_t>(4 * i + 1)] = static_cast<T>(i % 5);
     }
+    elements = {backend, connectivity, 2, tags, nodes};
+    on_backend = upload(backend, x);
   }
+  NodeField<T const, 2> field() const { return {on_backend.data()}; }
+  /// How many rows a field to accumulate into has.
+  std::size_t rows() const { return static_cast<std::size_t>(nodes + elements.scratch_nodes()); }
   T value(Index node, int k) const { return x[static_cast<std::size_t>(4 * node + k)]; }
   T factor(Index e) const {
     Tag const tag = tags[static_cast<std::size_t>(e)];
@@ -260,16 +267,13 @@ TEST_CASE("a branch is taken where a number in the backend's memory is set", "[b
 TEST_CASE("accumulate adds each element's values to its nodes, by group", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;
-    Fan<B> fan;
-    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
-    auto const x = upload(backend, fan.x);
-    std::size_t const rows = static_cast<std::size_t>(fan.nodes + elements.scratch_nodes());
-    auto out = upload(backend, std::vector<T>(node_stride * rows, T(3)));
-    NodeField<T const, 2> const field{x.data()};
+    Fan<B> fan(backend);
+    auto out = upload(backend, std::vector<T>(node_stride * fan.rows(), T(3)));
 
-    backend.template accumulate<2>(elements, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
-    backend.template accumulate<2>(elements, WeightedSum{}, NodeField<T, 2>{out.data()}, field,
-                                   field);
+    backend.template accumulate<2>(fan.elements, WeightedSum{}, NodeField<T, 2>{out.data()},
+                                   fan.field());
+    backend.template accumulate<2>(fan.elements, WeightedSum{}, NodeField<T, 2>{out.data()},
+                                   fan.field(), fan.field());
 
     auto const sums = download<T>(out);
     std::vector<T> expected(sums.size(), T(3));
@@ -291,16 +295,13 @@ TEST_CASE("accumulate adds each element's values to its nodes, by group", "[back
 TEST_CASE("loops over elements see each element of a group once", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;
-    Fan<B> fan;
-    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
-    auto const x = upload(backend, fan.x);
-    NodeField<T const, 2> const field{x.data()};
+    Fan<B> fan(backend);
     auto const check = [&] {
       auto values = upload(backend, std::vector<T>(2 * fan.connectivity.size(), T(1)));
       auto counters = upload(backend, std::vector<double>{100, 1000});
 
-      double const sum = backend.template sum_elements<2>(elements, SumOfNodes{}, field);
-      backend.template visit<2>(elements, Record<T>{values.data()}, counters, field);
+      double const sum = backend.template sum_elements<2>(fan.elements, SumOfNodes{}, fan.field());
+      backend.template visit<2>(fan.elements, Record<T>{values.data()}, counters, fan.field());
 
       auto const recorded = download<T>(values);
       double expected = 0;
@@ -317,13 +318,13 @@ TEST_CASE("loops over elements see each element of a group once", "[backend]") {
       CHECK(sum == expected);
       CHECK(download<double>(counters) == counts);
     };
-    CHECK(elements.count() == fan.elements_count);
+    CHECK(fan.elements.count() == fan.elements_count);
     check();
 
     for (std::size_t e = 0; e < fan.tags.size(); ++e)
       fan.tags[e] = e % 5 == 0 ? no_group : static_cast<Tag>(e % 2);
-    elements.tags().upload(fan.tags);
-    elements.regroup();
+    fan.elements.tags().upload(fan.tags);
+    fan.elements.regroup();
     check();
   });
 }
@@ -337,20 +338,17 @@ struct Swept {
   bool operator==(Swept const&) const = default;
 };
 template <class B, class Table>
-auto sweep(B const& backend, Fan<B> const& fan, typename B::template Elements<3> const& all,
-           Table const& table) {
+auto sweep(B const& backend, Fan<B> const& fan, Table const& table) {
   using T = typename B::scalar;
-  auto const x = upload(backend, fan.x);
-  auto out =
-      zeros<T>(backend, static_cast<std::size_t>(node_stride * (fan.nodes + all.scratch_nodes())));
+  auto out = zeros<T>(backend, node_stride * fan.rows());
   auto values = zeros<T>(backend, 2 * fan.connectivity.size());
   auto counters = zeros<double>(backend, 2);
-  NodeField<T const, 2> const field{x.data()};
   // What the first loop leaves behind must not be added by the second.
-  backend.template accumulate<2>(all, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
-  backend.template accumulate<2>(table, WeightedSum{}, NodeField<T, 2>{out.data()}, field);
-  backend.template visit<2>(table, Record<T>{values.data()}, counters, field);
-  double const total = backend.template sum_elements<2>(table, SumOfNodes{}, field);
+  backend.template accumulate<2>(fan.elements, WeightedSum{}, NodeField<T, 2>{out.data()},
+                                 fan.field());
+  backend.template accumulate<2>(table, WeightedSum{}, NodeField<T, 2>{out.data()}, fan.field());
+  backend.template visit<2>(table, Record<T>{values.data()}, counters, fan.field());
+  double const total = backend.template sum_elements<2>(table, SumOfNodes{}, fan.field());
   auto sums = download<T>(out);
   sums.resize(static_cast<std::size_t>(node_stride * fan.nodes));
   return Swept<T>{sums, download<T>(values), download<double>(counters), total};
@@ -358,11 +356,11 @@ auto sweep(B const& backend, Fan<B> const& fan, typename B::template Elements<3>
 
 TEST_CASE("loops over a list of patches pass over the elements of the others", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
-    Fan<B> fan;
-    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
-    Index const patches = elements.patch_count();
+    Fan<B> fan(backend);
+    Index const patches = fan.elements.patch_count();
     REQUIRE(patches > 2);
-    REQUIRE(patches == (fan.elements_count + elements.patch_size() - 1) / elements.patch_size());
+    REQUIRE(patches ==
+            (fan.elements_count + fan.elements.patch_size() - 1) / fan.elements.patch_size());
     // Lists: none, one, the last, every second one, all; -1 stands behind the list's end.
     std::vector<std::vector<Index>> const lists = {
         {0, -1},
@@ -384,31 +382,28 @@ TEST_CASE("loops over a list of patches pass over the elements of the others", "
       INFO(list[0] << " of " << patches << " patches");
       auto tags = std::vector<Tag>(fan.tags.size(), no_group);
       for (Index k = 1; k <= list[0]; ++k) {
-        Index const first = list[static_cast<std::size_t>(k)] * elements.patch_size();
-        for (Index e = first; e < std::min(fan.elements_count, first + elements.patch_size()); ++e)
+        Index const first = list[static_cast<std::size_t>(k)] * fan.elements.patch_size();
+        for (Index e = first; e < std::min(fan.elements_count, first + fan.elements.patch_size());
+             ++e)
           tags[static_cast<std::size_t>(e)] = fan.tags[static_cast<std::size_t>(e)];
       }
       typename B::template Elements<3> const tagged{backend, fan.connectivity, 2, tags, fan.nodes};
       auto const numbers = upload(backend, list);
 
-      auto const got = sweep(backend, fan, elements, over(elements, numbers));
+      auto const got = sweep(backend, fan, over(fan.elements, numbers));
 
-      CHECK(got == sweep(backend, fan, elements, tagged));
+      CHECK(got == sweep(backend, fan, tagged));
       CHECK((got.total != 0) == (list[0] > 0));
     }
-    CHECK_THROWS_WITH(over(elements, zeros<Index>(backend, 0)), says("list of patches"));
+    CHECK_THROWS_WITH(over(fan.elements, zeros<Index>(backend, 0)), says("list of patches"));
   });
 }
 
 TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;
-    Fan<B> fan;
-    typename B::template Elements<3> elements{backend, fan.connectivity, 2, fan.tags, fan.nodes};
-    auto const x = upload(backend, fan.x);
-    NodeField<T const, 2> const field{x.data()};
-    auto const rows = static_cast<std::size_t>(fan.nodes + elements.scratch_nodes());
-    auto out = zeros<T>(backend, node_stride * rows);
+    Fan<B> fan(backend);
+    auto out = zeros<T>(backend, node_stride * fan.rows());
     auto values = zeros<T>(backend, 2 * fan.connectivity.size());
     auto counters = zeros<double>(backend, 2), ticks = zeros<double>(backend, 1);
     auto list = upload(backend, std::vector<Index>{1, 0, 0});
@@ -416,11 +411,12 @@ TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backe
     auto const recording = backend.record([&] {
       for (int step = 0; step < 8; ++step) {
         backend.for_each(fan.nodes, Clear<T>{out.data()});
-        backend.template accumulate<2>(over(elements, list), WeightedSum{},
-                                       NodeField<T, 2>{out.data()}, field);
+        backend.template accumulate<2>(over(fan.elements, list), WeightedSum{},
+                                       NodeField<T, 2>{out.data()}, fan.field());
         backend.for_each(1, AddOne<double>{ticks.data()});
       }
-      backend.template visit<2>(over(elements, list), Record<T>{values.data()}, counters, field);
+      backend.template visit<2>(over(fan.elements, list), Record<T>{values.data()}, counters,
+                                fan.field());
     });
     CHECK(download<double>(ticks)[0] == 0);
     recording.replay(1);
@@ -429,15 +425,15 @@ TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backe
     auto const forces = download<T>(out);
 
     CHECK(download<double>(ticks)[0] == 24);
-    auto expected = zeros<T>(backend, node_stride * rows);
-    backend.template accumulate<2>(over(elements, list), WeightedSum{},
-                                   NodeField<T, 2>{expected.data()}, field);
+    auto expected = zeros<T>(backend, node_stride * fan.rows());
+    backend.template accumulate<2>(over(fan.elements, list), WeightedSum{},
+                                   NodeField<T, 2>{expected.data()}, fan.field());
     auto const once = download<T>(expected);
     for (std::size_t i = 0; i < static_cast<std::size_t>(node_stride * fan.nodes); ++i)
       REQUIRE(forces[i] == once[i]);
     double visits = 0;
-    for (Index e = 0; e < 2 * elements.patch_size(); ++e)
-      if (fan.factor(e) != T(0)) visits += e < elements.patch_size() ? 3 : 2;
+    for (Index e = 0; e < 2 * fan.elements.patch_size(); ++e)
+      if (fan.factor(e) != T(0)) visits += e < fan.elements.patch_size() ? 3 : 2;
     auto const counts = download<double>(counters);
     CHECK(counts[0] + counts[1] == visits);
   });

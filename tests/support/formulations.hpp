@@ -187,6 +187,13 @@ inline constexpr bool small_strain =
     std::same_as<typename F::template law<double>, Hooke<double>> ||
     std::same_as<typename F::template law<double>, PlaneStress<Hooke>::law<double>>;
 
+template <class TheBody>
+double total_mass(TheBody const& body) {
+  double sum = 0;
+  for (double m : body.parts().layout.mass_list) sum += m;
+  return sum;
+}
+
 /// The forces of a body at given displacements.
 template <class TheBody>
 auto forces_at(TheBody& body, std::vector<Point<TheBody::dim>> const& u) {

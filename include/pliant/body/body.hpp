@@ -12,13 +12,14 @@
 
 namespace pliant {
 
+/// How Body::drive moves nodes.
 struct DriveOptions {
   DirectionMask directions = 0;  // bit k: direction k; 0: all
   std::string name{};  // under which a saved state finds the motion again; "" makes one up
 };
 
 /// A deformable body: nodes, elements in groups of formulations, conditions and loads, on one backend
-/// in one precision. It moves, and is not copied. Everything a user hands in or reads is in the user's
+/// in one precision. It can be moved from, not copied. Everything a user hands in or reads is in the user's
 /// own order of nodes and elements. Integrators (solver/) advance its state.
 template <Backend B, class M, class... Fs>
 class Body {
@@ -34,8 +35,9 @@ class Body {
   using Points = std::vector<Point<dim>>;
   using Facets = std::vector<Facet<dim>>;
 
-  /// Checks the mesh and the material (throws Error) and starts at rest, undeformed. All elements of
-  /// a type start in the first group given for that type.
+  /// Starts at rest, undeformed; all elements of a type are in the first group given for that type. Throws
+  /// Error for an unsound mesh (mesh/check.hpp), and for a material, parameters of laws and values per
+  /// element that are impossible or that the precision cannot hold.
   Body(B backend, M mesh, Elastic const& material, Group<Fs>... groups)
       : parts_(first_parts(std::move(backend), std::move(mesh), material.checked(),
                            std::tuple(std::move(groups)...))) {}
@@ -58,7 +60,7 @@ class Body {
   std::vector<Tag> groups_of() const {
     return user_groups<E>(*parts_);
   }
-  /// Puts elements into the group of a formulation.
+  /// Puts elements into the group of a formulation. Throws Error for a number that no element has.
   template <class F>
   void assign(std::vector<Index> const& elements) {
     assign_group<F>(*parts_, elements);
@@ -66,6 +68,7 @@ class Body {
 
   // What holds and pulls it. Throw Error for nodes and facets that the mesh has not, for conditions that
   // contradict each other, and for numbers that are not finite.
+  /// Holds all directions where they are now; velocities become zero.
   Handle clamp(Facets const& facets) { return hold(facets, all_directions<dim>); }
   Handle clamp(std::vector<Index> const& nodes) { return hold(nodes, all_directions<dim>); }
   /// Holds directions (bit k: direction k) where they are now.
@@ -87,9 +90,10 @@ class Body {
   Handle press(Facets const& facets, double pascals) {
     return pliant::press(*parts_, facets, pascals);
   }
-  /// Ends a condition or a pressure.
+  /// Ends a condition or a pressure. Throws Error for a handle that names neither.
   void release(Handle handle) { pliant::release(*parts_, handle); }
-  /// The forces that a condition exerts, N, at each of its nodes in ascending order.
+  /// The forces that a condition exerts, N, at each of its nodes in ascending order, without the inertia of
+  /// driven nodes. Throws Error for a handle of no condition.
   Points reactions(Handle handle) { return pliant::reactions(*parts_, handle); }
   /// Adds a force term of the user's own: a physics on sets of nodes, which stays with them when the mesh
   /// changes (see ConnectedTerm). The stable step knows its stiffness at the moment it is asked.
@@ -113,14 +117,17 @@ class Body {
   }
   /// Any other: `make` is called again when the numbering of nodes changes.
   void add(typename parts_type::MakeTerm make) { add_term(*parts_, std::move(make)); }
-  void set_gravity(Point<dim> const& g) { pliant::set_gravity(*parts_, g); }     // m/s²
-  void set_damping(double per_mass) { pliant::set_damping(*parts_, per_mass); }  // 1/s
-  /// N, constant in direction. Neither allocates, but for the first, nor waits.
+  /// m/s². Integrators and solvers say on which masses it acts.
+  void set_gravity(Point<dim> const& g) { pliant::set_gravity(*parts_, g); }
+  /// A force −c m v at each node; c in 1/s, not negative.
+  void set_damping(double per_mass) { pliant::set_damping(*parts_, per_mass); }
+  /// The force on one node, N, constant in direction. Does not wait; only the first call allocates.
   void set_load(Index node, Point<dim> const& force) { pliant::set_load(*parts_, node, force); }
-  /// Of all nodes; see mesh/loads.hpp.
+  /// The forces on all nodes, (nodes, dim), N; see mesh/loads.hpp.
   void set_loads(Points const& forces) { pliant::set_loads(*parts_, forces); }
 
-  // Its motion.
+  // Its motion: (nodes, dim), m and m/s. Setters throw Error for another number of nodes and for numbers that are
+  // not finite in the body's precision; slaves follow their masters, and held directions have no velocity.
   Points displacements() const { return parts_->layout.in_user_order(parts_->state.u); }
   Points velocities() {
     synchronize_velocities(*parts_);
@@ -128,8 +135,8 @@ class Body {
   }
   void set_displacements(Points const& u) { pliant::set_displacements(*parts_, u); }
   void set_velocities(Points const& v) { pliant::set_velocities(*parts_, v); }
-  /// Internal forces −∂W/∂u of the present displacements and those of pressures, N; those of slaves are
-  /// with their masters.
+  /// (nodes, dim), N: internal forces −∂W/∂u of the present displacements, pressures and the user's force
+  /// terms, without gravity and loads; those of slaves are with their masters.
   Points forces() {
     evaluate_forces(*parts_);
     parts_->layout.interpolation.clear(parts_->backend, parts_->f());
@@ -153,17 +160,20 @@ class Body {
 
   // For a simulator that owns its state: arrays in the backend's memory, node i at [stride i], which
   // are added to and never overwritten. Laws with internal variables need the time `dt` since they were
-  // committed, s. Error where a stride is smaller than the dimension.
+  // committed, s. Error where a stride is smaller than the dimension, or `dt` is missing or negative.
+  /// f += −∂W/∂u, N, pressures and the user's force terms included.
   void add_force(scalar const* u, scalar* f, int stride = dim, double dt = unset) {
     pliant::add_force(*parts_, u, f, stride, dt);
   }
-  /// f += factor · ∂F/∂u · du, at the displacement u.
+  /// f += factor · ∂F/∂u · du of the same forces F, at the displacement u.
   void add_tangent_product(scalar const* u, scalar const* du, scalar* f, double factor = 1,
                            int stride = dim, double dt = unset) {
     pliant::add_tangent_product(*parts_, u, du, f, factor, stride, dt);
   }
+  /// Strain energy and that of force terms that have one, J.
   double energy(scalar const* u, int stride = dim) { return energy_of(*parts_, u, stride); }
-  void add_lumped_mass(scalar* m) const { pliant::add_lumped_mass(*parts_, m); }  // (nodes)
+  /// (nodes), kg; those of slaves are with their masters.
+  void add_lumped_mass(scalar* m) const { pliant::add_lumped_mass(*parts_, m); }
   /// Brings internal variables up to displacements u, after a step of size dt, s.
   void commit(scalar const* u, double dt, int stride = dim) {
     pliant::commit(*parts_, u, dt, stride);

@@ -2,7 +2,8 @@
 
 #include <pliant/body/velocities.hpp>
 
-// A body's forces for a simulator that owns its state.
+// A body's forces for a simulator that owns its state. The functions are those of Body, where units and errors are
+// documented.
 namespace pliant {
 
 namespace detail {

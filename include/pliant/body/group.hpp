@@ -35,6 +35,8 @@ struct Group {
   /// user's order, or one row for all.
   std::vector<std::array<double, element_values<F>>> values{};
 
+  /// The law, in double. Throws Error for impossible parameters, and where there are none and the law takes none
+  /// from an Elastic.
   typename F::template law<double> law_for(Elastic const& material) const {
     using L = typename F::template law<double>;
     if (law) {

@@ -16,12 +16,10 @@ struct AccelerationTerm {
   PLIANT_HOST_DEVICE double operator()(Index i) const {
     T const m = mass[i];
     if (!(m > T(0))) return 0;
+    auto const acceleration = acceleration_of(i, f, m, held[i], external);
     double sum = 0;
     for (int k = 0; k < Dim; ++k) {
-      if (held[i] >> k & 1) continue;
-      T force = f(i, k);
-      if (external.load) force += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k];
-      double const a = static_cast<double>(force / m + external.gravity[k]);
+      double const a = static_cast<double>(acceleration[k]);
       sum += static_cast<double>(m) * a * a;
     }
     return sum / 8;

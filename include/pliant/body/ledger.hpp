@@ -102,6 +102,7 @@ double adaptation_energy_of(Parts const& parts) {
       });
   return sum;
 }
+/// The same, of a body.
 template <DeformableBody TheBody>
 double adaptation_energy(TheBody const& body) {
   return adaptation_energy_of(body.parts());
@@ -126,6 +127,7 @@ ExternalWork external_work_of(Parts const& parts) {
   return {at(Work::changed_loads), at(Work::damping),          at(Work::motions),
           at(Work::pressures),     parts.state.energy_by_hand, parts.state.energy_of_steps};
 }
+/// The same, of a body.
 template <DeformableBody TheBody>
 ExternalWork external_work(TheBody const& body) {
   return external_work_of(body.parts());

@@ -129,16 +129,14 @@ struct DampingWork {
   PLIANT_HOST_DEVICE double operator()(Index i) const {
     T const m = mass[i];
     if (!(m > T(0))) return 0;
+    auto const a = acceleration_of(i, f, m, held[i], external);
     double work = 0;
     for (int k = 0; k < Dim; ++k) {
       if (held[i] >> k & 1) continue;
-      T force = f(i, k);
-      if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
-      T const a = force / m + external.gravity[k];
-      T const start = v(i, k), middle = lag(start, a);
+      T const start = v(i, k), middle = lag(start, a[k]);
       double const from = static_cast<double>(first ? start : middle);
-      double const to = static_cast<double>(first ? middle : kick(middle, a));
-      double const pull = static_cast<double>(a);
+      double const to = static_cast<double>(first ? middle : kick(middle, a[k]));
+      double const pull = static_cast<double>(a[k]);
       double const half = first ? from : to, sign = first ? -1 : 1;
       work += static_cast<double>(m) * ((to * to - from * from) / 2 - time * pull * half +
                                         sign * time * time * pull * pull / 2);
@@ -199,14 +197,14 @@ struct PotentialEnergy {
     double work = 0;
     for (int k = 0; k < Dim; ++k) {
       T force = mass[i] * external.gravity[k];
-      if (external.load) force += external.load[node_stride * static_cast<std::ptrdiff_t>(i) + k];
+      if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
       work += static_cast<double>(force * u(i, k));
     }
     return -work;
   }
 };
 
-/// Moves rows between the user's numbering and stride and the padded internal one.
+/// Copies rows of the user's numbering and stride to those of the padded internal one.
 template <class T, int Dim>
 struct FromUser {
   NodeField<T, Dim> to;
@@ -220,6 +218,7 @@ struct FromUser {
     to.set(i, row);
   }
 };
+/// Adds rows of the padded internal numbering to those of the user's.
 template <class T, int Dim>
 struct AddToUser {
   NodeField<T const, Dim> from;
@@ -233,6 +232,7 @@ struct AddToUser {
   }
 };
 
+/// Adds masses to those of the user's numbering.
 template <class T>
 struct AddMass {
   T const* mass;

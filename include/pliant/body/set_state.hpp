@@ -3,7 +3,7 @@
 #include <pliant/body/check_field.hpp>
 #include <pliant/constraint/conditions.hpp>
 
-// What a user sets of a body's state.
+// What a user sets of a body's state. The setters are those of Body, where units and errors are documented.
 namespace pliant {
 
 /// The arrays of a state that is at rest, for the present topology, and the tags of its elements.

@@ -57,7 +57,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   Point<dim> gravity{};          // m/s²
   double damping = 0;            // 1/s
   double time = 0;               // s
-  double pending_half_kick = 0;  // s: what leapfrog still owes the velocities
+  double pending_half_kick = 0;  // s: by which velocities are behind `time`
   double step_size = 0;          // s: of laws with internal variables, since they were committed
   double energy_of_steps = 0;    // J: what changes of the step added to what leapfrog keeps
   double energy_by_hand = 0;     // J: what a user's changes of the state added since a run began

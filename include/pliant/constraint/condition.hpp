@@ -11,6 +11,7 @@ namespace pliant {
 
 /// Bits of the directions in which a node does not move freely.
 using DirectionMask = std::uint8_t;
+/// Bits 0 to Dim − 1.
 template <int Dim>
 inline constexpr DirectionMask all_directions = (1u << Dim) - 1;
 

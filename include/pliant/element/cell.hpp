@@ -173,6 +173,7 @@ struct Pyramid {
   }
 };
 
+/// Barycentric coordinates are linear on it.
 template <class C>
 concept SimplexCell = std::same_as<C, Triangle> || std::same_as<C, Tetrahedron>;
 /// [−1, 1]ᵈ.

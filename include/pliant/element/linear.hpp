@@ -2,9 +2,10 @@
 
 #include <pliant/element/element.hpp>
 
-// The elements whose nodes are the corners of their cell.
+// The elements whose nodes are the corners of their cell. Line2 is the side of plane ones.
 namespace pliant {
 
+/// Shape functions that are one at a corner of the cell and zero at the others: the cell's `linear`.
 template <class Cell>
 struct LinearElement : ElementOn<Cell, Cell::corners, 1> {
   template <class S>
@@ -40,7 +41,7 @@ struct Hex8 : LinearElement<Hexahedron> {
 struct Wedge6 : LinearElement<Wedge> {
   static constexpr char const* name() { return "Wedge6"; }
 };
-/// Mind its rational shape functions: they have no gradient at the apex.
+/// With rational shape functions, which have no gradient at the apex.
 struct Pyramid5 : LinearElement<Pyramid> {
   static constexpr char const* name() { return "Pyramid5"; }
 };

@@ -28,7 +28,8 @@ struct QuadraticLagrange : ElementOn<Cell,
   }
 };
 
-/// Corners and the middles of edges (serendipity).
+/// Corners and the middles of edges (serendipity; Ergatoudis, Irons and Zienkiewicz, International Journal of
+/// Solids and Structures 4 (1968) 31).
 template <TensorCell Cell>
 struct Serendipity : ElementOn<Cell, Cell::corners + static_cast<int>(Cell::edges().size()), 2,
                                Lumping::diagonal> {

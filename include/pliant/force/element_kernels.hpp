@@ -7,6 +7,7 @@
 // values, and the physics of a formulation.
 namespace pliant {
 
+/// −∂W/∂u of an element, (nodes, dim), N.
 template <class Laws, Geometry How = Geometry::isoparametric>
 struct ForceKernel {
   static constexpr bool reads_elements = Laws::reads_elements;
@@ -39,6 +40,7 @@ struct TangentKernel {
   }
 };
 
+/// The strain energy of an element, J.
 template <class Laws, Geometry How = Geometry::isoparametric>
 struct EnergyKernel {
   static constexpr bool reads_elements = Laws::reads_elements;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -8,6 +9,8 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/constraint/condition.hpp>
+#include <pliant/element/linear.hpp>
+#include <pliant/element/quadratic_simplex.hpp>
 #include <pliant/element/quadratic_tensor.hpp>
 #include <pliant/force/connected_term.hpp>
 #include <pliant/formulation/physics.hpp>
@@ -17,38 +20,8 @@ namespace pliant {
 
 namespace detail {
 
-template <int Dim, int Nodes>
-struct FaceWith;
-template <>
-struct FaceWith<2, 2> {
-  using type = Line2;
-};
-template <>
-struct FaceWith<2, 3> {
-  using type = Line3;
-};
-template <>
-struct FaceWith<3, 3> {
-  using type = Tri3;
-};
-template <>
-struct FaceWith<3, 6> {
-  using type = Tri6;
-};
-template <>
-struct FaceWith<3, 4> {
-  using type = Quad4;
-};
-template <>
-struct FaceWith<3, 8> {
-  using type = Quad8;
-};
-template <>
-struct FaceWith<3, 9> {
-  using type = Quad9;
-};
-
-/// A pressure on a face that follows the surface: F_a = −p ∫ N_a n da over the deformed face, N.
+/// A pressure on a face that follows the surface: F_a = −p ∫ N_a n da over the deformed face, N (Hibbitt,
+/// International Journal for Numerical Methods in Engineering 14 (1979) 937).
 template <int Dim, Element Face>
 struct PressureOn {
   template <class T>
@@ -92,25 +65,20 @@ inline constexpr bool has_sides_with<Mesh<Es...>, Nodes> = ([]<class E>(E*) {
 /// Calls visit(Face{}, facets) for each kind of face among some facets of a mesh.
 template <class M, class Visit>
 void for_each_face_type(std::vector<Facet<M::dim>> const& facets, Visit const& visit) {
-  constexpr int Dim = M::dim;
-  auto const of_size = [&]<int Nodes>(std::integral_constant<int, Nodes>) {
-    if constexpr (has_sides_with<M, Nodes>) {
-      std::vector<std::array<Index, Nodes>> same;
+  auto const of_type = [&]<Element Face>(Face face) {
+    if constexpr (has_sides_with<M, Face::nodes>) {
+      std::vector<Connectivity<Face>> same;
       for (auto const& facet : facets)
-        if (facet.size() == Nodes) std::copy_n(facet.begin(), Nodes, same.emplace_back().begin());
-      if (!same.empty()) visit(typename FaceWith<Dim, Nodes>::type{}, same);
+        if (facet.size() == Face::nodes)
+          std::copy_n(facet.begin(), Face::nodes, same.emplace_back().begin());
+      if (!same.empty()) visit(face, same);
     }
   };
-  if constexpr (Dim == 2) {
-    of_size(std::integral_constant<int, 2>{});
-    of_size(std::integral_constant<int, 3>{});
-  } else {
-    of_size(std::integral_constant<int, 3>{});
-    of_size(std::integral_constant<int, 4>{});
-    of_size(std::integral_constant<int, 6>{});
-    of_size(std::integral_constant<int, 8>{});
-    of_size(std::integral_constant<int, 9>{});
-  }
+  auto const of_types = [&](auto... faces) { (of_type(faces), ...); };
+  if constexpr (M::dim == 2)
+    of_types(Line2{}, Line3{});
+  else
+    of_types(Tri3{}, Quad4{}, Tri6{}, Quad8{}, Quad9{});
 }
 
 /// Facets told by their corners as the mesh has them: with all nodes, seen from outside.

@@ -6,7 +6,7 @@ namespace pliant {
 
 /// Hooke's law of linear elasticity: W = λ/2 (tr e)² + μ e:e with e = sym H. Cheap, and wrong as
 /// soon as elements rotate: a rotation by θ makes a strain of cos θ − 1. Defined for every F, inverted
-/// and flattened too.
+/// and flattened too. (Landau and Lifshitz, Theory of Elasticity, section 4.)
 template <class T>
 struct Hooke {
   T lambda, mu;  // Lamé's parameters, Pa: μ > 0, 3λ + 2μ > 0

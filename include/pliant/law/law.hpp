@@ -13,7 +13,7 @@
 #include <pliant/law/takes_inversion.hpp>
 
 // A law is an aggregate template of its parameters, all of type T, with its strain energy density
-// written once:
+// written once, in a set of invariants of law/invariants or in H = F − I:
 //
 //   template <class T>
 //   struct MyLaw {

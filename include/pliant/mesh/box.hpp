@@ -7,6 +7,7 @@
 
 namespace pliant::mesh {
 
+/// What mesh::box fills.
 struct BoxOptions {
   Point<3> size;             // m
   std::array<int, 3> cells;  // along x, y and z
@@ -29,7 +30,8 @@ inline std::vector<Connectivity<Wedge6>> split_cell(Connectivity<Hex8> const& c,
 
 /// A box of hexahedra, or of cells that hexahedra are split into: six tetrahedra (Kuhn's split, along
 /// the paths from the lowest to the highest corner), two wedges along z, or six pyramids around a node
-/// in the middle; of any degree. Boundaries: left, right (x), front, back (y), bottom, top (z).
+/// in the middle; of any degree. Boundaries: left, right (x), front, back (y), bottom, top (z). Throws
+/// Error for a size that is not positive and finite, an origin that is not finite, and no cells.
 template <Element E = Hex8>
 Mesh<E> box(BoxOptions const& o) {
   static_assert(E::dim == 3, "mesh::box makes solid elements; mesh::rectangle makes plane ones");

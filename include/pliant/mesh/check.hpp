@@ -210,7 +210,8 @@ void check_slaves(M const& mesh) {
 
 /// Throws Error when the mesh has no elements, a node that is not finite or belongs to no element, an index out
 /// of range, an element that is inverted, has no volume or is there twice, or a node that hangs on an
-/// edge or a flat side and is not listed as a slave; the message names the first culprit.
+/// edge or a flat side and is not listed as a slave; and for slaves whose weights do not add up to one or put
+/// them elsewhere. The message names the first culprit.
 template <Element... Es>
 void check(Mesh<Es...> const& mesh) {
   if ((mesh.template elements<Es>().empty() && ...))

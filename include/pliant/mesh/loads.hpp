@@ -116,7 +116,7 @@ void add_share(Point<Dim>& sum, double share, auto const& force) {
 
 }  // namespace detail
 
-/// Of a force per volume at rest, N/m³.
+/// (nodes, dim), N: the loads of a force per volume at rest, N/m³.
 template <Element... Es, class Load>
 std::vector<Point<Mesh<Es...>::dim>> body_loads(Mesh<Es...> const& mesh, Load const& force) {
   std::vector<Point<Mesh<Es...>::dim>> loads(mesh.nodes.size());
@@ -143,7 +143,8 @@ std::vector<Point<Mesh<Es...>::dim>> body_loads(Mesh<Es...> const& mesh, Load co
   return loads;
 }
 
-/// Of a force per area at rest, N/m², on facets of the boundary.
+/// (nodes, dim), N: the loads of a force per area at rest, N/m², on facets of the boundary. Throws Error for a
+/// facet that is not the side of exactly one element.
 template <Element... Es, class Load>
 std::vector<Point<Mesh<Es...>::dim>> traction_loads(
     Mesh<Es...> const& mesh, std::vector<Facet<Mesh<Es...>::dim>> const& facets,
@@ -163,8 +164,9 @@ std::vector<Point<Mesh<Es...>::dim>> traction_loads(
   return loads;
 }
 
-/// Of a pressure, Pa, that pushes on facets of the boundary, against their normals at rest; or at
-/// displacements u, if given: a pressure that follows the surface, at this moment.
+/// (nodes, dim), N: the loads of a pressure, Pa, that pushes on facets of the boundary, against their normals at
+/// rest; or at displacements u, if given: a pressure that follows the surface, at this moment. Throws Error
+/// for a facet that is not the side of exactly one element, and for displacements of another mesh.
 template <Element... Es, class Load>
 std::vector<Point<Mesh<Es...>::dim>> pressure_loads(
     Mesh<Es...> const& mesh, std::vector<Facet<Mesh<Es...>::dim>> const& facets,

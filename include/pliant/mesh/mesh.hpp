@@ -13,6 +13,7 @@
 
 namespace pliant {
 
+/// A place, displacement, velocity or force in 2D or 3D.
 template <int Dim>
 using Point = std::array<double, Dim>;
 

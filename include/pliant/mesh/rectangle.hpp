@@ -7,6 +7,7 @@
 
 namespace pliant::mesh {
 
+/// What mesh::rectangle fills.
 struct RectangleOptions {
   Point<2> size;             // m
   std::array<int, 2> cells;  // along x and y
@@ -15,7 +16,8 @@ struct RectangleOptions {
 
 /// A rectangle of quadrilaterals, or of triangles by splitting each cell (a, b, c, d),
 /// counter-clockwise from its lower left corner, into (a, b, c) and (a, c, d); of any degree.
-/// Boundaries: left, right, bottom, top.
+/// Boundaries: left, right, bottom, top. Throws Error for a size that is not positive and finite, an origin
+/// that is not finite, and no cells.
 template <Element E = Quad4>
 Mesh<E> rectangle(RectangleOptions const& o) {
   static_assert(E::dim == 2, "mesh::rectangle makes plane elements; mesh::box makes solid ones");

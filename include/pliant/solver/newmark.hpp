@@ -5,6 +5,7 @@
 
 namespace pliant {
 
+/// How Newmark steps: u' and v' are in its docstring.
 struct NewmarkOptions {
   double step = 0;  // s, positive and finite
   /// The trapezoidal rule: second order, unconditionally stable and without damping for small motions. In

@@ -9,6 +9,7 @@
 
 namespace pliant {
 
+/// How solve_static looks for equilibrium.
 struct NewtonOptions {
   int load_steps = 1;       // gravity, loads, pressures and motions grow in so many equal steps
   int max_iterations = 50;  // per load step
@@ -20,6 +21,7 @@ struct NewtonOptions {
   bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
 
+/// What solve_static found, and at what cost.
 struct NewtonReport {
   Index unknowns = 0;
   int iterations = 0;                           // in all
@@ -141,8 +143,8 @@ class StaticNewton {
     return (prescribed.array() != 0).any();
   }
   /// Goes along a step as far as it leads down: on the potential energy, or on the work of the residual
-  /// along the step where there is none. A step that moves driven nodes has neither to compare with: it goes as far as
-  /// nothing folds. Returns the share of it taken; `now` is then of the new u.
+  /// along the step where there is none. A step that moves driven nodes has neither to compare with: it
+  /// goes as far as nothing folds. Returns the share of it taken; `now` is then of the new u.
   double search(Assembled& now, Vector const& residual, Vector const& du, Vector const& prescribed,
                 bool driving) {
     double const potential = now.energy - load_.dot(u_);
@@ -189,8 +191,8 @@ class StaticNewton {
 /// the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
 /// Engineering 14 (1979) 1613). The first linear solve of a load step carries its increment of driven
 /// nodes. Load steps lead from where the body is, in balance with what it then bears, to all of its
-/// loads; the user's own force terms act in full. Done within the tolerance, or when a step no longer moves anything but
-/// the last digits. Internal variables are brought to rest. Velocities are left alone. Throws
+/// loads; the user's own force terms act in full. Done within the tolerance, or when a step no longer
+/// moves anything but the last digits. Internal variables are brought to rest. Velocities are left alone. Throws
 /// Error, with the body as it was, where the matrix is singular, the iteration does not converge, or the
 /// answer is folded (det F ≤ 0, looked for all over each element whose law is not linear).
 template <DeformableBody TheBody>

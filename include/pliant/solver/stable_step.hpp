@@ -170,6 +170,7 @@ double stable_step_of(Parts& parts) {
   }
 }
 
+/// The stable step of a body's present state, s: see stable_step_of.
 template <DeformableBody TheBody>
 double stable_step(TheBody& body) {
   return stable_step_of(body.parts());

@@ -23,6 +23,7 @@ struct Refinement {
   std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
 };
 
+/// Beyond what Hierarchy::refine throws Error, or leaves cells alone.
 struct RefinementLimits {
   std::size_t nodes = std::numeric_limits<std::size_t>::max();   ///< most nodes in all
   std::size_t leaves = std::numeric_limits<std::size_t>::max();  ///< most leaves in all

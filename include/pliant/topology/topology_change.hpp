@@ -5,7 +5,8 @@
 
 namespace pliant {
 
-/// A change of topology as Body::on_change tells it: what there was, what there is, and how values go over.
+/// A change of topology, as listeners of Body::on_change get it: the mesh before it, the mesh after it, and how
+/// values go over. Valid during the call.
 template <class M>
 struct TopologyChange {
   Topology<M> const& before;

@@ -46,7 +46,8 @@ class Transfer {
   /// Of the elements of one type (its place among the mesh's), in the new order.
   std::vector<Origin> const& origins(std::size_t type = 0) const { return origins_[type]; }
 
-  /// Values per node (numbers or points) on the new mesh: new nodes take the weighted sum.
+  /// Values per node (numbers or points) on the new mesh: new nodes take the weighted sum. Throws Error for an
+  /// array that is not of the mesh before.
   template <class V>
   std::vector<V> carry_nodes(std::vector<V> values) const {
     check(values.size(), static_cast<std::size_t>(old_nodes_), "nodes");
@@ -59,7 +60,7 @@ class Transfer {
     }
     return values;
   }
-  /// Values per element of one type on the new mesh: `width` each, side by side.
+  /// Values per element of one type on the new mesh: `width` each, side by side. Throws Error as carry_nodes.
   template <class V>
   std::vector<V> carry_elements(std::vector<V> const& values, std::size_t type = 0,
                                 std::size_t width = 1) const {

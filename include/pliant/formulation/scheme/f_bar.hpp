@@ -20,6 +20,7 @@ struct FBar {
   }
 };
 
+/// Whether a rule is an FBar.
 template <class Q>
 inline constexpr bool has_mean_dilatation = false;
 template <class Q>

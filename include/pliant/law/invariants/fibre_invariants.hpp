@@ -67,8 +67,6 @@ struct FibreStretch {
 
   template <class T>
   using rebind = FibreStretch<T>;
-  PLIANT_HOST_DEVICE S& operator[](int) { return strain; }
-  PLIANT_HOST_DEVICE S const& operator[](int) const { return strain; }
 
   /// 2 H:E; 2 H is the same at all points of an element.
   template <class C, int Dim>
@@ -107,10 +105,6 @@ struct FibreStrain {
 
   template <class T>
   using rebind = FibreStrain<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? along : k == 1 ? across : shear; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const {
-    return k == 0 ? along : k == 1 ? across : shear;
-  }
 
   /// In no frame: E_as² + E_an² = |E a|² − E_aa², and E:E has the rest.
   template <class C, int Dim>

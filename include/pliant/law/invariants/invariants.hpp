@@ -13,13 +13,30 @@ namespace pliant {
 
 namespace detail {
 
+/// Invariant K of a set as a variable to differentiate by: member K, or entry K of a set that is an array.
+template <class Variable, int K, class Family>
+PLIANT_HOST_DEVICE Variable variable_of(Family const& i) {
+  if constexpr (requires { i[K]; }) {
+    return Variable::variable(i[K], K);
+  } else if constexpr (Family::count == 1) {
+    auto const& [a] = i;
+    return Variable::variable(a, K);
+  } else if constexpr (Family::count == 2) {
+    auto const& [a, b] = i;
+    return Variable::variable(K == 0 ? a : b, K);
+  } else {
+    auto const& [a, b, c] = i;
+    return Variable::variable(K == 0 ? a : K == 1 ? b : c, K);
+  }
+}
+
 // Made at once: to assign entry by entry would be copies, which compilers do not see through.
 template <class S, class L, class Family, int... K>
 PLIANT_HOST_DEVICE Family slopes_of(L const& law, Family const& i,
                                     std::integer_sequence<int, K...>) {
   using Variable = Dual<S, Family::count>;
-  Variable const w =
-      law.energy(typename Family::template rebind<Variable>{Variable::variable(i[K], K)...});
+  using Variables = typename Family::template rebind<Variable>;
+  Variable const w = law.energy(Variables{variable_of<Variable, K>(i)...});
   return Family{w.derivative[K]...};
 }
 /// The derivatives of an energy by each of its invariants of type S.
@@ -39,8 +56,6 @@ struct StrainInvariants {
 
   template <class T>
   using rebind = StrainInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? trace : squares; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? trace : squares; }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static StrainInvariants of(Tensor<S, Dim> const& h) {
@@ -69,8 +84,6 @@ struct CauchyGreenInvariants {
 
   template <class T>
   using rebind = CauchyGreenInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? D : J_minus_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? D : J_minus_1; }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static CauchyGreenInvariants of(Tensor<S, Dim> const& h) {
@@ -95,8 +108,6 @@ struct VolumeChange {
 
   template <class T>
   using rebind = VolumeChange<T>;
-  PLIANT_HOST_DEVICE S& operator[](int) { return J_minus_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int) const { return J_minus_1; }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static VolumeChange of(Tensor<S, Dim> const& h) {
@@ -119,8 +130,6 @@ struct GreenInvariants {
 
   template <class T>
   using rebind = GreenInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? trace : squares; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? trace : squares; }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static Tensor<S, Dim> strain(Tensor<S, Dim> const& h) {

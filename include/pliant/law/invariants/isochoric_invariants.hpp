@@ -19,10 +19,6 @@ struct PrincipalInvariants {
 
   template <class T>
   using rebind = PrincipalInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? D1 : k == 1 ? D2 : J_minus_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const {
-    return k == 0 ? D1 : k == 1 ? D2 : J_minus_1;
-  }
 
   template <int Dim>
   PLIANT_HOST_DEVICE static PrincipalInvariants of(Tensor<S, Dim> const& h) {
@@ -83,8 +79,6 @@ struct IsochoricInvariants {
 
   template <class T>
   using rebind = IsochoricInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) { return k == 0 ? I1_minus_3 : J_minus_1; }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const { return k == 0 ? I1_minus_3 : J_minus_1; }
 
   /// Ī₁ − 3 = (D + 3 + 2(J − 1) − 3 x²)/x² with x = J^(1/3), whose terms but D make (x − 1)² (2x +
   /// 1).
@@ -120,12 +114,6 @@ struct MooneyInvariants {
 
   template <class T>
   using rebind = MooneyInvariants<T>;
-  PLIANT_HOST_DEVICE S& operator[](int k) {
-    return k == 0 ? I1_minus_3 : k == 1 ? I2_minus_3 : J_minus_1;
-  }
-  PLIANT_HOST_DEVICE S const& operator[](int k) const {
-    return k == 0 ? I1_minus_3 : k == 1 ? I2_minus_3 : J_minus_1;
-  }
 
   /// Ī₂ is the Ī₁ of cof F, whose determinant is J².
   template <int Dim>
