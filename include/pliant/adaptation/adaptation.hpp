@@ -8,6 +8,7 @@
 #include <pliant/adaptation/table_check.hpp>
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/body/checksum.hpp>
+#include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/body/plain_type_name.hpp>
 
 namespace pliant {
@@ -155,7 +156,6 @@ class Adaptation {
       parts.moves = zeros<double>(parts.backend, 1);
       parts.clock = zeros<std::int64_t>(parts.backend, 1);
     }
-    if constexpr (switches) reserve_accelerations(parts);
     for_each_check(parts, [](auto const& check) { check.prepare(); });
   }
   /// `later` steps after the last one; 0: now.
@@ -188,12 +188,12 @@ class Adaptation {
   /// Where some element goes to another group.
   template <class Parts>
   void move_elements(Parts& parts) const {
-    parts.timers.criteria.start();
-    evaluate_accelerations(parts);
-    for_each_check(parts, [](auto const& check) { check.act(); });
-    parts.timers.criteria.stop();
-    regroup(parts);
-    book_switching(parts);
+    book_switching(parts, [&] {
+      parts.timers.criteria.start();
+      for_each_check(parts, [](auto const& check) { check.act(); });
+      parts.timers.criteria.stop();
+      regroup(parts);
+    });
   }
   /// Call after tags changed.
   template <class Parts>

@@ -14,8 +14,7 @@ struct SwitchTarget {
   std::int64_t* since;       // step of the last change of group
   std::int32_t* switches;    // changes of group so far
   std::int64_t const* step;  // (1): of this look
-  T half_step;               // s: of the integrator, 0 where there is none
-  bool is_pending;           // whether the last half-kick is still to be given
+  T pending_half_kick;       // s; 0: velocities are those of the present time
 };
 
 /// Moves the elements whose next group is another: tags change, and statistics are updated.
@@ -36,8 +35,7 @@ struct ActVisitor {
   SwitchTarget<T> target;
 
   template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&, V const&,
-                                   V const&) const {
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&, V const&) const {
     return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>{};
   }
   template <int G, class Again, class Tally>
@@ -66,12 +64,10 @@ struct ActVisitor {
   template <int From, int To>
   static constexpr bool goes = From != To && (goes_by<From, To, Rules>() || ...);
 
-  /// Seldom called, so kept out of line; constexpr is what lets device code call it. What leapfrog keeps is its
-  /// modified energy (Hairer, Lubich and Wanner, Geometric Numerical Integration, IX.3), to second order
-  /// W + v·M·v/2 + Δt² (v·∇²W v − a·M·a/2)/12 with velocities of the present time, and with those of the half
-  /// step before, while a half-kick is pending, W + v·M·v/2 − Δt/2 v·∇W + Δt² (v·∇²W v + a·M·a)/12. Of
-  /// its change, all but the square of the forces' is an element's own; that is
-  /// booked by book_switching.
+  /// Seldom called, so kept out of line; constexpr is what lets device code call it. What leapfrog keeps is
+  /// W + v₋·M·v₊/2 with the velocities v∓ of the half steps around the present time. While a half-kick is
+  /// pending, the next step finds v₊ = v₋ + Δt M⁻¹ F, so that a change ΔF of an element's forces adds
+  /// Δt/2 v₋·ΔF to the change of W. (Of velocities of the present time: see book_switching.)
   template <int From, int To, class Again, class Tally>
   [[gnu::noinline]] constexpr void move(Index e, Again const& again, Tally const& tally) const {
     using Old = typename Table::template formulation<From>;
@@ -79,10 +75,9 @@ struct ActVisitor {
     OneElement const own{e};
     auto const old_law = groups.template law<From>(own);
     auto const new_law = groups.template law<To>(own);
-    auto const [rest, u, v, a] = again();
+    auto const [rest, u, v] = again();
     T const before = energy<Old>(old_law, rest, u);
     auto const pull_before = force<Old>(old_law, rest, u);
-    auto const stiff_before = dot(tangent_product<Old>(old_law, rest, u, v), v);
     carry_internal_variables<From, To>(groups, e, rest, u);
     T const after = energy<New>(new_law, rest, u);
     auto const difference = force<New>(new_law, rest, u) - pull_before;
@@ -92,11 +87,8 @@ struct ActVisitor {
       for (int k = 0; k < All::rows; ++k)
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];
     }
-    T const stiffer = stiff_before - dot(tangent_product<New>(new_law, rest, u, v), v);  // v·ΔK v
-    T const half = target.half_step, turn = dot(difference, a);
-    T const first = target.is_pending ? half * dot(difference, v) : T(0);
-    T const second = target.is_pending ? stiffer + T(2) * turn : stiffer - turn;
-    tally(Counters::kinetic(From, To), static_cast<double>(first + half * half / T(3) * second));
+    tally(Counters::kinetic(From, To),
+          static_cast<double>(target.pending_half_kick * dot(difference, v)));
     tally(Counters::steps_of(From), static_cast<double>(*target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);
     tally(Counters::energy(From, To), static_cast<double>(after - before));

@@ -74,7 +74,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
           ActVisitor<Table, Rules...>{table_.laws, rules_, workspace().next.data(),
                                       workspace().values.data(), table_.count(), target()},
           elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
-          std::as_const(parts_).v(), NodeField<T const, Parts::dim>{parts_.acceleration.data()});
+          std::as_const(parts_).v());
   }
 
   /// The elements that rules want refined, by the user's number; `max_level` grows to the rules'.
@@ -113,13 +113,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
   SwitchTarget<T> target() const {
     auto& statistics = elements_.statistics;
-    return {elements_.tags.data(),       statistics.since.data(),
-            statistics.switches.data(),  parts_.clock.data(),
-            static_cast<T>(half_step()), parts_.state.pending_half_kick != 0};
-  }
-  double half_step() const {
-    double const pending = parts_.state.pending_half_kick;
-    return pending != 0 ? pending : parts_.state.integrator.step / 2;
+    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
+            parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
   }
   template <class Visit>
   void each_kept(Visit const& visit) const {

@@ -100,7 +100,6 @@ void put_in_force(Parts& parts, typename Parts::layout_type layout,
   parts.has_checkpoint = false;
   parts.scratch.reset();
   parts.row_sums = {};
-  parts.acceleration = {};
   parts.without_energy = {};
   parts.forces_current = false;  // those of the new layout are zero
   parts.loads_current = false;

@@ -26,6 +26,12 @@ struct AccelerationTerm {
   }
 };
 
+struct AddValue {
+  double* to;
+  double value;
+  PLIANT_HOST_DEVICE void operator()(Index) const { *to += value; }
+};
+
 }  // namespace detail
 
 /// Σ m a²/8, J/s²: Δt² of it is what the kinetic energy at a time has over that of the half steps around it,
@@ -48,6 +54,20 @@ template <class Parts>
 WatchedEnergy leapfrog_energy(Parts& parts) {
   double const step = parts.state.integrator.step;
   return {total_energy_of(parts), step * step * acceleration_term(parts)};
+}
+
+/// Calls move(), which moves elements between groups, and books what it adds to the energy that leapfrog keeps
+/// beyond what the elements tell, where velocities are those of the present time: −Δt² times the change
+/// of Σ m a²/8. While a half-kick is pending, the elements tell all, and nothing waits.
+template <class Parts, class Move>
+void book_switching(Parts& parts, Move const& move) {
+  double const step = parts.state.pending_half_kick != 0 ? 0 : parts.state.integrator.step;
+  double const before = step > 0 ? acceleration_term(parts) : 0;
+  move();
+  if (step > 0)
+    parts.backend.for_each(
+        1, detail::AddValue{parts.state.work.data() + static_cast<int>(Work::switching),
+                            -step * step * (acceleration_term(parts) - before)});
 }
 
 }  // namespace pliant

@@ -82,38 +82,6 @@ PLIANT_HOST_DEVICE Vector<T, Dim> acceleration_of(Index i, NodeField<T const, Di
   return a;
 }
 
-/// The accelerations of all nodes, zero where there is no mass.
-template <class T, int Dim>
-struct Accelerate {
-  NodeField<T, Dim> acceleration;
-  NodeField<T const, Dim> f;
-  T const* mass;
-  DirectionMask const* held;
-  ExternalForces<T, Dim> external;
-
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    T const m = mass[i];
-    acceleration.set(
-        i, m > T(0) ? acceleration_of(i, f, m, held[i], external) : Vector<T, Dim>::zero());
-  }
-};
-
-/// scale m |a' − a|² of a node, J, where a are accelerations of before and a' those of the present forces.
-template <class T, int Dim>
-struct SwitchingWork {
-  NodeField<T const, Dim> before, f;
-  T const* mass;
-  DirectionMask const* held;
-  ExternalForces<T, Dim> external;
-  double scale;  // s²
-  PLIANT_HOST_DEVICE double operator()(Index i) const {
-    T const m = mass[i];
-    if (!(m > T(0))) return 0;
-    auto const change = acceleration_of(i, f, m, held[i], external) - before.at(i);
-    return scale * static_cast<double>(m) * static_cast<double>(dot(change, change));
-  }
-};
-
 /// The work of mass damping in one half-kick of an Advance, J: what it changes beyond the work of the other
 /// forces, m (v'² − v²)/2 − h a·v_half ∓ h² a²/2 of time h, so that it is zero without damping.
 template <class T, int Dim>

@@ -13,7 +13,7 @@
 namespace pliant {
 
 /// Work that is summed where loops run, J: of changes of loads, of mass damping, of driven nodes, of
-/// pressures; and of changes of group, what no element knows alone (see SwitchingWork).
+/// pressures; and of changes of group, what no element knows alone (see book_switching).
 enum class Work : int { changed_loads, damping, motions, pressures, switching, count };
 
 /// What a run changes of the elements of one type, in internal order.

@@ -104,48 +104,6 @@ void synchronize_velocities(Parts& parts) {
   parts.state.pending_half_kick = 0;
 }
 
-/// Makes room for parts.acceleration.
-template <class Parts>
-void reserve_accelerations(Parts& parts) {
-  if (parts.acceleration.size() == parts.layout.rest.size()) return;
-  parts.acceleration = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
-  ++parts.revision;
-}
-
-/// Brings parts.acceleration up to the present forces, those of slaves interpolated; there is room for them.
-template <class Parts>
-void evaluate_accelerations(Parts& parts) {
-  using T = typename Parts::T;
-  evaluate_forces(parts);
-  NodeField<T, Parts::dim> const a{parts.acceleration.data()};
-  parts.backend.for_each(parts.layout.nodes, Accelerate<T, Parts::dim>{a,
-                                                                       {parts.layout.f.data()},
-                                                                       parts.layout.mass.data(),
-                                                                       parts.layout.held.data(),
-                                                                       external_forces(parts)});
-  parts.layout.interpolation.apply(parts.backend, a);
-}
-
-/// Books what a change of forces since evaluate_accelerations adds to the modified energy by its square, which
-/// is of all elements around a node: Δt²/12 Δf·M⁻¹·Δf while a half-kick is pending, else −Δt²/24 of it.
-/// Nothing waits.
-template <class Parts>
-void book_switching(Parts& parts) {
-  bool const pending = parts.state.pending_half_kick != 0;
-  double const half = pending ? parts.state.pending_half_kick : parts.state.integrator.step / 2;
-  if (half == 0) return;
-  evaluate_forces(parts);
-  parts.backend.add_sum(
-      parts.layout.nodes,
-      SwitchingWork<typename Parts::T, Parts::dim>{{parts.acceleration.data()},
-                                                   {parts.layout.f.data()},
-                                                   parts.layout.mass.data(),
-                                                   parts.layout.held.data(),
-                                                   external_forces(parts),
-                                                   half * half * (pending ? 1.0 / 3 : -1.0 / 6)},
-      parts.state.work.data() + static_cast<int>(Work::switching));
-}
-
 /// Σ m v²/2, J.
 template <class Parts>
 double kinetic_energy_of(Parts& parts) {
