@@ -236,34 +236,6 @@ TEST_CASE("a recording does again what was recorded", "[backend]") {
   });
 }
 
-TEST_CASE("a branch is taken where a number in the backend's memory is set", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
-    auto seen = zeros<double>(backend, 3);
-    auto flag = zeros<double>(backend, 1);
-    auto const add_if_set = [&] {
-      backend.if_set(flag.data(), [&] { backend.for_each(3, AddOne<double>{seen.data()}); });
-      backend.for_each(1, AddOne<double>{seen.data()});
-    };
-    add_if_set();
-    CHECK(download<double>(seen) == std::vector<double>{1, 0, 0});
-    flag.upload(std::vector<double>{-2});
-    add_if_set();
-    CHECK(download<double>(seen) == std::vector<double>{3, 2, 3});
-
-    // The flag counts when a recording runs, not when it is made; and a branch may set it for the next.
-    auto const recording = backend.record(add_if_set);
-    flag.upload(std::vector<double>{0});
-    recording.replay(2);
-    CHECK(download<double>(seen) == std::vector<double>{5, 2, 3});
-    auto const counting = backend.record([&] {
-      backend.if_set(flag.data(), [&] { backend.for_each(3, AddOne<double>{seen.data()}); });
-      backend.for_each(1, AddOne<double>{flag.data()});
-    });
-    counting.replay(3);
-    CHECK(download<double>(seen) == std::vector<double>{7, 6, 9});
-  });
-}
-
 TEST_CASE("accumulate adds each element's values to its nodes, by group", "[backend]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;

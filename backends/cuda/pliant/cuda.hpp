@@ -11,7 +11,6 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/kernel.hpp>
 #include <pliant/cuda/accumulate.cuh>
-#include <pliant/cuda/branch.cuh>
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/launch.hpp>
@@ -77,13 +76,6 @@ class Cuda {
   template <class F>
   void add_sum(Index n, F const& f, double* to) const {
     if (n > 0) reduce_to<detail::AddedSum>("add_sum", n, f, to);
-  }
-  template <class F>
-  void if_set(double const* flag, F const& f) const {
-    if (context_->stream()->records())
-      detail::record_branch(*context_->stream(), flag, f);
-    else if (value(flag) != 0)
-      f();
   }
   template <class F>
   double maximum(Index n, F const& f) const {
@@ -163,15 +155,6 @@ class Cuda {
               Arguments const&... arguments) const {
     auto const device = context_->stream()->enter();
     detail::launch(detail::Start::early, verb, shape, stream(), kernel, arguments...);
-  }
-  /// A number on the device.
-  double value(double const* number) const {
-    auto const device = context_->stream()->enter();
-    double* const result = context_->result();
-    detail::check(cudaMemcpyAsync(result, number, sizeof(double), cudaMemcpyDeviceToHost, stream()),
-                  "cudaMemcpyAsync");
-    synchronize();
-    return *result;
   }
   /// Leaves the result in memory that kernels write to; waits for nothing.
   template <class Reduction, class F>

@@ -101,10 +101,6 @@ class OpenMP {
     });
   }
   template <class F>
-  void if_set(double const* flag, F const& f) const {
-    if (*flag != 0) f();
-  }
-  template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
     threads_.for_each_part(n, small_loop, [&](Index first, Index last) {

@@ -70,10 +70,6 @@ class Reference {
     *to += sum(n, f);
   }
   template <class F>
-  void if_set(double const* flag, F const& f) const {
-    if (*flag != 0) f();
-  }
-  template <class F>
   double maximum(Index n, F const& f) const {
     double largest = -std::numeric_limits<double>::infinity();
     for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));

@@ -7,6 +7,7 @@
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/adaptation/table_check.hpp>
 #include <pliant/backend/host_recording.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/body/checksum.hpp>
 #include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/body/plain_type_name.hpp>
@@ -121,16 +122,11 @@ class Adaptation {
       adapt_.prepare(parts);
       adapt_.begin_look(parts, 0);  // the clock
     }
-    /// No forces are current after it.
     template <class Parts>
     void loop_over_look(Parts& parts) const {
       adapt_.begin_look(parts, adapt_.interval_);
       adapt_.decide(parts);
-      if constexpr (switches)
-        parts.backend.if_set(parts.moves.data(), [&] {
-          adapt_.move_elements(parts);
-          forget_forces(parts);
-        });
+      if constexpr (switches) adapt_.switch_groups(parts);
     }
 
    private:
@@ -183,9 +179,19 @@ class Adaptation {
   }
   template <class Parts>
   void switch_groups(Parts& parts) const {
-    parts.backend.if_set(parts.moves.data(), [&] { move_elements(parts); });
+    if (!asks_whether_to_switch(parts) || something_moves(parts)) move_elements(parts);
   }
-  /// Where some element goes to another group.
+  /// Between the steps of leapfrog nothing follows from a switch but the elements' own: on a backend that looks at
+  /// each tag as it goes, the host need not know of it.
+  template <class Parts>
+  static bool asks_whether_to_switch(Parts const& parts) {
+    return Parts::backend_type::orders_by_group || parts.forces_current ||
+           parts.state.pending_half_kick == 0;
+  }
+  template <class Parts>
+  static bool something_moves(Parts const& parts) {
+    return parts.backend.sum(1, detail::ValueAt<double>{parts.moves.data()}) != 0;
+  }
   template <class Parts>
   void move_elements(Parts& parts) const {
     book_switching(parts, [&] {

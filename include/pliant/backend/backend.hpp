@@ -28,8 +28,6 @@
 //                              nothing
 //   histogram(n, f, bins)      adds f(i).weight to bins[f(i).number], an array of at most 256 integers
 //                              in the backend's memory; a negative number: nowhere
-//   if_set(flag, f)            f(), which calls verbs, where *flag, a double in the backend's memory, is not
-//                              zero. While a recording is made, a branch of it: each replay looks anew
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
 //                              that return nothing, the same ones with the same arguments each time
 //                              (a GPU records them once as a graph).
@@ -160,7 +158,6 @@ concept Backend =
       { b.maximum(n, f) } -> std::same_as<double>;
       b.add_sum(n, f, static_cast<double*>(nullptr));
       b.histogram(n, bin, bins);
-      b.if_set(static_cast<double const*>(nullptr), f);
       { b.record(f) } -> std::same_as<typename B::Recording>;
       {
         b.template array<typename B::scalar>(std::size_t{})

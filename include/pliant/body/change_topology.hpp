@@ -96,6 +96,7 @@ void put_in_force(Parts& parts, typename Parts::layout_type layout,
   parts.state.prescribed = std::move(prescribed);
   parts.recorded.reset();
   parts.recorded_stretch.reset();
+  parts.recorded_with_look.reset();
   parts.checkpoint.reset();
   parts.has_checkpoint = false;
   parts.scratch.reset();

@@ -78,8 +78,9 @@ struct Parts {
     std::shared_ptr<void const> look{};  // of which adaptation; null: of none
     int steps = 1;
   };
-  std::optional<Recorded> recorded{};          // a step
-  std::optional<Recorded> recorded_stretch{};  // steps, and a look of an adaptation behind them
+  std::optional<Recorded> recorded{};            // a step
+  std::optional<Recorded> recorded_stretch{};    // several
+  std::optional<Recorded> recorded_with_look{};  // and a look of an adaptation behind them
   struct Scratch {
     Array<T> u, du, f;
   };

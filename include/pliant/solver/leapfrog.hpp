@@ -45,6 +45,7 @@ void loop_over_step(Parts& parts, double dt) {
 template <class Parts, class F>
 void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, double dt, int steps,
                   std::shared_ptr<void const> const& look, int n, F const& f) {
+  if (n == 0) return;
   // What allocates or hands loads on to masters is no part of a step.
   (void)external_forces(parts);
   (void)reserve_terms_without_energy(parts);
@@ -57,6 +58,10 @@ void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, d
   state.steps += n * steps;
 }
 
+/// How many steps are recorded together where there are many: what lies between two launches of a GPU takes some
+/// 2 µs.
+inline constexpr int steps_of_stretch = 8;
+
 }  // namespace detail
 
 /// Takes steps of a constant size, with a half-kick pending before and after. Throws Error where a motion is
@@ -64,9 +69,13 @@ void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, d
 template <class Parts>
 void take_steps(Parts& parts, double dt, int steps) {
   steps = detail::take_special_steps(parts, dt, steps);
-  if (steps > 0)
-    detail::replay_steps(parts, parts.recorded, dt, 1, nullptr, steps,
-                         [&parts, dt] { detail::loop_over_step(parts, dt); });
+  auto const replay = [&](auto& kept, int together, int n) {
+    detail::replay_steps(parts, kept, dt, together, nullptr, n, [&parts, dt, together] {
+      for (int k = 0; k < together; ++k) detail::loop_over_step(parts, dt);
+    });
+  };
+  replay(parts.recorded_stretch, detail::steps_of_stretch, steps / detail::steps_of_stretch);
+  replay(parts.recorded, 1, steps % detail::steps_of_stretch);
 }
 
 /// Takes as many whole stretches as fit into `steps`, each of look.interval() steps with a look behind them,
@@ -79,7 +88,7 @@ int take_stretches(Parts& parts, double dt, int steps, Look const& look) {
     return 0;
   look.prepare(parts);
   int const n = steps / interval;
-  detail::replay_steps(parts, parts.recorded_stretch, dt, interval, look.identity(), n,
+  detail::replay_steps(parts, parts.recorded_with_look, dt, interval, look.identity(), n,
                        [&parts, dt, interval, look] {
                          for (int k = 0; k < interval; ++k) detail::loop_over_step(parts, dt);
                          look.loop_over_look(parts);

@@ -40,25 +40,7 @@ class DeviceStream {
   DeviceStream& operator=(DeviceStream const&) = delete;
 
   int device() const { return device_; }
-  /// Where work is queued.
-  cudaStream_t get() const { return queue_ != nullptr ? queue_ : stream_; }
-  /// Whether work is recorded rather than run.
-  bool records() const {
-    cudaStreamCaptureStatus status{};
-    check(cudaStreamIsCapturing(get(), &status), "cudaStreamIsCapturing");
-    return status != cudaStreamCaptureStatusNone;
-  }
-  /// Work is queued on another stream while what this returns lives.
-  [[nodiscard]] auto queue_on(cudaStream_t stream) const {
-    struct Back {
-      DeviceStream const& own;
-      cudaStream_t before;
-      Back(DeviceStream const& o, cudaStream_t b) : own(o), before(b) {}
-      Back(Back const&) = delete;
-      ~Back() { own.queue_ = before; }
-    };
-    return Back(*this, std::exchange(queue_, stream));
-  }
+  cudaStream_t get() const { return stream_; }
   /// The device is the calling thread's current one while what this returns lives.
   [[nodiscard]] DeviceGuard enter() const { return DeviceGuard(device_); }
   void synchronize() const { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
@@ -81,7 +63,6 @@ class DeviceStream {
 
   int device_;
   cudaStream_t stream_;
-  mutable cudaStream_t queue_ = nullptr;  // in place of stream_
   bool owns_stream_ = false;
 };
 
