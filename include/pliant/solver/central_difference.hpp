@@ -22,7 +22,7 @@ struct CentralDifferenceOptions {
   int watch_interval = 16;  // steps between looks at the distortion, which may ask for one earlier
   /// What counts as a blow-up: growth of the total energy since the last check, over strain and kinetic
   /// energy, which beyond the stable step is many times (at safety 0.94 that of the highest mode swings
-  /// by 0.9 of its largest); and growth of the energy that leapfrog keeps since the start, over the
+  /// by 0.9 of its largest), and more than the loads' accelerations explain; and growth of the energy that leapfrog keeps since the start, over the
   /// largest of these so far. The work of loads, pressures, driven nodes and damping is booked, and no
   /// growth. Not looked at with laws that have internal variables: they may give back what the strain
   /// energy does not count.
@@ -149,8 +149,10 @@ class CentralDifference {
     // An unstable step lets the total grow while what leapfrog keeps stays; a state that stiffens faster than
     // the step follows adds to that too. Comparisons with NaN, before the first check, are false.
     bool const grew =
-        watched && (total > own.last_energy + options_.energy_growth * present ||
-                    kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
+        watched &&
+        ((total > own.last_energy + options_.energy_growth * present &&
+          is_beyond_loads(parts, energies.acceleration, options_.energy_growth * present)) ||
+         kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
     if (std::isfinite(total) && !grew) {
       own.scale = std::max(own.scale, present);
       own.last_energy = total;
@@ -177,6 +179,16 @@ class CentralDifference {
     own.next_check = state.steps + options_.check_interval;
     own.next_refresh = own.next_watch = state.steps;
     return false;
+  }
+
+  /// Whether the total has more over what leapfrog keeps than a stable step leaves it: of linear laws, whose
+  /// forces are the loads and those of the strain energy, √A ≤ √A_loads + ω Δt/2 √W. So a load that comes at
+  /// once is no growth, whenever it comes.
+  template <class Parts>
+  static bool is_beyond_loads(Parts& parts, double acceleration, double growth) {
+    double const step = parts.state.integrator.step;
+    double const bound = step * std::sqrt(load_term(parts)) + std::sqrt(growth);
+    return acceleration > bound * bound;
   }
 
   CentralDifferenceOptions options_;
