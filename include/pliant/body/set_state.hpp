@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/body/check_field.hpp>
+#include <pliant/body/checkpoint.hpp>
 #include <pliant/constraint/conditions.hpp>
 
 // What a user sets of a body's state.
@@ -110,6 +111,26 @@ void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
   change_loads(parts, [&] {
     make_loads(parts);
     parts.state.load.upload(parts.layout.padded(forces));
+  });
+}
+
+/// Goes back to the last checkpoint with gravity, damping and loads as they are, since it is not the run that
+/// changed them. What that adds to the energy there is booked.
+template <class Parts>
+void roll_back_motion(Parts& parts) {
+  detail::CopyMember<typename Parts::backend_type> const copy{parts.backend};
+  auto const gravity = parts.state.gravity;
+  double const damping = parts.state.damping;
+  typename Parts::template Array<typename Parts::T> load;
+  copy("loads", parts.state.load, load);
+  roll_back(parts);
+  parts.state.damping = damping;
+  if (gravity == parts.state.gravity && load.size() == 0) return;
+  change_loads(parts, [&] {
+    parts.state.gravity = gravity;
+    if (load.size() == 0) return;
+    make_loads(parts);
+    copy("loads", load, parts.state.load);
   });
 }
 

@@ -101,7 +101,7 @@ double watched_change(Parts& parts, Change const& change) {
 
 /// Runs a change of the state by a user's hand: `change()`. Velocities are brought up to the present time
 /// first. Once an integrator watches the energy, what the change adds to it is booked; forces are
-/// evaluated anew, and roll-back does not cross it.
+/// evaluated anew, the stable step is asked for again, and roll-back does not cross it.
 template <class Parts, class Change>
 void change_by_hand(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
@@ -111,6 +111,7 @@ void change_by_hand(Parts& parts, Change const& change) {
   });
   parts.state.energy_by_hand += added;
   parts.has_checkpoint = false;
+  parts.state.integrator.next_refresh = parts.state.steps;  // it may have made the body stiffer
 }
 
 namespace detail {

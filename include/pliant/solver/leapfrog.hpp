@@ -5,10 +5,11 @@
 // The steps of central differences (leapfrog, velocity Verlet) on the parts of a body.
 namespace pliant {
 
-/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error where a motion is
-/// not finite, at the end of the last step before that.
+/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error for a size that is
+/// not positive, and where a motion is not finite, at the end of the last step before that.
 template <class Parts>
 void take_steps(Parts& parts, double dt, int steps) {
+  if (!(dt > 0)) throw Error("take_steps: a step of ", dt, " s; give a positive one");
   auto& state = parts.state;
   // Steps that are not like the others.
   auto const special = [&] {
