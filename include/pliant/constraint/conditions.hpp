@@ -82,14 +82,17 @@ void upload_conditions(Parts& parts) {
   ++parts.revision;
 }
 
-/// Runs `change()`, and returns what it added to the energy that an integrator watches and keeps, J; 0 while
-/// none does. Where there is no such number, the integrator begins anew.
-template <class Parts, class Change>
-double watched_change(Parts& parts, Change const& change) {
-  auto const before = parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
-  change();
-  if (!parts.watched_energy) return 0;
-  auto const after = parts.watched_energy(parts);
+/// The energy that an integrator watches; none while none does.
+template <class Parts>
+WatchedEnergy present_energy(Parts& parts) {
+  return parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
+}
+
+/// What a change since `before` added to the energy that an integrator watches and keeps, J; 0 while none does.
+/// Where there is no such number, the integrator begins anew.
+template <class Parts>
+double watched_change(Parts& parts, WatchedEnergy const& before) {
+  auto const after = present_energy(parts);
   double const added = after.kept() - before.kept();
   if (!std::isfinite(added)) {
     parts.state.integrator.active = false;
@@ -105,11 +108,10 @@ double watched_change(Parts& parts, Change const& change) {
 template <class Parts, class Change>
 void change_by_hand(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
-  double const added = watched_change(parts, [&] {
-    change();
-    forget_forces(parts);
-  });
-  parts.state.energy_by_hand += added;
+  auto const before = present_energy(parts);
+  change();
+  forget_forces(parts);
+  parts.state.energy_by_hand += watched_change(parts, before);
   parts.has_checkpoint = false;
   parts.state.integrator.next_refresh = parts.state.steps;  // it may have made the body stiffer
 }
