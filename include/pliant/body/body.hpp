@@ -83,7 +83,7 @@ class Body {
     return add_condition(*parts_, driven({}, nodes, std::move(motion), std::move(options)));
   }
   /// A pressure that follows the surface, Pa, positive against the outward normal, on facets of the
-  /// boundary told by their corners, from either side. Pressing the same facets again replaces it.
+  /// boundary told by their corners, from either side. Pressing the same facets again, in whatever order, replaces it.
   Handle press(Facets const& facets, double pascals) {
     return pliant::press(*parts_, facets, pascals);
   }
