@@ -172,7 +172,9 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
   auto prescribed = *parts.state.prescribed;
   condition.handle = {prescribed.next_id++};
   if (condition.motion) {
-    if (condition.name.empty()) condition.name = "motion " + std::to_string(condition.handle.id);
+    for (Index k = condition.handle.id; condition.name.empty(); ++k)
+      if (auto name = "motion " + std::to_string(k); !parts.motions.contains(name))
+        condition.name = std::move(name);
     if (std::ranges::find(prescribed.conditions, condition.name, &Condition<Parts::dim>::name) !=
         prescribed.conditions.end())
       throw Error("body.drive: there is a motion called \"", condition.name,
