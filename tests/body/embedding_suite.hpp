@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pliant/law/decorators/viscosity.hpp>
+
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
@@ -132,6 +134,48 @@ TEST_CASE("a mesh of plain arrays makes a body", "[body]") {
       CHECK(static_cast<double>(forces[i]) == Approx(expected[i]).margin(tolerance));
     CHECK(body.energy(u.data()) == Approx(7.0 / 128).epsilon(tolerance));
     for (double m : body.parts().layout.mass_list) CHECK(m == Approx(0.5).epsilon(1e-15));
+  });
+}
+
+TEST_CASE("internal variables that are committed by hand act at once", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using Viscous = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
+    auto const mesh = distorted_mesh<Quad4>(5);
+    Body body{backend, mesh, soft,
+              Group<Viscous>{typename Viscous::template law<double>{
+                  NeoHookean<double>::from(soft), {0.5}, {0.05}}}};
+    body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 0.1));
+    CentralDifference step{{.step = 1e-3}};
+    step(body, 20);
+    auto const before = body.forces();
+    auto const u = upload(backend, flat<double>(Random(2).field<2>(mesh.nodes.size(), 0.05)));
+    REQUIRE(body.parts().has_checkpoint);
+
+    body.commit(u.data(), 1e-3);
+
+    auto const after = body.forces();
+    forget_forces(body.parts());
+    CHECK(difference(after, body.forces()) <= 1e-12 * largest(after));
+    CHECK(difference(after, before) > 1e-3 * largest(before));
+    CHECK_FALSE(body.parts().has_checkpoint);
+  });
+}
+
+TEST_CASE("a step that is missing is told from one that is negative", "[body][errors]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using Viscous = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
+    auto const mesh = distorted_mesh<Quad4>(3);
+    auto body = body_of<Rubber>(backend, mesh);
+    Body viscous{backend, mesh, soft,
+                 Group<Viscous>{typename Viscous::template law<double>{
+                     NeoHookean<double>::from(soft), {0.5}, {0.05}}}};
+    auto u = zeros<double>(backend, 2 * mesh.nodes.size()), f = zeros<double>(backend, u.size());
+
+    CHECK_THROWS_WITH(body.add_force(u.data(), f.data(), 2, -3),
+                      says("a step of -3 s") && !says("internal variables"));
+    CHECK_THROWS_WITH(viscous.add_force(u.data(), f.data()),
+                      says("internal variables") && !says("-1"));
+    CHECK_NOTHROW(body.add_force(u.data(), f.data()));
   });
 }
 

@@ -154,6 +154,28 @@ TEST_CASE("a static solution is at rest with its memory", "[body]") {
   });
 }
 
+TEST_CASE("what a static solution brings to rest is booked", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using Maxwell = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::template law>;
+    auto const mesh = distorted_mesh<Quad4>(4);
+    Body body{backend, mesh, soft,
+              Group<Maxwell>{typename Maxwell::template law<double>{{3, 2}, {0.5}, {10}}}};
+    body.clamp(mesh.boundary("left"));
+    body.set_gravity({0, -0.3});
+    CentralDifference step{{.step = 2e-3}};
+    step(body, 50);
+    auto const unbooked = [&] {
+      return leapfrog_energy(body.parts()).kept() - booked_energy(body.parts());
+    };
+    double const before = unbooked(), size = strain_energy(body) + kinetic_energy(body);
+
+    solve_static(body);
+
+    CHECK(std::abs(unbooked() - before) < 1e-9 * size);
+    CHECK(std::abs(external_work(body).by_hand) > 0.01 * size);
+  });
+}
+
 TEST_CASE("what branches store comes back without a false alarm", "[body]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     using F = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::template law>;

@@ -200,6 +200,16 @@ TEST_CASE("motions have names of their own", "[constraint][errors]") {
   CHECK(body.parts().motions.at("pull")({}, 1) == Point<2>{2, 0});
 }
 
+TEST_CASE("names that are made up are none that was given", "[constraint]") {
+  auto body = body_of<Rubber>(MainBackend{}, strip());
+  for (int k : {1, 2, 4})
+    body.drive(std::vector<Index>{static_cast<Index>(k)}, drawn_at(1),
+               {.name = "motion " + std::to_string(k)});
+  for (Index node : {5, 6, 7}) body.drive(std::vector<Index>{node}, drawn_at(2));
+  CHECK(body.parts().motions.size() == 6);
+  CHECK(body.parts().motions.at("motion 4")({}, 1) == Point<2>{1, 0});
+}
+
 TEST_CASE("a motion that turns NaN stops a run before anything changes", "[constraint][errors]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;

@@ -240,4 +240,97 @@ TEST_CASE("options of Newmark that cannot work are refused", "[solver]") {
   CHECK_THROWS_WITH((Newmark{{.step = 1e-3, .max_iterations = 0}}), says("max_iterations 0"));
 }
 
+inline auto block(double young = 1e5, int cells = 8) {
+  return body_of<Linear>(Reference<double>{},
+                         mesh::rectangle({.size = {1, 0.25}, .cells = {cells, 2}}),
+                         {young, 0.3, 1e3});
+}
+
+TEST_CASE("a body that is drawn along at its speed stays unstrained, whatever is set", "[solver]") {
+  for (int mode : {0, 1, 2, 3}) {
+    CAPTURE(mode);
+    auto body = block();
+    auto const nodes = static_cast<std::size_t>(body.nodes());
+    body.drive(body.mesh().boundary("left"), [](double t) { return Point<2>{0.1 * t, 0}; });
+    body.set_velocities(FieldOf<2>(nodes, {0.1, 0}));
+    Newmark step{{.step = 1e-3}};
+    for (int k = 0; k < 50; ++k) {
+      if (mode == 1) body.set_loads(FieldOf<2>(nodes));
+      if (mode == 2) body.set_gravity({0, 0});
+      if (mode == 3)
+        Newmark{{.step = 1e-3}}(body);
+      else
+        step(body);
+    }
+    CHECK(body.displacements()[0][0] == Approx(0.1 * body.time()));
+    CHECK(body.velocities()[8][0] == Approx(0.1).epsilon(1e-9));
+    CHECK(strain_energy(body) < 1e-20);
+  }
+}
+
+TEST_CASE("a motion that begins at time zero is not asked for before", "[solver]") {
+  auto body = block();
+  body.drive(body.mesh().boundary("left"), [](double t) { return Point<2>{std::sqrt(t), 0}; });
+  Newmark step{{.step = 1e-3}};
+  CHECK_NOTHROW(step(body, 3));
+}
+
+TEST_CASE("one Newmark takes any body for what it is", "[solver]") {
+  Newmark shared{{.step = 1e-2}};
+  FieldOf<2> u, v;
+  for (double young : {1e5, 1e7}) {  // the second one where the first was in memory, as a rule
+    auto body = block(young), twin = block(young);
+    for (auto* each : {&body, &twin}) {
+      each->clamp(each->mesh().boundary("left"));
+      each->set_gravity({0, -1});
+      if (u.empty()) continue;
+      each->set_displacements(u);
+      each->set_velocities(v);
+    }
+    Newmark own{{.step = 1e-2}};
+    shared(body, 3);
+    own(twin, 3);
+    CHECK(difference(body.displacements(), twin.displacements()) == 0);
+    u = body.displacements();
+    v = body.velocities();
+  }
+  for (int cells : {4, 8, 16}) {
+    auto body = block(1e5, cells);
+    body.clamp(body.mesh().boundary("left"));
+    body.set_gravity({0, -1});
+    CHECK_NOTHROW(shared(body, 2));
+  }
+}
+
+TEST_CASE("Newmark and central differences take turns", "[solver]") {
+  auto body = block(), twin = block();
+  CentralDifference explicitly{{.step = 1e-3}}, anew{{.step = 1e-3}};
+  for (auto* each : {&body, &twin}) {
+    each->clamp(each->mesh().boundary("left"));
+    each->set_gravity({0, -1});
+    Newmark{{.step = 1e-2}}(*each, 3);
+  }
+  explicitly(body);
+  anew(twin);
+  Newmark{{.step = 1e-2}}(body);
+  Newmark{{.step = 1e-2}}(twin);
+  explicitly(body, 300);
+  CentralDifference{{.step = 1e-3}}(twin, 300);
+  CHECK(difference(body.displacements(), twin.displacements()) == 0);
+  CHECK(explicitly.retries() == 0);
+}
+
+TEST_CASE("no step changes nothing, and fewer are refused", "[solver]") {
+  auto body = block();
+  body.clamp(body.mesh().boundary("left"));
+  body.set_velocities(FieldOf<2>(static_cast<std::size_t>(body.nodes()), {0.1, 0}));
+  auto const v = body.velocities();
+  Newmark step{{.step = 1e-2}};
+  step(body, 0);
+  CHECK(body.steps() == 0);
+  CHECK(body.velocities() == v);
+  CHECK(body.parts().integrator == nullptr);
+  CHECK_THROWS_WITH(step(body, -5), says("-5 steps"));
+}
+
 }  // namespace pliant::test

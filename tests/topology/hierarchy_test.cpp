@@ -29,7 +29,6 @@ using Nodes2 = std::array<Index, 2>;
 using Nodes3 = std::array<Index, 3>;
 using Nodes4 = std::array<Index, 4>;
 
-enum Mark { left, right, bottom, top, all, none };
 enum class Cells { triangles, quads, mixed };
 
 constexpr double width = 2.0, height = 1.0;
@@ -49,7 +48,6 @@ Hierarchy rectangle(Cells kind, Index nx, Index ny, unsigned seed = 1) {
     }
   std::vector<Nodes3> triangles;
   std::vector<Nodes4> quads;
-  std::map<int, std::vector<Nodes2>> sides;
   for (Index j = 0; j < ny; ++j)
     for (Index i = 0; i < nx; ++i) {
       Index const a = j * (nx + 1) + i, b = a + 1, c = b + nx + 1, d = c - 1;
@@ -59,18 +57,8 @@ Hierarchy rectangle(Cells kind, Index nx, Index ny, unsigned seed = 1) {
         triangles.push_back({a, b, c});
         triangles.push_back({c, d, a});
       }
-      if (i == 0) sides[left].push_back({a, d});
-      if (i == nx - 1) sides[right].push_back({b, c});
-      if (j == 0) sides[bottom].push_back({a, b});
-      if (j == ny - 1) sides[top].push_back({c, d});
     }
-  Hierarchy mesh(points, triangles, quads);
-  for (auto const& [mark, edges] : sides) {
-    mesh.add_boundary(mark, edges);
-    mesh.add_boundary(all, edges);
-  }
-  mesh.add_boundary(none, {});
-  return mesh;
+  return Hierarchy(points, triangles, quads);
 }
 
 Refinement refine(Hierarchy& mesh, std::vector<Index> const& cells,
@@ -96,11 +84,6 @@ double area(Hierarchy const& mesh, HierarchyCell const& cell) {
   return twice / 2;
 }
 
-double length(Hierarchy const& mesh, Nodes2 const& nodes) {
-  auto const &p = mesh.points()[at(nodes[0])], &q = mesh.points()[at(nodes[1])];
-  return std::hypot(q[0] - p[0], q[1] - p[1]);
-}
-
 // Everything that can be seen of a hierarchy, as numbers to compare.
 std::vector<double> picture(Hierarchy const& mesh) {
   std::vector<double> seen{static_cast<double>(mesh.leaf_count())};
@@ -113,10 +96,6 @@ std::vector<double> picture(Hierarchy const& mesh) {
     seen.push_back(s.node);
     for (auto const& [master, weight] : s.masters) seen.insert(seen.end(), {1. * master, weight});
   }
-  for (int const mark : {left, right, bottom, top, all, none})
-    for (auto const& f : mesh.facets_of(mark)) {
-      for (Index const n : {f.cell, f.side, f.nodes[0], f.nodes[1]}) seen.push_back(n);
-    }
   return seen;
 }
 
@@ -234,41 +213,6 @@ std::size_t check_continuity(Hierarchy const& mesh, std::mt19937& random) {
   CHECK(jumps == 0);
   CHECK(hanging == constrained);
   return hanging.size();
-}
-
-void check_boundary(Hierarchy const& mesh) {
-  auto const on = [&](Index n, int mark) {
-    auto const [x, y] = mesh.points()[at(n)];
-    return (mark == left && x == 0) || (mark == right && x == width) ||
-           (mark == bottom && y == 0) || (mark == top && y == height);
-  };
-  std::size_t facets_in_all = 0;
-  for (int const mark : {left, right, bottom, top}) {
-    std::set<Nodes2> expected, found;
-    for (Index const c : mesh.leaves()) {
-      auto const& cell = mesh.cell(c);
-      for (std::size_t i = 0; i < at(cell.sides); ++i) {
-        Nodes2 const nodes{cell.nodes[i], cell.nodes[(i + 1) % at(cell.sides)]};
-        if (on(nodes[0], mark) && on(nodes[1], mark)) expected.insert(nodes);
-      }
-    }
-    double total = 0;
-    int astray = 0;
-    for (auto const& f : mesh.facets_of(mark)) {
-      auto const& cell = mesh.cell(f.cell);
-      auto const i = at(f.side);
-      astray += !mesh.is_leaf(f.cell) || f.nodes[0] != cell.nodes[i] ||
-                f.nodes[1] != cell.nodes[(i + 1) % at(cell.sides)];
-      total += length(mesh, f.nodes);
-      found.insert(f.nodes);
-      ++facets_in_all;
-    }
-    CHECK(astray == 0);
-    CHECK(found == expected);
-    CHECK(std::abs(total - (mark == left || mark == right ? height : width)) < 1e-12);
-  }
-  CHECK(mesh.facets_of(all).size() == facets_in_all);
-  CHECK(mesh.facets_of(none).empty());
 }
 
 // What refine says it did, against what changed.
@@ -415,7 +359,6 @@ TEST_CASE("random refinement keeps area, orientation, levels, continuity and mar
     if (round % 20 == 19) {
       check_report(done, mesh, cells, nodes, leaves.size());
       check_leaves(mesh);
-      check_boundary(mesh);
       most_hanging = std::max(most_hanging, check_continuity(mesh, random));
       for (auto const& s : mesh.slaves()) composed += s.masters.size() > 2;
     }
@@ -502,31 +445,6 @@ TEST_CASE("marked cells at the greatest level are skipped, closure stays below i
   // Nothing to do is no breach of a limit that is already passed.
   CHECK(refine(mesh, mesh.leaves(), {.nodes = 1, .leaves = 1, .max_level = 2}).new_nodes.empty());
   CHECK(refine(mesh, {}).parents.empty());
-  CHECK(picture(mesh) == before);
-}
-
-TEST_CASE("marks may overlap, be repeated and be given after refinement", "[hierarchy]") {
-  auto mesh = rectangle(Cells::quads, 2, 1);  // nodes 0 1 2 / 3 4 5
-  refine(mesh, {0});
-  mesh.add_boundary(42, std::vector<Nodes2>{{1, 0}, {0, 1}, {0, 3}});
-
-  CHECK(mesh.facets_of(42).size() == 4);
-  CHECK(mesh.facets_of(bottom).size() == 3);
-  mesh.add_boundary(42, std::vector<Nodes2>{{2, 5}, {0, 1}});
-  CHECK(mesh.facets_of(42).size() == 5);
-  double total = 0;
-  for (auto const& f : mesh.facets_of(42)) total += length(mesh, f.nodes);
-  CHECK(std::abs(total - (width / 2 + 2 * height)) < 1e-12);
-
-  auto const before = picture(mesh);
-  auto const marking = [&](Nodes2 edge) {
-    return message_of([&] { mesh.add_boundary(bottom, std::vector<Nodes2>{{3, 4}, edge}); });
-  };
-  CHECK(mentions(marking({1, 4}), {"nodes 1 and 4", "boundary"}));  // between two cells
-  CHECK(mentions(marking({0, 4}), {"nodes 0 and 4", "boundary"}));  // no edge
-  CHECK(mentions(marking({0, 99}), {"nodes 0 and 99"}));
-  CHECK(mentions(marking({-1, 0}), {"nodes -1 and 0"}));
-  CHECK(mentions(message_of([&] { (void)mesh.facets_of(77); }), {"mark 77", "add_boundary"}));
   CHECK(picture(mesh) == before);
 }
 

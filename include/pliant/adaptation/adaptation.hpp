@@ -54,11 +54,13 @@ class Adaptation {
   void operator()(TheBody& body) {
     if (steps_to_look(body, body.steps() - 1) > 1) return;
     now(body);
+    // A refinement puts another state in place of the one that was looked at.
     last_look(body.parts(), body.steps()).step = body.steps();
   }
 
   /// Looks and acts at once, whatever the interval. When it throws (refinement would exceed the mesh's
-  /// limits, or a criterion throws on a backend that lets it), the body is as it was.
+  /// limits, a force term cannot be made anew, or a criterion throws on a backend that lets it), the body is
+  /// as it was; but for what listeners throw, who are told when all is done.
   template <DeformableBody TheBody>
   void now(TheBody& body) {
     static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
@@ -69,18 +71,21 @@ class Adaptation {
     decide(parts);
     if constexpr (switches && refines) {
       for_each_check(parts, [](auto const& check) { check.keep(); });
-      try {
-        switch_groups(parts);
-        refine_marked(parts);
-      } catch (...) {
-        for_each_check(parts, [](auto const& check) { check.put_back(); });
-        regroup(parts);
-        throw;
-      }
+      auto const plan = [&] {
+        try {
+          switch_groups(parts);
+          return refine_marked(parts);
+        } catch (...) {  // the mesh is the one of before
+          for_each_check(parts, [](auto const& check) { check.put_back(); });
+          regroup(parts);
+          throw;
+        }
+      }();
+      if (plan) tell_listeners(parts, *plan);
     } else if constexpr (switches) {
       switch_groups(parts);
     } else if constexpr (refines) {
-      refine_marked(parts);
+      if (auto const plan = refine_marked(parts)) tell_listeners(parts, *plan);
     }
   }
 
@@ -211,16 +216,19 @@ class Adaptation {
     }
     forget_forces(parts);
   }
+  /// What it has done; listeners are still to be told.
   template <class Parts>
-  void refine_marked(Parts& parts) const {
+  auto refine_marked(Parts& parts) const {
     parts.timers.criteria.start();
     int max_level = 0;
     std::vector<std::vector<Index>> marked;
     for_each_check(parts, [&](auto const& check) { marked.push_back(check.marked(max_level)); });
     parts.timers.criteria.stop();
     parts.timers.migration.start();
-    if (auto const plan = plan_refinement(parts, marked, max_level)) commit(parts, *plan);
+    auto plan = plan_refinement(parts, marked, max_level);
+    if (plan) (void)commit(parts, *plan);
     parts.timers.migration.stop();
+    return plan;
   }
 
   void set_interval(int calls) {

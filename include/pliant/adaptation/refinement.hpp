@@ -180,31 +180,38 @@ auto plan_refinement(Parts const& parts, std::vector<std::vector<Index>> const& 
                            done.parents};
 }
 
-/// Makes a planned refinement. Throws Error, with the body as it was, where fields are not finite or memory
-/// runs out.
+/// Makes a planned refinement; listeners wait for tell_listeners. Throws Error, with the body as it was, where
+/// fields are not finite, a force term cannot be made anew or memory runs out.
 template <class Parts>
 RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> const& plan) {
   double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
   double const kinetic = kinetic_energy_of(parts);
+  auto const before = present_energy(parts);
   auto const give_back = [&](auto const& layout, auto const& held, auto& v) {
     return detail::give_momentum_back(*plan.after->tree, plan.parents, parts.material.density,
                                       layout, *plan.after, held, v);
   };
-  Point<2> taken{};
-  double const added = watched_change(
-      parts, [&] { taken = change_topology(parts, plan.after, plan.transfer, give_back); });
-  LedgerEntry<2> const entry{parts.state.time,
+  auto [next, taken] = change_topology(parts, plan.after, plan.transfer, give_back);
+  LedgerEntry<2> const entry{next.state.time,
                              "refine",
                              static_cast<double>(plan.parents.size()),
-                             energy_at(std::as_const(parts), std::as_const(parts).u()) - strain,
-                             kinetic_energy_of(parts) - kinetic,
+                             energy_at(std::as_const(next), std::as_const(next).u()) - strain,
+                             kinetic_energy_of(next) - kinetic,
                              taken};
-  parts.state.record.refinements.push_back(entry);
+  next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
-  if (parts.watched_energy)
-    parts.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
-  for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
+  double const added = watched_change(next, before);
+  if (next.watched_energy)
+    next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
+  put_in_force(parts, std::move(next));
   return {plan.parents.size(), plan.transfer.new_nodes().size()};
+}
+
+/// Tells a body's listeners of a refinement that was made. What one throws is the caller's: the body is refined,
+/// and listeners after it are not told.
+template <class Parts>
+void tell_listeners(Parts const& parts, RefinementPlan<typename Parts::mesh_type> const& plan) {
+  for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
 }
 
 /// Splits elements of a plane body into four. `marked` has, for each element type in the order of the
@@ -214,15 +221,19 @@ RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> 
 /// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
 /// exactly. Children inherit groups, conditions on facets, pressures and named boundaries;
 /// conditions and loads on nodes stay with their nodes. What it did to the energy is in ledger(body).
-/// Throws Error, with the body as it was, where an element is unknown or the body's limits would be
-/// exceeded.
+/// Throws Error, with the body as it was, where an element is unknown, the body's limits would be
+/// exceeded, or a user's force term cannot be made anew. Listeners are told last: the body is refined whatever
+/// they throw.
 template <DeformableBody TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {
   static_assert(detail::can_be_split<typename TheBody::mesh_type>,
                 "refinement is available for plane meshes of Tri3 and Quad4");
   auto const plan = plan_refinement(body.parts(), marked, max_level);
-  return plan ? commit(body.parts(), *plan) : RefinementReport{};
+  if (!plan) return {};
+  auto const report = commit(body.parts(), *plan);
+  tell_listeners(body.parts(), *plan);
+  return report;
 }
 
 /// The largest mesh that refinements of a body may make.

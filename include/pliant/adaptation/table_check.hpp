@@ -163,7 +163,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   template <class U>
   void copy(Array<U>& from, Array<U>& to) const {
     CriteriaWorkspace<B>::reserve(backend(), to, from.size());
-    backend().for_each(static_cast<Index>(from.size()), CopyValue<U>{from.data(), to.data()});
+    copy_values<B, U>(backend(), from.data(), to.data(), from.size());
   }
   bool ranks() const {
     return std::apply([](auto const&... rule) { return (rule.marking.ranks() || ...); },

@@ -208,11 +208,12 @@ void load_state(Stream& stream, Parts& parts) {
   complete(state);
   if (checkpoint) complete(*checkpoint);
 
+  Parts next = parts_on(parts, std::move(layout), state.topology, state.prescribed);
   if (!state.prescribed->pressures.empty())
-    parts.upload_pressures = [](Parts& p) { upload_pressures(p); };
-  put_in_force(parts, std::move(layout), state.topology, state.prescribed);
-  copy_state(parts.backend, state, parts.state);
-  follow_state(parts);
+    next.upload_pressures = [](Parts& p) { upload_pressures(p); };
+  copy_state(next.backend, state, next.state);
+  follow_state(next);
+  put_in_force(parts, std::move(next));
   parts.checkpoint = std::move(checkpoint);
   parts.has_checkpoint = has_checkpoint;
   parts.watched_energy = nullptr;

@@ -86,7 +86,7 @@ class Body {
     return add_condition(*parts_, driven({}, nodes, std::move(motion), std::move(options)));
   }
   /// A pressure that follows the surface, Pa, positive against the outward normal, on facets of the
-  /// boundary told by their corners, from either side. Pressing the same facets again replaces it.
+  /// boundary told by their corners, from either side. Pressing the same facets again, in whatever order, replaces it.
   Handle press(Facets const& facets, double pascals) {
     return pliant::press(*parts_, facets, pascals);
   }
@@ -115,7 +115,8 @@ class Body {
           b, std::move(own), physics, static_cast<Index>(internal.size()), origin);
     });
   }
-  /// Any other: `make` is called again when the numbering of nodes changes.
+  /// Any other: `make` is called again when the numbering of nodes changes; when it throws, that change is
+  /// not made.
   void add(typename parts_type::MakeTerm make) { add_term(*parts_, std::move(make)); }
   /// m/s². Integrators and solvers say on which masses it acts.
   void set_gravity(Point<dim> const& g) { pliant::set_gravity(*parts_, g); }
@@ -152,7 +153,8 @@ class Body {
   /// Takes the state that a body made alike (mesh, material, groups, scalar; any backend) wrote; the next
   /// integrator goes on as if nothing had happened. This body has been given the motions of driven nodes
   /// under the same names, and its force terms. Listeners are not called. Throws Error, with the body as
-  /// it was, for a wrong body, another version, damage, truncation, and a missing motion.
+  /// it was, for a wrong body, another version, damage, truncation, a missing motion, and a force term that cannot be
+  /// made anew.
   template <class Stream>
   void load(Stream& stream) {
     load_state(stream, *parts_);
@@ -178,7 +180,8 @@ class Body {
   void commit(scalar const* u, double dt, int stride = dim) {
     pliant::commit(*parts_, u, dt, stride);
   }
-  /// Calls listener(TopologyChange) after each change of the mesh.
+  /// Calls listener(TopologyChange) after each change of the mesh. What it throws leaves refine or the
+  /// Adaptation, with the body changed all the same.
   void on_change(std::function<void(TopologyChange<M> const&)> listener) {
     parts_->listeners.push_back(std::move(listener));
   }

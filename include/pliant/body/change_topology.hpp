@@ -85,28 +85,27 @@ Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfe
 
 }  // namespace detail
 
-/// Puts a layout of a topology in force, with a state at rest on it whose arrays wait to be filled. What is
-/// recorded, and checkpoints, go.
+/// The parts of a body as they would be on another topology: its state with arrays at rest, which wait to be
+/// filled. put_in_force makes them the body's.
 template <class Parts>
-void put_in_force(Parts& parts, typename Parts::layout_type layout,
-                  std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
-                  std::shared_ptr<Prescribed<Parts::dim> const> prescribed) {
-  parts.layout = std::move(layout);
-  parts.state.topology = std::move(topology);
-  parts.state.prescribed = std::move(prescribed);
-  parts.recorded.reset();
-  parts.recorded_stretch.reset();
-  parts.recorded_with_look.reset();
-  parts.checkpoint.reset();
-  parts.has_checkpoint = false;
-  parts.scratch.reset();
-  parts.row_sums = {};
-  parts.without_energy = {};
-  parts.forces_current = false;  // those of the new layout are zero
-  parts.loads_current = false;
-  parts.state.load = {};
-  parts.state.pending_half_kick = 0;
-  make_arrays(parts);
+Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
+               std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
+               std::shared_ptr<Prescribed<Parts::dim> const> prescribed) {
+  Parts next{.backend = parts.backend,
+             .material = parts.material,
+             .groups = parts.groups,
+             .layout = std::move(layout)};
+  copy_state(parts.backend, parts.state, next.state);
+  next.state.topology = std::move(topology);
+  next.state.prescribed = std::move(prescribed);
+  next.state.load = {};
+  next.state.pending_half_kick = 0;
+  next.upload_pressures = parts.upload_pressures;
+  next.term_makers = parts.term_makers;
+  next.watched_energy = parts.watched_energy;
+  next.revision = parts.revision;
+  make_arrays(next);
+  return next;
 }
 
 /// Brings all that follows from the state's topology, conditions and groups up to them.
@@ -121,23 +120,53 @@ void follow_state(Parts& parts) {
   set_step_size(parts, std::exchange(parts.state.step_size, 0.0));  // its laws are new
 }
 
-/// Takes all fields over to another topology. give_back(layout, held, v) may change the velocities that the
-/// transfer gives (the user's order), and returns the impulse that held nodes took, N s, which is
-/// returned. Throws Error, with the body as it was, where fields are not finite.
+/// Makes parts that parts_on gave those of the body, and cannot fail: whatever throws has thrown before. What is
+/// recorded, and checkpoints, go.
+template <class Parts>
+void put_in_force(Parts& parts, Parts next) noexcept {
+  parts.recorded.reset();
+  parts.recorded_stretch.reset();
+  parts.recorded_with_look.reset();
+  parts.checkpoint.reset();
+  parts.has_checkpoint = false;
+  parts.scratch.reset();
+  parts.layout = std::move(next.layout);
+  parts.state = std::move(next.state);
+  parts.pressures = std::move(next.pressures);
+  parts.upload_pressures = next.upload_pressures;
+  parts.terms = std::move(next.terms);
+  parts.driven = std::move(next.driven);
+  parts.no_counters = std::move(next.no_counters);
+  parts.row_sums = {};
+  parts.without_energy = {};
+  parts.forces_current = next.forces_current;
+  parts.loads_current = next.loads_current;
+  parts.revision = next.revision + 1;
+}
+
+/// A body's parts on another topology, and what held nodes took.
+template <class Parts>
+struct ChangedTopology {
+  Parts parts;
+  Point<Parts::dim> taken;  // N s
+};
+
+/// Takes all fields over to another topology, for put_in_force. give_back(layout, held, v) may change the velocities
+/// that the transfer gives (the user's order), and returns the impulse that held nodes took, N s. Throws
+/// Error where fields are not finite; the body itself is left as it is.
 template <class Parts, class GiveBack>
-Point<Parts::dim> change_topology(
+ChangedTopology<Parts> change_topology(
     Parts& parts, std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
     Transfer<Parts::dim> const& transfer, GiveBack const& give_back) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   synchronize_velocities(parts);
-  auto& state = parts.state;
   auto const& old = parts.layout;
-  auto u = old.in_user_order(state.u), v = old.in_user_order(state.v);
+  auto u = old.in_user_order(parts.state.u), v = old.in_user_order(parts.state.v);
   detail::check_field("refine (displacements)", u, old.nodes);
   detail::check_field("refine (velocities)", v, old.nodes);
   std::vector<Point<dim>> loads;
-  if (state.load.size() > 0) loads = old.in_user_order(state.load);
+  if (parts.state.load.size() > 0) loads = old.in_user_order(parts.state.load);
 
   u = transfer.carry_nodes(std::move(u));
   v = transfer.carry_nodes(std::move(v));
@@ -155,30 +184,32 @@ Point<Parts::dim> change_topology(
       internal_variables.emplace_back();
   });
   auto prescribed =
-      std::make_shared<Prescribed<dim> const>(detail::carried(*state.prescribed, transfer));
+      std::make_shared<Prescribed<dim> const>(detail::carried(*parts.state.prescribed, transfer));
 
   typename Parts::layout_type layout(parts.backend, *topology, parts.material, parts.groups);
   std::vector<DirectionMask> held(topology->mesh.nodes.size(), 0);  // by the user's number
   for (auto const& condition : prescribed->conditions)
     for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
   Point<dim> const taken = give_back(layout, held, v);
-  auto totals = detail::closed_totals(parts);
 
   // As they are, and not by the body's setters, which stop driven nodes.
-  put_in_force(parts, std::move(layout), std::move(topology), std::move(prescribed));
-  state.record.totals = std::move(totals);
+  ChangedTopology<Parts> changed{
+      parts_on(parts, std::move(layout), std::move(topology), std::move(prescribed)), taken};
+  auto& next = changed.parts;
+  auto& state = next.state;
+  state.record.totals = detail::closed_totals(parts);
   state.record.born = state.steps;
-  state.u.upload(parts.layout.padded(u));
-  state.v.upload(parts.layout.padded(v));
-  parts.layout.interpolation.apply(parts.backend, parts.u());
-  parts.layout.interpolation.apply(parts.backend, parts.v());
+  state.u.upload(next.layout.padded(u));
+  state.v.upload(next.layout.padded(v));
+  next.layout.interpolation.apply(next.backend, next.u());
+  next.layout.interpolation.apply(next.backend, next.v());
   if (!loads.empty()) {
     loads.resize(u.size(), Point<dim>{});
-    state.load = zeros<T>(parts.backend, parts.layout.rest.size());
-    state.load.upload(parts.layout.padded(loads));
+    state.load = zeros<T>(next.backend, next.layout.rest.size());
+    state.load.upload(next.layout.padded(loads));
   }
   std::size_t type = 0;
-  parts.for_each_type([&](auto& table, auto& elements) {
+  next.for_each_type([&](auto& table, auto& elements) {
     std::vector<Tag> internal(table.user_element.size());
     for (std::size_t e = 0; e < internal.size(); ++e)
       internal[e] = tags[type][static_cast<std::size_t>(table.user_element[e])];
@@ -186,9 +217,9 @@ Point<Parts::dim> change_topology(
     elements.internal_variables.upload(table.in_internal_order(internal_variables[type++]));
     elements.statistics = {};
   });
-  follow_state(parts);
+  follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
-  return taken;
+  return changed;
 }
 
 }  // namespace pliant

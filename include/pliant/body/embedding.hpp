@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/body/velocities.hpp>
+#include <pliant/constraint/conditions.hpp>
 
 // A body's forces for a simulator that owns its state. The functions are those of Body, where units and errors are
 // documented.
@@ -13,10 +13,11 @@ inline constexpr double unset_step = -1;
 template <class Parts>
 double checked_step(char const* verb, double dt) {
   if (dt == unset_step && !Parts::has_internal_variables) return 0;
-  if (!(dt >= 0))
-    throw Error("body.", verb, ": a step of ", dt,
-                " s; this body's laws have internal variables, so give the time since they were "
-                "committed, 0 or more");
+  if (dt == unset_step)
+    throw Error("body.", verb,
+                ": this body's laws have internal variables; give the time since they were "
+                "committed, 0 s or more");
+  if (!(dt >= 0)) throw Error("body.", verb, ": a step of ", dt, " s; give 0 or more");
   return dt;
 }
 inline void check_stride(char const* verb, int stride, int dim) {
@@ -106,9 +107,14 @@ void add_lumped_mass(Parts const& parts, typename Parts::T* m) {
 template <class Parts>
 void commit(Parts& parts, typename Parts::T const* u, double dt, int stride) {
   detail::check_stride("commit", stride, Parts::dim);
-  WithStepSize<Parts> const with(parts, detail::checked_step<Parts>("commit", dt));
-  auto const own_u = detail::from_user(parts, u, stride, detail::scratch_of(parts).u);
-  commit_at(parts, {own_u.data});
+  [[maybe_unused]] double const step = detail::checked_step<Parts>("commit", dt);
+  if constexpr (Parts::has_internal_variables) {
+    auto const own_u = detail::from_user(parts, u, stride, detail::scratch_of(parts).u);
+    change_by_hand(parts, [&] {
+      WithStepSize<Parts> const with(parts, step);
+      commit_at(parts, {own_u.data});
+    });
+  }
 }
 
 }  // namespace pliant

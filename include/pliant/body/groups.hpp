@@ -9,6 +9,8 @@ namespace pliant {
 /// The group of each element of a type, by the user's number.
 template <Element E, class Parts>
 std::vector<Tag> user_groups(Parts const& parts) {
+  static_assert(Parts::layout_type::template has<E>,
+                "groups are asked for an element type that the body's mesh does not have");
   std::vector<Tag> tags;
   parts.for_each_type([&](auto const& table, auto const& elements) {
     if constexpr (std::same_as<typename std::remove_cvref_t<decltype(table)>::element, E>) {
@@ -25,6 +27,8 @@ std::vector<Tag> user_groups(Parts const& parts) {
 template <class F, class Parts>
 void assign_group(Parts& parts, std::vector<Index> const& elements) {
   using E = typename F::element;
+  static_assert(Parts::layout_type::template has<E>,
+                "assign<F>: F is for an element type that the body's mesh does not have");
   parts.for_each_type([&](auto& table, auto& state) {
     using Table = std::remove_reference_t<decltype(table)>;
     if constexpr (std::same_as<typename Table::element, E>) {

@@ -8,10 +8,12 @@ namespace pliant {
 /// What an explicit integrator keeps from call to call. It stands in the body's state, so that a run that
 /// is rolled back or resumed goes on as it would have.
 struct IntegratorState {
-  bool active = false;            // an integrator has taken this state over
-  double step = 0;                // s
-  double slower = 1;              // the step is this often smaller than the stable one asks
-  double distortion = 0;          // the largest when the step was chosen
+  bool active = false;    // an integrator has taken this state over
+  double step = 0;        // s
+  double slower = 1;      // the step is this often smaller than the stable one asks
+  double distortion = 0;  // the largest when the step was chosen
+  double asked_step = 0;  // s, and the safety: what it was chosen by
+  double safety = 0;
   std::int64_t next_check = 0;    // steps
   std::int64_t next_refresh = 0;  // steps
   std::int64_t next_watch = 0;    // steps
@@ -26,6 +28,8 @@ struct IntegratorState {
     visit("step", r.step...);
     visit("slower", r.slower...);
     visit("distortion", r.distortion...);
+    visit("step that was asked for", r.asked_step...);
+    visit("safety", r.safety...);
     visit("next check", r.next_check...);
     visit("next refresh", r.next_refresh...);
     visit("next watch", r.next_watch...);

@@ -27,8 +27,10 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       ElementTable<B, E, typename detail::FormulationsOf<E, detail::TypeList<>, Fs...>::type>;
   static_assert(((Table<Es>::groups > 0) && ...),
                 "every element type of the mesh needs a Group of a formulation on that element");
+  template <class E>
+  static constexpr bool has = (std::same_as<E, Es> || ...);
   template <class F>
-  static constexpr bool acts = (std::same_as<typename F::element, Es> || ...);
+  static constexpr bool acts = has<typename F::element>;
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   std::vector<double> mass_list;                // kg, in the user's order, slaves' handed on
@@ -72,12 +74,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     std::vector<T> masses(mass_list.size());
     for (std::size_t i = 0; i < masses.size(); ++i)
       masses[static_cast<std::size_t>(internal_node[i])] = static_cast<T>(mass_list[i]);
-    bool held_by_T = std::isfinite(static_cast<T>(material.density));
+    bool fits_T = std::isfinite(static_cast<T>(material.density));
     for (std::size_t i = 0; i < masses.size(); ++i) {
       T const m = masses[static_cast<std::size_t>(internal_node[i])];
-      held_by_T = held_by_T && std::isfinite(m) && (m > T(0) || !(mass_list[i] > 0));
+      fits_T = fits_T && std::isfinite(m) && (m > T(0) || !(mass_list[i] > 0));
     }
-    if (!held_by_T)
+    if (!fits_T)
       throw Error("body: ", 8 * sizeof(T),
                   " bits cannot hold the mass of a node under the density ", material.density,
                   " kg/m³; take double, or other units");

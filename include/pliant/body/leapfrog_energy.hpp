@@ -9,7 +9,7 @@ namespace detail {
 /// m a²/8 of a node, in its free directions.
 template <class T, int Dim>
 struct AccelerationTerm {
-  NodeField<T const, Dim> f;
+  NodeField<T const, Dim> f;  // may have no data: of gravity and loads alone
   T const* mass;
   DirectionMask const* held;
   ExternalForces<T, Dim> external;
@@ -32,19 +32,28 @@ struct AddValue {
   PLIANT_HOST_DEVICE void operator()(Index) const { *to += value; }
 };
 
+template <class Parts>
+double acceleration_term_of(Parts& parts, typename Parts::ConstField f) {
+  return parts.backend.sum(
+      parts.layout.nodes,
+      AccelerationTerm<typename Parts::T, Parts::dim>{
+          f, parts.layout.mass.data(), parts.layout.held.data(), external_forces(parts)});
+}
+
 }  // namespace detail
 
 /// Σ m a²/8, J/s²: Δt² of it is what the kinetic energy at a time has over that of the half steps around it,
 /// v₋·M·v₊/2.
 template <class Parts>
 double acceleration_term(Parts& parts) {
-  using T = typename Parts::T;
   evaluate_forces(parts);
-  return parts.backend.sum(parts.layout.nodes,
-                           detail::AccelerationTerm<T, Parts::dim>{{parts.layout.f.data()},
-                                                                   parts.layout.mass.data(),
-                                                                   parts.layout.held.data(),
-                                                                   external_forces(parts)});
+  return detail::acceleration_term_of(parts, {parts.layout.f.data()});
+}
+
+/// The same of gravity and loads alone.
+template <class Parts>
+double load_term(Parts& parts) {
+  return detail::acceleration_term_of(parts, {nullptr});
 }
 
 /// The total energy, and what the one that leapfrog keeps has less: that has the kinetic energy v₋·M·v₊/2 of the

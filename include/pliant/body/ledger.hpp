@@ -58,6 +58,8 @@ std::vector<std::vector<double>> closed_totals(Parts const& parts) {
 /// How many steps elements of a type have spent in each of its groups, summed over elements.
 template <Element E, DeformableBody TheBody>
 std::vector<double> element_steps(TheBody const& body) {
+  static_assert(TheBody::layout_type::template has<E>,
+                "element_steps<E>: the body's mesh does not have this element type");
   std::vector<double> sums;
   detail::for_each_numbered_type(
       body.parts(), [&](auto const& table, auto const& elements, std::size_t which) {
@@ -74,6 +76,8 @@ std::vector<double> element_steps(TheBody const& body) {
 /// after a refinement. Counts stay at the largest `int` once there.
 template <Element E, DeformableBody TheBody>
 std::vector<int> switch_counts(TheBody const& body) {
+  static_assert(TheBody::layout_type::template has<E>,
+                "switch_counts<E>: the body's mesh does not have this element type");
   std::vector<int> counts;
   body.parts().for_each_type([&](auto const& table, auto const& elements) {
     if constexpr (std::same_as<typename std::remove_cvref_t<decltype(table)>::element, E>) {
@@ -114,12 +118,14 @@ struct ExternalWork {
   double damping;        // negative
   double motions;        // of driven nodes
   double pressures;      // and of other force terms that have no energy
-  double by_hand;        // displacements, velocities, groups, conditions that a user set
+  double by_hand;        // displacements, velocities, groups, conditions that a user set since an
+                         // integrator took the body
   double steps;          // changes of the time step: leapfrog keeps an energy that depends on it
   double sum() const { return changed_loads + damping + motions + pressures + by_hand + steps; }
 };
 
-/// The work on a body since an integrator first took it.
+/// The work on a body since it was made: of loads from the first on, by hand once an integrator has taken the
+/// body, and the rest where integrators step.
 template <class Parts>
 ExternalWork external_work_of(Parts const& parts) {
   auto const work = download<double>(parts.state.work);
@@ -141,7 +147,7 @@ double booked_energy(Parts const& parts) {
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved
 /// between, summed over time, one of what elements that moved together added beyond that, and one per
-/// refinement.
+/// refinement. A refinement has the time at which it was made; sums over time have the body's present time.
 template <DeformableBody TheBody>
 auto ledger(TheBody const& body) {
   auto entries = body.state().record.refinements;

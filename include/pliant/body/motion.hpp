@@ -67,7 +67,7 @@ struct Advance {
   }
 };
 
-/// The acceleration of a node of mass m > 0, zero in directions that are held.
+/// The acceleration of a node of mass m > 0, zero in directions that are held; without `f`, by what is external.
 template <class T, int Dim>
 PLIANT_HOST_DEVICE Vector<T, Dim> acceleration_of(Index i, NodeField<T const, Dim> f, T m,
                                                   DirectionMask held,
@@ -75,7 +75,7 @@ PLIANT_HOST_DEVICE Vector<T, Dim> acceleration_of(Index i, NodeField<T const, Di
   auto a = Vector<T, Dim>::zero();
   for (int k = 0; k < Dim; ++k) {
     if (held >> k & 1) continue;
-    T force = f(i, k);
+    T force = f.data ? f(i, k) : T(0);
     if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
     a[k] = force / m + external.gravity[k];
   }

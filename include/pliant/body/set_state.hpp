@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/body/check_field.hpp>
+#include <pliant/body/checkpoint.hpp>
 #include <pliant/constraint/conditions.hpp>
 
 // What a user sets of a body's state. The setters are those of Body, where units and errors are documented.
@@ -47,12 +48,12 @@ Vector<T, int{Dim}> vector_of(std::array<double, Dim> const& x) {
 template <class Parts, class Change>
 void change_loads(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
-  double const before = parts.watched_energy ? 0 : potential_energy_of(parts);
-  double added = watched_change(parts, [&] {
-    change();
-    ++parts.revision;
-  });
-  if (!parts.watched_energy) added = potential_energy_of(parts) - before;
+  double const potential = parts.watched_energy ? 0 : potential_energy_of(parts);
+  auto const before = present_energy(parts);
+  change();
+  ++parts.revision;
+  double const added =
+      parts.watched_energy ? watched_change(parts, before) : potential_energy_of(parts) - potential;
   if (!std::isfinite(added)) return;
   auto work = download<double>(parts.state.work);
   work[static_cast<std::size_t>(Work::changed_loads)] += added;
@@ -113,6 +114,26 @@ void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
   });
 }
 
+/// Goes back to the last checkpoint with gravity, damping and loads as they are, since it is not the run that
+/// changed them. What that adds to the energy there is booked.
+template <class Parts>
+void roll_back_motion(Parts& parts) {
+  detail::CopyMember<typename Parts::backend_type> const copy{parts.backend};
+  auto const gravity = parts.state.gravity;
+  double const damping = parts.state.damping;
+  typename Parts::template Array<typename Parts::T> load;
+  copy("loads", parts.state.load, load);
+  roll_back(parts);
+  parts.state.damping = damping;
+  if (gravity == parts.state.gravity && load.size() == 0) return;
+  change_loads(parts, [&] {
+    parts.state.gravity = gravity;
+    if (load.size() == 0) return;
+    make_loads(parts);
+    copy("loads", load, parts.state.load);
+  });
+}
+
 template <class Parts>
 void set_displacements(Parts& parts, std::vector<Point<Parts::dim>> const& u) {
   detail::check_field<typename Parts::T>("body.set_displacements", u, parts.layout.nodes);
@@ -131,11 +152,20 @@ void set_velocities(Parts& parts, std::vector<Point<Parts::dim>> const& v) {
   });
 }
 
+namespace detail {
+template <class Parts>
+auto made_term(Parts const& parts, typename Parts::MakeTerm const& make) {
+  auto term = make(parts.backend, parts.layout.internal_node);
+  if (!term) throw Error("body.add: there is no force term; make one whenever it is asked for");
+  return term;
+}
+}  // namespace detail
+
 /// Adds a force term of the user's own: see Body::add.
 template <class Parts>
 void add_term(Parts& parts, typename Parts::MakeTerm make) {
-  auto term = make(parts.backend, parts.layout.internal_node);
-  if (!term) throw Error("body.add: there is no force term; make one");
+  if (!make) throw Error("body.add: the function that makes a force term is empty; give one");
+  auto term = detail::made_term(parts, make);
   change_by_hand(parts, [&] {
     parts.terms.push_back(std::move(term));
     parts.term_makers.push_back(std::move(make));
@@ -147,8 +177,7 @@ void add_term(Parts& parts, typename Parts::MakeTerm make) {
 template <class Parts>
 void renew_terms(Parts& parts) {
   parts.terms.clear();
-  for (auto const& make : parts.term_makers)
-    parts.terms.push_back(make(parts.backend, parts.layout.internal_node));
+  for (auto const& make : parts.term_makers) parts.terms.push_back(detail::made_term(parts, make));
 }
 
 }  // namespace pliant

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <tuple>
 
@@ -105,6 +107,15 @@ struct CopyValue {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
+/// Copies values in pieces that an Index can number.
+template <class B, class U>
+void copy_values(B const& backend, U const* from, U* to, std::size_t count) {
+  constexpr std::size_t most = std::numeric_limits<Index>::max();
+  for (std::size_t first = 0; first < count; first += most)
+    backend.for_each(static_cast<Index>(std::min(most, count - first)),
+                     CopyValue<U>{from + first, to + first});
+}
+
 /// Makes a member what another is: arrays where they lie, so that recorded loops stay right.
 template <class B>
 struct CopyMember {
@@ -117,7 +128,7 @@ struct CopyMember {
     } else {
       using Value = std::remove_cvref_t<decltype(*to.data())>;
       if (to.size() != from.size()) to = zeros<Value>(backend, from.size());
-      backend.for_each(static_cast<Index>(from.size()), CopyValue<Value>{from.data(), to.data()});
+      copy_values<B, Value>(backend, from.data(), to.data(), from.size());
     }
   }
 };

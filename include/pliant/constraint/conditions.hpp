@@ -82,14 +82,17 @@ void upload_conditions(Parts& parts) {
   ++parts.revision;
 }
 
-/// Runs `change()`, and returns what it added to the energy that an integrator watches and keeps, J; 0 while
-/// none does. Where there is no such number, the integrator begins anew.
-template <class Parts, class Change>
-double watched_change(Parts& parts, Change const& change) {
-  auto const before = parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
-  change();
-  if (!parts.watched_energy) return 0;
-  auto const after = parts.watched_energy(parts);
+/// The energy that an integrator watches; none while none does.
+template <class Parts>
+WatchedEnergy present_energy(Parts& parts) {
+  return parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
+}
+
+/// What a change since `before` added to the energy that an integrator watches and keeps, J; 0 while none does.
+/// Where there is no such number, the integrator begins anew.
+template <class Parts>
+double watched_change(Parts& parts, WatchedEnergy const& before) {
+  auto const after = present_energy(parts);
   double const added = after.kept() - before.kept();
   if (!std::isfinite(added)) {
     parts.state.integrator.active = false;
@@ -101,16 +104,16 @@ double watched_change(Parts& parts, Change const& change) {
 
 /// Runs a change of the state by a user's hand: `change()`. Velocities are brought up to the present time
 /// first. Once an integrator watches the energy, what the change adds to it is booked; forces are
-/// evaluated anew, and roll-back does not cross it.
+/// evaluated anew, the stable step is asked for again, and roll-back does not cross it.
 template <class Parts, class Change>
 void change_by_hand(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
-  double const added = watched_change(parts, [&] {
-    change();
-    forget_forces(parts);
-  });
-  parts.state.energy_by_hand += added;
+  auto const before = present_energy(parts);
+  change();
+  forget_forces(parts);
+  parts.state.energy_by_hand += watched_change(parts, before);
   parts.has_checkpoint = false;
+  parts.state.integrator.next_refresh = parts.state.steps;  // it may have made the body stiffer
 }
 
 namespace detail {
@@ -169,7 +172,9 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
   auto prescribed = *parts.state.prescribed;
   condition.handle = {prescribed.next_id++};
   if (condition.motion) {
-    if (condition.name.empty()) condition.name = "motion " + std::to_string(condition.handle.id);
+    for (Index k = condition.handle.id; condition.name.empty(); ++k)
+      if (auto name = "motion " + std::to_string(k); !parts.motions.contains(name))
+        condition.name = std::move(name);
     if (std::ranges::find(prescribed.conditions, condition.name, &Condition<Parts::dim>::name) !=
         prescribed.conditions.end())
       throw Error("body.drive: there is a motion called \"", condition.name,

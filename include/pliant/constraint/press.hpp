@@ -20,6 +20,17 @@ void upload_pressures(Parts& parts) {
   }
 }
 
+namespace detail {
+/// What tells a list of facets from others, in whatever order they and their nodes come.
+template <int Dim>
+std::vector<std::array<Index, 4>> sorted_keys(std::vector<Facet<Dim>> const& facets) {
+  std::vector<std::array<Index, 4>> keys;
+  for (auto const& facet : facets) keys.push_back(mesh::key_of(facet));
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+}  // namespace detail
+
 /// Adds a pressure, or gives one that acts on the same facets another value; see Body::press.
 template <class Parts>
 Handle press(Parts& parts, std::vector<Facet<Parts::dim>> const& facets, double pascals) {
@@ -35,17 +46,14 @@ Handle press(Parts& parts, std::vector<Facet<Parts::dim>> const& facets, double 
         throw Error("body.press: a facet names node ", node, ", but nodes are numbered 0 to ",
                     parts.layout.nodes - 1);
   auto prescribed = *parts.state.prescribed;
-  auto const pressed = [&](std::vector<Facet<Parts::dim>> const& as) {
-    return std::ranges::find(prescribed.pressures, as, &Pressure<Parts::dim>::facets);
-  };
-  auto same = pressed(facets);
+  auto const keys = detail::sorted_keys(facets);
+  auto same = std::ranges::find_if(prescribed.pressures, [&](auto const& pressure) {
+    return pressure.facets.size() == keys.size() && detail::sorted_keys(pressure.facets) == keys;
+  });
   if (same == prescribed.pressures.end()) {
     auto own = detail::outer_facets(parts.state.topology->mesh, facets);
-    same = pressed(own);
-    if (same == prescribed.pressures.end()) {
-      prescribed.pressures.push_back({{prescribed.next_id++}, std::move(own), 0});
-      same = prescribed.pressures.end() - 1;
-    }
+    prescribed.pressures.push_back({{prescribed.next_id++}, std::move(own), 0});
+    same = prescribed.pressures.end() - 1;
   }
   same->pascals = pascals;
   Handle const handle = same->handle;

@@ -8,6 +8,7 @@
 
 #include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/body/ledger.hpp>
+#include <pliant/body/set_state.hpp>
 #include <pliant/solver/distortion.hpp>
 #include <pliant/solver/leapfrog.hpp>
 #include <pliant/solver/stable_step.hpp>
@@ -22,10 +23,11 @@ struct CentralDifferenceOptions {
   int watch_interval = 16;  // steps between looks at the distortion, which may ask for one earlier
   /// What counts as a blow-up: growth of the total energy since the last check, over strain and kinetic
   /// energy, which beyond the stable step is many times (at safety 0.94 that of the highest mode swings
-  /// by 0.9 of its largest); and growth of the energy that leapfrog keeps since the start, over the
+  /// by 0.9 of its largest), and more than the loads' accelerations explain; and growth of the energy that leapfrog keeps since the start, over the
   /// largest of these so far. The work of loads, pressures, driven nodes and damping is booked, and no
-  /// growth. Not looked at with laws that have internal variables: they may give back what the strain
-  /// energy does not count.
+  /// growth. Not looked at with laws that have internal variables, which may give back what the strain
+  /// energy does not count, nor while there are driven nodes or pressures, whose work would hide it: then
+  /// only a state that is not finite is a blow-up.
   double energy_growth = 0.9, energy_drift = 0.02;
 };
 
@@ -35,14 +37,16 @@ struct Advanced {
   double time = 0;         // s: where the body is now
   double step = 0;         // s: the size of the last step
   bool rolled_back =
-      false;  // to a time before the call: set loads anew for the time that it is now
+      false;  // to a time before the call: set anew what depends on the time that it is now
 };
 
 /// Explicit time integration by central differences (leapfrog, velocity Verlet), with lumped masses and mass
 /// damping. At intervals the state is checked: one that went non-finite, or whose energy grew by more
 /// than its loads and its adaptation explain, is rolled back to the last check and done again with half
-/// the step; after three halvings it throws Error, and the body is at the last good state. A call that
-/// is rolled back behind its own begin returns there, so that its caller can set what depends on time.
+/// the step; after three halvings it throws Error, and the body is at the last good state. The smaller step
+/// stays, until another CentralDifference takes the body over. What a user set is not rolled back: gravity,
+/// damping and loads act as they were set last. A call that is rolled back behind its own begin returns
+/// there, so that its caller can set what depends on time.
 class CentralDifference {
  public:
   explicit CentralDifference(CentralDifferenceOptions options = {}) : options_(options) {
@@ -119,15 +123,20 @@ class CentralDifference {
   void begin(Parts& parts) {
     parts.watched_energy = leapfrog_energy<Parts>;
     auto& own = parts.state.integrator;
+    std::int64_t const now = parts.state.steps;
     bool const resumed = own.active && parts.integrator == nullptr;
     if (own.active && (parts.integrator == identity_ || resumed)) {
       parts.integrator = identity_;
+      if (own.asked_step != options_.step || own.safety != options_.safety) own.next_refresh = now;
+      own.next_check = std::min(own.next_check, now + options_.check_interval);
+      own.next_refresh = std::min(own.next_refresh, now + options_.refresh_interval);
+      own.next_watch = std::min(own.next_watch, now + options_.watch_interval);
       return;
     }
     parts.integrator = identity_;
     parts.has_checkpoint = false;
-    own = IntegratorState{.active = true};
-    own.next_check = own.next_refresh = own.next_watch = parts.state.steps;
+    own = IntegratorState{.active = true, .step = own.step};  // refresh books a change of the step
+    own.next_check = own.next_refresh = own.next_watch = now;
   }
 
   /// A look at how much the elements are distorted: where that has changed, the stable step has too, and there
@@ -144,10 +153,14 @@ class CentralDifference {
   template <class Parts>
   void refresh(Parts& parts) {
     auto& own = parts.state.integrator;
-    own.next_refresh = parts.state.steps + options_.refresh_interval;
-    own.distortion = largest_distortion(parts);
+    double const distortion = largest_distortion(parts);
     double const step =
         (options_.step > 0 ? options_.step : options_.safety * stable_step_of(parts)) / own.slower;
+    // Nothing throws from here on: a step that could not be chosen is asked for again.
+    own.next_refresh = parts.state.steps + options_.refresh_interval;
+    own.distortion = distortion;
+    own.asked_step = options_.step;
+    own.safety = options_.safety;
     if (step == own.step) return;
     // The energy that leapfrog keeps depends on the step.
     double const change = (own.step * own.step - step * step) * acceleration_term(parts);
@@ -171,8 +184,10 @@ class CentralDifference {
     // An unstable step lets the total grow while what leapfrog keeps stays; a state that stiffens faster than
     // the step follows adds to that too. Comparisons with NaN, before the first check, are false.
     bool const grew =
-        watched && (total > own.last_energy + options_.energy_growth * present ||
-                    kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
+        watched &&
+        ((total > own.last_energy + options_.energy_growth * present &&
+          is_beyond_loads(parts, energies.acceleration, options_.energy_growth * present)) ||
+         kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
     if (std::isfinite(total) && !grew) {
       own.scale = std::max(own.scale, present);
       own.last_energy = total;
@@ -189,7 +204,7 @@ class CentralDifference {
                   ", and there is no earlier state to go back to since the mesh, a condition or "
                   "the state was changed by hand; start from a finite state, with a smaller step");
     double const slower = own.slower, step = own.step;
-    roll_back(parts);
+    roll_back_motion(parts);
     if (slower >= 8)
       throw Error(what, ", with an eighth of the step too (", step, " s); it is now at step ",
                   state.steps, " and time ", state.time,
@@ -199,6 +214,16 @@ class CentralDifference {
     own.next_check = state.steps + options_.check_interval;
     own.next_refresh = own.next_watch = state.steps;
     return false;
+  }
+
+  /// Whether the total has more over what leapfrog keeps than a stable step leaves it: of linear laws, whose
+  /// forces are the loads and those of the strain energy, √A ≤ √A_loads + ω Δt/2 √W. So a load that comes at
+  /// once is no growth, whenever it comes.
+  template <class Parts>
+  static bool is_beyond_loads(Parts& parts, double acceleration, double growth) {
+    double const step = parts.state.integrator.step;
+    double const bound = step * std::sqrt(load_term(parts)) + std::sqrt(growth);
+    return acceleration > bound * bound;
   }
 
   CentralDifferenceOptions options_;

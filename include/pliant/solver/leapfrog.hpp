@@ -64,10 +64,11 @@ inline constexpr int steps_of_stretch = 8;
 
 }  // namespace detail
 
-/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error where a motion is
-/// not finite, at the end of the last step before that.
+/// Takes steps of a constant size, with a half-kick pending before and after. Throws Error for a size that is
+/// not positive, and where a motion is not finite, at the end of the last step before that.
 template <class Parts>
 void take_steps(Parts& parts, double dt, int steps) {
+  if (!(dt > 0)) throw Error("take_steps: a step of ", dt, " s; give a positive one");
   steps = detail::take_special_steps(parts, dt, steps);
   auto const replay = [&](auto& kept, int together, int n) {
     detail::replay_steps(parts, kept, dt, together, nullptr, n, [&parts, dt, together] {

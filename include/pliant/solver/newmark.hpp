@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include <pliant/solver/assemble_mass.hpp>
 #include <pliant/solver/newton.hpp>
 
@@ -36,20 +38,26 @@ class Newmark {
                   "; give a number between 0 and 1, relative to the forces");
   }
 
-  /// Takes steps. Throws Error where one does not converge; the body is then exactly as the last one
-  /// that did left it.
+  /// Takes steps; driven nodes have the speed of their motions over a step. Throws Error where one does not
+  /// converge; the body is then exactly as the last one that did left it.
   template <DeformableBody TheBody>
   void operator()(TheBody& body, int steps = 1) {
     static_assert(!TheBody::has_internal_variables,
                   "Newmark takes laws without internal variables: step viscous bodies with "
                   "CentralDifference");
+    if (steps < 0) throw Error("Newmark: ", steps, " steps; give 0 or more");
+    if (steps == 0) return;
     using Problem = detail::StaticProblem<TheBody>;
     System<TheBody> const system(body, options_.mass);
     State now{system.problem.start(), Problem::flat(body.velocities()), {}};
     // Velocities of driven nodes, which a body does not keep, and digits beyond its precision go on.
-    bool const goes_on = parts_ == &body.parts() && revision_ == body.parts().revision &&
+    bool const goes_on = taken_ != nullptr && body.parts().integrator == taken_ &&
+                         revision_ == body.parts().revision && now.u.size() == seen_.u.size() &&
                          now.u == seen_.u && now.v == seen_.v;
-    if (goes_on) now = last_;
+    if (goes_on)
+      now = last_;
+    else
+      take_speed_of_motions(system.problem, now, body.time());
     if (!goes_on || system.problem.external != external_) now.a = acceleration(system, now);
     external_ = system.problem.external;
     double time = body.time();
@@ -85,6 +93,17 @@ class Newmark {
           mass(assemble_mass(b, kind)),
           conservative(detail::is_conservative(b)) {}
   };
+
+  /// Gives driven nodes the mean velocity of their motions over the step before a time, s, or over the first one
+  /// where none was before.
+  template <class Problem>
+  void take_speed_of_motions(Problem const& problem, State& s, double time) const {
+    double const start = time >= options_.step ? time - options_.step : time;
+    Eigen::VectorXd from = s.u, to = s.u;
+    problem.prescribe(from, start);
+    problem.prescribe(to, start + options_.step);
+    problem.copy_prescribed((to - from) / options_.step, s.v);
+  }
 
   /// In balance with the forces at u and v; zero where nodes are held or driven.
   template <DeformableBody TheBody>
@@ -150,7 +169,7 @@ class Newmark {
     body.set_velocities(v);
     body.parts().state.time = time;
     body.parts().state.steps += steps;
-    parts_ = &body.parts();
+    body.parts().integrator = taken_ = std::make_shared<char>();
     revision_ = body.parts().revision;
     last_ = state;
     seen_ = {Problem::flat(body.displacements()), Problem::flat(body.velocities()), {}};
@@ -158,7 +177,7 @@ class Newmark {
 
   NewmarkOptions options_;
   detail::DirectSolver direct_{"Newmark"}, by_mass_{"Newmark"};
-  void const* parts_ = nullptr;
+  std::shared_ptr<void const> taken_;  // tells the body as it was left from all others
   long revision_ = 0;
   Eigen::VectorXd external_;  // of last_
   State last_, seen_;         // as it was left, and as the body has it

@@ -201,10 +201,8 @@ NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
   detail::StaticNewton<TheBody> newton(body, options);
   body.set_displacements(detail::StaticProblem<TheBody>::per_node(newton.solve()));
   body.parts().before_drives.clear();
-  if constexpr (TheBody::has_internal_variables) {
-    equilibrate(body.parts());
-    forget_forces(body.parts());
-  }
+  if constexpr (TheBody::has_internal_variables)
+    change_by_hand(body.parts(), [&] { equilibrate(body.parts()); });
   return newton.report();
 }
 

@@ -83,17 +83,6 @@ class EdgeTree {
     return cells[0] == parent_cell ? cells[1] : cells[0];
   }
 
-  /// Appends the finest parts of an edge, from its first node to its second.
-  void collect_parts(Index e, std::vector<Index>& parts) const {
-    auto const& edge = edges_[at(e)];
-    if (edge.middle < 0) {
-      parts.push_back(e);
-    } else {
-      collect_parts(edge.first_half, parts);
-      collect_parts(edge.first_half + 1, parts);
-    }
-  }
-
   /// Makes room for further edges, in amortized constant time for each.
   void make_room(std::size_t more) {
     auto const needed = edges_.size() + more;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -48,13 +47,6 @@ class Hierarchy {
  public:
   using Point = std::array<double, 2>;  ///< x, y in m
 
-  /// A side of a leaf. Its nodes come in the order of the leaf, which has the body on its left.
-  struct Facet {
-    Index cell = -1;
-    int side = 0;
-    std::array<Index, 2> nodes{-1, -1};
-  };
-
   /// Of no cells.
   Hierarchy() = default;
   /// Takes points, and cells by their nodes; the triangles are numbered first. Throws Error for
@@ -79,43 +71,6 @@ class Hierarchy {
     for (Index c = 0; c < size(cells()); ++c)
       if (is_leaf(c)) found.push_back(c);
     return found;
-  }
-
-  /// Gives boundary edges of the initial mesh (in either direction) a mark, which their children
-  /// inherit. An edge may have several marks; repeating one changes nothing. Throws Error for what
-  /// is not a boundary edge of the initial mesh; the marks are then as they were.
-  void add_boundary(int mark, std::span<std::array<Index, 2> const> edges) {
-    auto const known = boundary_.find(mark);
-    auto marked = known == boundary_.end() ? std::vector<Index>{} : known->second;
-    for (auto const& nodes : edges) {
-      auto const e = tree_.edges().find(nodes);
-      if (e < 0 || tree_.edges()[e].cells[1] >= 0)
-        throw Error("Hierarchy: nodes ", nodes[0], " and ", nodes[1],
-                    " are not joined by a boundary edge of the initial mesh; mark only such edges");
-      marked.push_back(e);
-    }
-    std::ranges::sort(marked);
-    marked.erase(std::unique(marked.begin(), marked.end()), marked.end());
-    boundary_.insert_or_assign(mark, std::move(marked));
-  }
-
-  /// The sides of leaves that have the mark, whatever the order in which it was given. Throws Error
-  /// for a mark that was never given.
-  [[nodiscard]] std::vector<Facet> facets_of(int mark) const {
-    auto const found = boundary_.find(mark);
-    if (found == boundary_.end())
-      throw Error("Hierarchy: mark ", mark, " is unknown; call add_boundary first");
-    std::vector<Index> parts;
-    for (Index const e : found->second) tree_.edges().collect_parts(e, parts);
-    std::vector<Facet> facets;
-    facets.reserve(parts.size());
-    for (Index const e : parts) {
-      auto const& edge = tree_.edges()[e];
-      auto const& sides = tree_.sides(edge.cells[0]);
-      auto const side = static_cast<int>(std::ranges::find(sides, e) - sides.begin());
-      facets.push_back({edge.cells[0], side, edge.nodes});
-    }
-    return facets;
   }
 
   /// Refines the marked leaves and, before each, the leaves that are coarser across one of its
@@ -161,7 +116,6 @@ class Hierarchy {
   static void for_each_member(Visit const& visit, R&... r) {
     visit("points", r.points_...);
     visit("cells", r.tree_...);
-    visit("marks", r.boundary_...);
     visit("number of leaves", r.leaf_count_...);
   }
 
@@ -234,7 +188,6 @@ class Hierarchy {
 
   std::vector<Point> points_;
   CellTree tree_;
-  std::map<int, std::vector<Index>> boundary_;  // the initial edges of a mark
   std::size_t leaf_count_ = 0;
 };
 
