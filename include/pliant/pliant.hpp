@@ -6,6 +6,7 @@
 #include <pliant/adaptation/criterion/deformation.hpp>
 #include <pliant/adaptation/criterion/force_intensity.hpp>
 #include <pliant/adaptation/criterion/shape.hpp>
+#include <pliant/adaptation/estimator/recovered_stress.hpp>
 #include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>

@@ -21,7 +21,7 @@ struct ExtremeOf {
  private:
   template <std::size_t I, class State>
   PLIANT_HOST_DEVICE auto from(State const& e) const {
-    auto const value = std::get<I>(criteria)(e);
+    auto const value = value_of(std::get<I>(criteria), e);
     if constexpr (I == sizeof...(Rest))
       return value;
     else if constexpr (X == Extreme::largest)
