@@ -44,6 +44,13 @@ struct CriterionRows {
   }
 };
 
+/// Looks at the elements of a formulation, and does nothing.
+template <class F, class C>
+struct Look {
+  using from = F;
+  C criterion;
+};
+
 /// The rules that look at one element type, in their order. A rule has a type `from` and a member
 /// `criterion`.
 template <class Table, class... Rules>

@@ -6,12 +6,6 @@
 namespace pliant {
 
 namespace detail {
-/// Looks at the elements of a formulation, and does nothing.
-template <class F, class C>
-struct Look {
-  using from = F;
-  C criterion;
-};
 /// Keeps the first value of each element.
 template <class T>
 struct Store {

@@ -14,12 +14,33 @@ template <class L, class T>
 PLIANT_HOST_DEVICE L const& without_modulus(WithModulus<L, T> const& law) {
   return law.law;
 }
+
+/// Laws of small strain, whose stress is conjugate to sym H.
+template <class L>
+concept OfSmallStrain = EnergyIn<L, StrainInvariants> || requires(L const& law) {
+  requires EnergyIn<std::remove_cvref_t<decltype(law.solid)>, StrainInvariants>;
+};
 }  // namespace detail
 
 /// The law at quadrature point q of an element, without what a scheme keeps beside it.
 template <class L>
 PLIANT_HOST_DEVICE decltype(auto) point_law(L const& law, int q) {
   return at_point(detail::without_modulus(law), q);
+}
+
+/// Calls visit(q, volume, H) at each point of a formulation's rule, with the point's rest volume (m³).
+template <class F, class S, class Visit>
+PLIANT_HOST_DEVICE void for_each_point_of(Nodal<typename F::element, S> const& rest,
+                                          Nodal<typename F::element, S> const& u,
+                                          Visit const& visit) {
+  using E = typename F::element;
+  using T = builtin_scalar<S>;
+  static constexpr auto table = tabulate<E, typename F::quadrature, T>();
+  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
+  for (int q = 0; q < F::points; ++q) {
+    auto const map = RestMap<E, S>::at(x, table, q);
+    visit(q, map.volume * T(table.weight[q]), map.gradient(v, table, q));
+  }
 }
 
 /// Calls visit(q, volume, H, P) at each point of a formulation's rule, with the rest volume of the point (m³),
@@ -31,13 +52,14 @@ PLIANT_HOST_DEVICE void for_each_stress(L const& law, Nodal<typename F::element,
                                         Nodal<typename F::element, S> const& u,
                                         Visit const& visit) {
   using E = typename F::element;
-  using T = builtin_scalar<S>;
-  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
   if constexpr (std::same_as<typename F::quadrature, OnePoint>) {
+    auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
     auto const mean = MeanGradient<E, S>::of(x);
     auto const h = mean(v);
     visit(0, mean.volume, h, stress(point_law(law, 0), h));
   } else if constexpr (has_mean_dilatation<typename F::quadrature>) {
+    auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
+    using T = builtin_scalar<S>;
     using Scheme = MeanDilatation<F, Geometry::isoparametric>;
     using Onto = Projection<E, S>;
     constexpr bool linear = Scheme::template linear<L>;
@@ -64,12 +86,9 @@ PLIANT_HOST_DEVICE void for_each_stress(L const& law, Nodal<typename F::element,
             point.pull(p) + (Onto::value(pressures, table, q) - own) * point.slope());
     }
   } else {
-    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S>::at(x, table, q);
-      auto const h = map.gradient(v, table, q);
-      visit(q, map.volume * T(table.weight[q]), h, stress(at_point(law, q), h));
-    }
+    for_each_point_of<F>(rest, u,
+                         [&](int q, S const& volume, Tensor<S, F::dim> const& h)
+                             PLIANT_INLINE { visit(q, volume, h, stress(at_point(law, q), h)); });
   }
 }
 

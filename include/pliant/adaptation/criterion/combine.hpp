@@ -10,8 +10,10 @@ namespace detail {
 enum class Extreme { largest, smallest };
 
 template <Extreme X, class First, class... Rest>
-struct ExtremeOf {
+struct ExtremeOf : SharedUnit<First, Rest...> {
   std::tuple<First, Rest...> criteria;
+
+  explicit ExtremeOf(First first, Rest... rest) : criteria(first, rest...) {}
 
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
@@ -38,12 +40,12 @@ inline constexpr bool stateless<ExtremeOf<X, Cs...>> = (stateless<Cs> && ...);
 /// The largest of several criteria.
 template <class... Cs>
 auto largest(Cs... criteria) {
-  return detail::ExtremeOf<detail::Extreme::largest, Cs...>{{criteria...}};
+  return detail::ExtremeOf<detail::Extreme::largest, Cs...>(criteria...);
 }
 /// The smallest of several criteria.
 template <class... Cs>
 auto smallest(Cs... criteria) {
-  return detail::ExtremeOf<detail::Extreme::smallest, Cs...>{{criteria...}};
+  return detail::ExtremeOf<detail::Extreme::smallest, Cs...>(criteria...);
 }
 
 }  // namespace pliant

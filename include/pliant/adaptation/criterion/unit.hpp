@@ -8,6 +8,7 @@ namespace pliant {
 /// calculated with and compared; one in joules is an estimator.
 enum class Unit {
   one,
+  metre,
   newton,
   pascal,
   joule,
@@ -20,5 +21,15 @@ template <class C>
 concept Measure = requires {
   { C::unit } -> std::convertible_to<Unit>;
 };
+
+namespace detail {
+/// The unit that several criteria share; `other` where they differ. Nothing where one does not say its own.
+template <class... Cs>
+struct SharedUnit {};
+template <Measure First, Measure... Rest>
+struct SharedUnit<First, Rest...> {
+  static constexpr Unit unit = ((First::unit == Rest::unit) && ...) ? First::unit : Unit::other;
+};
+}  // namespace detail
 
 }  // namespace pliant

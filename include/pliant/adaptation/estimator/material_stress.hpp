@@ -5,12 +5,6 @@
 // Stresses that a rotation of the body leaves alone, and the compliance that makes energies of them.
 namespace pliant::detail {
 
-/// Laws of small strain, whose stress is conjugate to sym H.
-template <class L>
-concept OfSmallStrain = EnergyIn<L, StrainInvariants> || requires(L const& law) {
-  requires EnergyIn<std::remove_cvref_t<decltype(law.solid)>, StrainInvariants>;
-};
-
 /// The components of a symmetric tensor: the diagonal, then 12, or 12, 23, 13.
 template <int Dim>
 struct SymmetricComponents {
