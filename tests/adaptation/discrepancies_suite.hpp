@@ -100,7 +100,7 @@ TEST_CASE("the discrepancy of rules in an hourglass is in closed form", "[estima
       auto u = mesh.nodes;
       for (auto& p : u) {
         double sign = 0.01;
-        for (std::size_t k = 0; k < 2; ++k) sign *= p[k] > 0.5 ? 1 : -1;
+        for (std::size_t k = 0; k < E::dim; ++k) sign *= p[k] > 0.5 ? 1 : -1;
         p = {};
         p[0] = sign;
       }

@@ -136,6 +136,24 @@ TEST_CASE("the estimate of a strain that jumps by one is in closed form", "[esti
   });
 }
 
+TEST_CASE("one bilinear element alone is off its mean stress", "[estimator]") {
+  // u = x y: σ11 = 2 y and σ12 = x, less their means.
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const check = [&]<class Q>(Q, double expected) {
+      using F = Formulation<Quad4, Q, Hooke>;
+      auto const mesh = mesh::rectangle<Quad4>({.size = {1, 1}, .cells = {1, 1}});
+      Body body{backend, mesh, soft, Group<F>{Hooke<double>{0, 1}}};
+      auto u = mesh.nodes;
+      for (auto& p : u) p = {p[0] * p[1], 0};
+      body.set_displacements(u);
+      CHECK(estimate(body, RecoveredStress{}) == Approx(expected).epsilon(1e-5).margin(1e-12));
+    };
+    check(Gauss<2>{}, 1.0 / 8);
+    check(Gauss<3>{}, 1.0 / 8);
+    check(OnePoint{}, 0);
+  });
+}
+
 TEST_CASE("quadratic elements see the part of the stress that is quadratic", "[estimator]") {
   // u = x³/6 and E = 2 Pa: σ = x², less what lies in the element at its superconvergent points.
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
