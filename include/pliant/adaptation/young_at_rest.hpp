@@ -25,9 +25,8 @@ inline constexpr bool some_reads_young<C> = tuple_reads_young<decltype(C::criter
 template <class L, class G>
 double young_at_rest(L const& law, G const& group) {
   if constexpr (LawWithInternalVariables<L>) {
-    constexpr int dim = G::formulation::dim;
     auto const now = law.over(std::numeric_limits<double>::infinity());
-    return young_at_rest(now.after(now.equilibrated(Tensor<double, dim>::zero())), group);
+    return young_at_rest(now.after(now.equilibrated(Tensor<double, 3>::zero())), group);
   } else if constexpr (LawPerElement<L>) {
     Vector<double, L::element_values> values;
     for (int k = 0; k < L::element_values; ++k)

@@ -31,8 +31,6 @@ constexpr Unit unit_of_result() {
   } else if constexpr (std::same_as<A, Constant>) {
     return O == Operation::over ? Unit::other : B::unit;
   } else if constexpr (adds) {
-    static_assert(A::unit == B::unit,
-                  "criteria of different units are neither added nor subtracted");
     return A::unit;
   } else if constexpr (B::unit == Unit::one) {
     return A::unit;
@@ -42,8 +40,16 @@ constexpr Unit unit_of_result() {
 }
 
 template <Operation O, class A, class B>
+inline constexpr bool adds_like_to_like = true;
+template <Operation O, Measure A, Measure B>
+  requires(O == Operation::plus || O == Operation::minus)
+inline constexpr bool adds_like_to_like<O, A, B> = A::unit == B::unit;
+
+template <Operation O, class A, class B>
 struct Calculated {
   static constexpr Unit unit = unit_of_result<O, A, B>();
+  static_assert(adds_like_to_like<O, A, B>,
+                "criteria of different units are neither added nor subtracted");
 
   std::tuple<A, B> criteria;
 

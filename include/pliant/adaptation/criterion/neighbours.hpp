@@ -18,7 +18,8 @@
 //
 // Means are over the elements of the group that a rule looks at, weighted by their rest volumes, so that they stop
 // where another material begins. What hanging nodes get goes to their masters, and they follow those. Elements
-// that give numbers which are not finite do not count.
+// that give numbers which are not finite do not count. In an element that another rule of the same check has just moved to
+// another group the value is NaN: it is found again in the next check.
 namespace pliant {
 
 namespace detail {

@@ -6,21 +6,14 @@
 // How strained an element is in the middle of its cell, whatever its law; rotations do not matter.
 namespace pliant {
 
-namespace detail {
-/// Green's strain E = (FᵀF − I)/2, without rounding the identity away.
-template <class S, int Dim>
-PLIANT_HOST_DEVICE Tensor<S, Dim> green_strain(Tensor<S, Dim> const& h) {
-  return symmetric_part(h) + builtin_scalar<S>(0.5) * (transpose(h) * h);
-}
-}  // namespace detail
-
 /// |E| = √(E:E) of Green's strain E = (FᵀF − I)/2, in the plane in 2D.
 struct StrainNorm {
   static constexpr Unit unit = Unit::one;
 
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
-    return norm(detail::green_strain(e.gradient()));
+    using S = typename State::scalar;
+    return norm(GreenInvariants<S>::strain(e.gradient()));
   }
 };
 
@@ -32,7 +25,8 @@ struct Compression {
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
-    auto const strains = Spectrum<S, State::dim>::of(detail::green_strain(e.gradient())).values;
+    auto const strains =
+        Spectrum<S, State::dim>::of(GreenInvariants<S>::strain(e.gradient())).values;
     S least = strains[0];
     for (int i = 1; i < State::dim; ++i) least = min(least, strains[i]);
     S const change = S(2) * least;  // λ² − 1
