@@ -12,9 +12,9 @@ namespace pliant {
 /// matter. σ* is made of means at nodes by volume, over the elements of one group: stress may jump where
 /// another material begins. On quadratic elements the means are of the stress of superconvergent points, carried
 /// to the nodes, and of its gradient, whose change over the element gives σ* the quadratic part that such
-/// points do not see. The hourglasses of OnePoint are no part of σ. NaN where an element is inverted. Sums are
-/// mostly within a factor of 0.8 to 1.3 of the true error, its root; least where a few quadratic triangles of a
-/// uniform mesh carry it at a singular corner, of which they see half (tests/verification/RESULTS.md).
+/// points do not see. The hourglasses of OnePoint are no part of σ. NaN where an element is inverted. The
+/// root of the sum is between 0.6 and 1.5 of the true error in most problems; it is least, 0.5, where a few
+/// quadratic triangles of a uniform mesh carry the error at a singular corner (tests/verification/RESULTS.md).
 struct RecoveredStress {
   static constexpr Unit unit = Unit::joule;
 
