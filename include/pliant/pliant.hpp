@@ -1,11 +1,20 @@
 #pragma once
 
 // Everything that is independent of a backend, but what works on sparse matrices: solve.hpp.
+#include <pliant/adaptation/adapt.hpp>
 #include <pliant/adaptation/adaptation.hpp>
+#include <pliant/adaptation/criterion/arithmetic.hpp>
 #include <pliant/adaptation/criterion/combine.hpp>
+#include <pliant/adaptation/criterion/condition.hpp>
 #include <pliant/adaptation/criterion/deformation.hpp>
 #include <pliant/adaptation/criterion/force_intensity.hpp>
+#include <pliant/adaptation/criterion/region.hpp>
 #include <pliant/adaptation/criterion/shape.hpp>
+#include <pliant/adaptation/criterion/strain.hpp>
+#include <pliant/adaptation/criterion/stress.hpp>
+#include <pliant/adaptation/estimator/law_discrepancy.hpp>
+#include <pliant/adaptation/estimator/quadrature_discrepancy.hpp>
+#include <pliant/adaptation/estimator/recovered_stress.hpp>
 #include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>

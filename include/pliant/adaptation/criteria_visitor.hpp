@@ -4,8 +4,9 @@
 #include <array>
 #include <tuple>
 
-#include <pliant/adaptation/criterion/criterion.hpp>
-#include <pliant/backend/backend.hpp>
+#include <pliant/adaptation/nodal_means.hpp>
+#include <pliant/adaptation/rule_context.hpp>
+#include <pliant/adaptation/young_at_rest.hpp>
 
 namespace pliant::detail {
 
@@ -43,6 +44,13 @@ struct CriterionRows {
   }
 };
 
+/// Looks at the elements of a formulation, and does nothing.
+template <class F, class C>
+struct Look {
+  using from = F;
+  C criterion;
+};
+
 /// The rules that look at one element type, in their order. A rule has a type `from` and a member
 /// `criterion`.
 template <class Table, class... Rules>
@@ -66,44 +74,91 @@ struct TableRules {
 
   std::tuple<Rules...> rules;
 
-  /// The criteria that look at group G, (rows).
-  template <int G, class L, class V>
-  PLIANT_HOST_DEVICE auto evaluate(L const& law, V const& rest, V const& u) const {
+  using Places = Slots<Table, Rules...>;
+  static constexpr bool reads_young = (ReadsYoung<decltype(Rules::criterion)> || ...);
+
+  /// The criteria that look at group G, (rows), of an element that has changed group: what takes means is NaN.
+  template <int G, class L, class V, class Around, class Own>
+  PLIANT_HOST_DEVICE auto evaluate(L const& law, V const& rest, V const& u,
+                                   typename Table::Laws const& groups, Around const& around,
+                                   Own const& own) const {
+    return evaluate<G>(law, rest, u, groups, around, own, NoElement{});
+  }
+  /// `found` are the values of criteria that take means, (slots).
+  template <int G, class L, class V, class Around, class Own, class Found>
+  PLIANT_HOST_DEVICE auto evaluate(L const& law, V const& rest, V const& u,
+                                   typename Table::Laws const& groups, Around const& around,
+                                   Own const& own, Found const& found) const {
     using S = std::remove_cvref_t<decltype(rest(0, 0))>;
     Vector<S, rows> values{};
     auto const state = state_of<typename Table::template formulation<G>>(law, rest, u);
-    evaluate_rules<G, 0>(state, values);
+    evaluate_rules<G, 0>(state, groups, around, own, found, values);
     return values;
   }
 
+  /// visit(GroupNumber<group>{}, GroupNumber<slot>{}, criterion) for each criterion that takes means, once.
+  template <class Visit>
+  void for_each_taker(Visit const& visit) const {
+    std::array<bool, Places::count> visited{};
+    [&]<int... R>(std::integer_sequence<int, R...>) {
+      (takers_of_rule<R>(
+           visit, visited,
+           typename TakersOfMeans<decltype(rule<R>::criterion), typename rule<R>::from>::type{}),
+       ...);
+    }(std::make_integer_sequence<int, count>());
+  }
+
  private:
-  template <int G, int R, class State, class Values>
-  PLIANT_HOST_DEVICE void evaluate_rules(State const& state, Values& values) const {
+  template <int R, class Visit, class... Cs>
+  void takers_of_rule(Visit const& visit, std::array<bool, Places::count>& visited,
+                      TypeList<Cs...>) const {
+    (visit_taker<R, Cs>(visit, visited[Places::template slot<R, Cs>]), ...);
+  }
+  template <int R, class C, class Visit>
+  void visit_taker(Visit const& visit, bool& visited) const {
+    if (!visited)
+      visit(GroupNumber<group<R>>{}, GroupNumber<Places::template slot<R, C>>{},
+            *find_criterion<C>(std::get<R>(rules).criterion));
+    visited = true;
+  }
+  template <int G, int R, class F, class L, class S, class Around, class Own, class Found>
+  PLIANT_HOST_DEVICE void evaluate_rules(ElementState<F, L, S> const& state,
+                                         typename Table::Laws const& groups, Around const& around,
+                                         Own const& own, Found const& found,
+                                         Vector<S, rows>& values) const {
     if constexpr (R < count) {
-      if constexpr (group<R> == G && layout.first[R])
-        values[row<R>] = std::get<R>(rules).criterion(state);
-      evaluate_rules<G, R + 1>(state, values);
+      if constexpr (group<R> == G && layout.first[R]) {
+        using Context = RuleContext<Places, R, G, typename Table::Laws, Around, Own, Found>;
+        Context const context{groups, around, own, found};
+        values[row<R>] =
+            value_of(std::get<R>(rules).criterion, StateInBody<F, L, S, Context>{state, context});
+      }
+      evaluate_rules<G, R + 1>(state, groups, around, own, found, values);
     }
   }
 };
 
 /// Evaluates the criteria of rules, each once for each element that it looks at, and hands them over:
 /// take(GroupNumber<G>{}, element, values).
-template <class Table, class TheRules, class Take>
+template <class Table, class TheRules, class Around, class Take>
 struct CriteriaVisitor {
   using T = typename Table::scalar;
   static constexpr int counters = 1;
-  static constexpr bool reads_elements = Table::Laws::reads_elements;
+  static constexpr int slots = TheRules::Places::count;
+  static constexpr bool reads_elements = Table::Laws::reads_elements || slots > 0;
   typename Table::Laws groups;
   TheRules rules;
+  Around around;
   Take take;
 
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const&... v) const {
-    return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u)
-            PLIANT_INLINE { return rules.template evaluate<G>(law, rest, u); },
-        v...);
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
+    return at<G>(NoElement{}, rest, u);
+  }
+  template <int G, class Own, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, Own const& own, V const& rest,
+                                   V const& u) const {
+    return at<G>(own, rest, u);
   }
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G> group, Index e,
@@ -111,14 +166,55 @@ struct CriteriaVisitor {
                                  Tally const&) const {
     take(group, e, values);
   }
+
+ private:
+  template <int G, class Own, class V>
+  PLIANT_HOST_DEVICE auto at(Own const& own, V const& rest, V const& u) const {
+    auto const& law = law_at<G>(own);
+    if constexpr (slots > 0)
+      return rules.template evaluate<G>(
+          law, rest, u, groups, around, own,
+          own(ElementField<T const, slots>{around.found, around.elements}));
+    else
+      return rules.template evaluate<G>(law, rest, u, groups, around, own);
+  }
+  template <int G, class Own>
+  PLIANT_HOST_DEVICE decltype(auto) law_at(Own const& own) const {
+    if constexpr (Table::Laws::reads_elements)
+      return groups.template law<G>(own);
+    else
+      return groups.template law<G>();
+  }
 };
+
+template <class T, class Rules, class Parts, class Table>
+auto surroundings(Parts const& parts, Table const& table,
+                  CriteriaWorkspace<typename Parts::backend_type> const& w) {
+  Surroundings<T, Parts::dim, Table::groups> around{};
+  for (int k = 0; k < Parts::dim; ++k)
+    around.origin[k] = static_cast<T>(parts.layout.middle[static_cast<std::size_t>(k)]);
+  if constexpr (Rules::reads_young)
+    [&]<class... Fs>(TypeList<Fs...>) {
+      around.young = {{{static_cast<T>(
+          young_at_rest(parts.template law_of<Fs>(), std::get<Group<Fs>>(parts.groups)))}...}};
+    }(typename Table::formulations{});
+  around.found = w.found.data();
+  around.elements = table.count();
+  return around;
+}
 
 /// Evaluates the criteria of rules on the present state of a body.
 template <class Parts, class Table, class TheRules, class Take>
 void evaluate_criteria(Parts const& parts, Table const& table, TheRules const& rules,
+                       CriteriaWorkspace<typename Parts::backend_type>& workspace,
                        Take const& take) {
+  using T = typename Parts::T;
+  find_values_from_means(parts, table, rules, workspace);
+  auto const around = surroundings<T, TheRules>(parts, table, workspace);
   parts.backend.template visit<Table::groups>(
-      table.elements, CriteriaVisitor<Table, TheRules, Take>{table.laws, rules, take},
+      table.elements,
+      CriteriaVisitor<Table, TheRules, std::remove_const_t<decltype(around)>, Take>{
+          table.laws, rules, around, take},
       parts.no_counters, parts.rest(), parts.u());
 }
 

@@ -6,12 +6,6 @@
 namespace pliant {
 
 namespace detail {
-/// Looks at the elements of a formulation, and does nothing.
-template <class F, class C>
-struct Look {
-  using from = F;
-  C criterion;
-};
 /// Keeps the first value of each element.
 template <class T>
 struct Store {
@@ -38,13 +32,30 @@ std::vector<double> evaluate(TheBody const& body, C const& criterion) {
     return detail::TableRules<Table, detail::Look<Fs, C>...>{{detail::Look<Fs, C>{criterion}...}};
   }(typename Table::formulations{});
   auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
-  detail::evaluate_criteria(parts, table, rules, detail::Store<T>{values.data()});
+  CriteriaWorkspace<typename TheBody::backend_type> workspace;
+  detail::evaluate_criteria(parts, table, rules, workspace, detail::Store<T>{values.data()});
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)
     in_user_order[static_cast<std::size_t>(table.user_element[e])] =
         static_cast<double>(internal[e]);
   return in_user_order;
+}
+
+/// What an estimator estimates for a whole body, J: the sum over the elements of all types, those left out where it is
+/// NaN. Its square root is the error in the energy norm over √2.
+template <class TheBody, class C>
+double estimate(TheBody const& body, C const& estimator) {
+  static_assert(Measure<C>,
+                "estimate: an estimator says `static constexpr Unit unit = Unit::joule;`");
+  static_assert(C::unit == Unit::joule, "estimate: only what is in joules adds up over elements");
+  double sum = 0;
+  body.parts().for_each_type([&](auto const& table, auto const&) {
+    for (double value :
+         evaluate<typename std::remove_cvref_t<decltype(table)>::element>(body, estimator))
+      if (!std::isnan(value)) sum += value;
+  });
+  return sum;
 }
 
 }  // namespace pliant

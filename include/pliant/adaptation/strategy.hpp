@@ -1,10 +1,13 @@
 #pragma once
 
+#include <pliant/adaptation/criterion/condition.hpp>
 #include <pliant/adaptation/rule.hpp>
 
 // Strategies read as sentences:
 //   when<Linear>(largest(EdgeLengthRatio{}, Rotation{})).above(0.1).become<Nonlinear>()
 //   when<Linear>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine({.max_level = 6})
+//   when<Linear>(RecoveredStress{}).bulk(0.5).refine({.max_level = 6})
+//   when<Linear>(all(VonMises{} > 1e5, Rotation{} < 0.1)).holds().become<Nonlinear>()
 namespace pliant {
 
 namespace detail {
@@ -87,6 +90,12 @@ class When {
   }
   auto top_share(double share) const { return marked(MarkingKind::top_share, checked(share)); }
   auto bulk(double share) const { return marked(MarkingKind::bulk, checked(share)); }
+  /// Of conditions: where it holds.
+  auto holds() const
+    requires ElementCondition<C>
+  {
+    return marked(MarkingKind::above, 0.5);
+  }
 
  private:
   Marked<From, C> marked(MarkingKind kind, double amount) const {

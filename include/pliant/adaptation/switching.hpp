@@ -18,7 +18,7 @@ struct SwitchTarget {
 };
 
 /// Moves the elements whose next group is another: tags change, and statistics are updated.
-template <class Table, class... Rules>
+template <class Table, int Dim, class... Rules>
 struct ActVisitor {
   using T = typename Table::scalar;
   using Laws = typename Table::Laws;
@@ -29,6 +29,7 @@ struct ActVisitor {
 
   Laws groups;
   All rules;
+  Surroundings<T, Dim, Table::groups> around;
   Tag const* next;  // (elements)
   T* values;        // (rows, elements)
   Index elements;
@@ -83,7 +84,7 @@ struct ActVisitor {
     auto const difference = force<New>(new_law, rest, u) - pull_before;
     if constexpr (refines) {
       // What refining looks at next.
-      auto const now = rules.template evaluate<To>(new_law, rest, u);
+      auto const now = rules.template evaluate<To>(new_law, rest, u, groups, around, own);
       for (int k = 0; k < All::rows; ++k)
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];
     }

@@ -59,7 +59,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   void decide() const {
     if constexpr (count > 0) {
       auto const decision = this->decision();
-      evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, decision);
+      evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, workspace(),
+                        decision);
       if constexpr (switches)
         if (decision.ranks) {
           find_cuts([]<class R>(R const&) { return SwitchingRule<R>; });
@@ -71,8 +72,10 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
     if constexpr (switches)
       backend().template visit<Table::groups>(
           table_.elements,
-          ActVisitor<Table, Rules...>{table_.laws, rules_, workspace().next.data(),
-                                      workspace().values.data(), table_.count(), target()},
+          ActVisitor<Table, Parts::dim, Rules...>{
+              table_.laws, rules_,
+              surroundings<T, All>(std::as_const(parts_), std::as_const(table_), workspace()),
+              workspace().next.data(), workspace().values.data(), table_.count(), target()},
           elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
           std::as_const(parts_).v());
   }

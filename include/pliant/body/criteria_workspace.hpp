@@ -69,8 +69,10 @@ struct CriteriaWorkspace {
   template <class U>
   using Array = typename B::template Array<U>;
 
-  Array<T> values;                // (rows, elements)
-  Array<Tag> next;                // (elements): the group after the check
+  Array<T> values;  // (rows, elements)
+  Array<T> means;   // (blocks, nodes and scratch rows, 4), of criteria that take means
+  Array<T> found;   // (slots, elements): the values of those
+  Array<Tag> next;  // (elements): the group after the check
   Array<std::uint32_t> refining;  // (elements): bit r: rule r wants it refined
   Array<Index> number;            // (elements): the user's
   Array<std::int64_t> histogram;  // (histogram_bins), zero between searches

@@ -10,8 +10,10 @@ namespace detail {
 enum class Extreme { largest, smallest };
 
 template <Extreme X, class First, class... Rest>
-struct ExtremeOf {
+struct ExtremeOf : SharedUnit<First, Rest...> {
   std::tuple<First, Rest...> criteria;
+
+  explicit ExtremeOf(First first, Rest... rest) : criteria(first, rest...) {}
 
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
@@ -21,7 +23,7 @@ struct ExtremeOf {
  private:
   template <std::size_t I, class State>
   PLIANT_HOST_DEVICE auto from(State const& e) const {
-    auto const value = std::get<I>(criteria)(e);
+    auto const value = value_of(std::get<I>(criteria), e);
     if constexpr (I == sizeof...(Rest))
       return value;
     else if constexpr (X == Extreme::largest)
@@ -38,12 +40,12 @@ inline constexpr bool stateless<ExtremeOf<X, Cs...>> = (stateless<Cs> && ...);
 /// The largest of several criteria.
 template <class... Cs>
 auto largest(Cs... criteria) {
-  return detail::ExtremeOf<detail::Extreme::largest, Cs...>{{criteria...}};
+  return detail::ExtremeOf<detail::Extreme::largest, Cs...>(criteria...);
 }
 /// The smallest of several criteria.
 template <class... Cs>
 auto smallest(Cs... criteria) {
-  return detail::ExtremeOf<detail::Extreme::smallest, Cs...>{{criteria...}};
+  return detail::ExtremeOf<detail::Extreme::smallest, Cs...>(criteria...);
 }
 
 }  // namespace pliant

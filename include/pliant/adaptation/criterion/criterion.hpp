@@ -2,28 +2,39 @@
 
 #include <concepts>
 
-#include <pliant/adaptation/criterion/element_state.hpp>
-#include <pliant/body/group_laws.hpp>
+#include <pliant/adaptation/criterion/state_in_body.hpp>
+#include <pliant/adaptation/criterion/unit.hpp>
 
 namespace pliant {
 
-namespace detail {
-/// The law that a criterion finds in the state of an element of a formulation.
-template <class F, class T>
-using LawInKernels =
-    std::remove_cvref_t<decltype(std::declval<GroupLaws<T, F> const&>().template law<0>(
-        OneElement{}))>;
-}  // namespace detail
+/// A criterion that takes means at nodes: see criterion/neighbours.hpp.
+template <class C, class F>
+concept CriterionOfMeans =
+    std::copy_constructible<C> && detail::TakesMeans<C, F> &&
+    requires(C const& criterion,
+             ElementState<F, detail::LawInKernels<F, double>, double> const& element,
+             Matrix<double, F::nodes, C::template nodal_values<F>> const& means) {
+      {
+        criterion.to_nodes(element)
+      } -> std::same_as<Matrix<double, F::nodes, C::template nodal_values<F>>>;
+      { criterion(element, means) } -> std::convertible_to<double>;
+    };
 
 /// A number for the present state of an element of the formulation F. NaN marks no element: rules
 /// pass over elements for which a criterion gives NaN.
 template <class C, class F>
 concept Criterion =
-    std::copy_constructible<C> &&
-    requires(C const& criterion,
-             ElementState<F, detail::LawInKernels<F, double>, double> const& element) {
-      { criterion(element) } -> std::convertible_to<double>;
-    };
+    CriterionOfMeans<C, F> || (std::copy_constructible<C> &&
+                               requires(C const& criterion, detail::StateProbe<F> const& element) {
+                                 { criterion(element) } -> std::convertible_to<double>;
+                               });
+
+/// A criterion in joules, of the error that the present mesh, law or quadrature makes in an element: the strain
+/// energy ½ ∫ Δσ : C⁻¹ : Δσ dV of what is wrong there. Sums over elements compare with the strain energy
+/// of the error, ½ (u − u_h)·K (u − u_h), which at equilibrium under dead loads is the potential energy of the
+/// body over the least: half the square of the error in the energy norm.
+template <class C, class F>
+concept Estimator = Criterion<C, F> && Measure<C> && (C::unit == Unit::joule);
 
 namespace detail {
 /// Criteria without data are equal when their types are.

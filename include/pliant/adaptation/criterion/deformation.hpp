@@ -1,12 +1,15 @@
 #pragma once
 
 #include <pliant/adaptation/criterion/element_state.hpp>
+#include <pliant/adaptation/criterion/unit.hpp>
 
 // How far an element is from its rest shape.
 namespace pliant {
 
 /// R_L = max_k |l_k/L_k − 1| over the edges (Caillaud et al. 2013).
 struct EdgeLengthRatio {
+  static constexpr Unit unit = Unit::one;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
@@ -27,6 +30,8 @@ struct EdgeLengthRatio {
 /// R_A = |A/A₀ − 1|, of the volume in 3D (Caillaud et al. 2013). Under Hooke's zero-strain motion
 /// F = I + W it is tan² θ; under a true rotation it is zero.
 struct AreaRatio {
+  static constexpr Unit unit = Unit::one;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using E = typename State::element;
@@ -53,6 +58,8 @@ struct AreaRatio {
 /// How far the element has turned: 2 sin(θ/2) of the rotation R = F (FᵀF)^(−1/2) in the middle of the
 /// cell, which is the angle in radians to 0.4% up to 0.3, and √2 at a right angle.
 struct Rotation {
+  static constexpr Unit unit = Unit::one;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;

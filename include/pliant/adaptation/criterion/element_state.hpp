@@ -10,7 +10,8 @@
 //     PLIANT_HOST_DEVICE auto operator()(State const& e) const { return norm(e.gradient()); }
 //   };
 //
-// The state's numbers may be packs of elements: write `select`, `max`, `min`, never `if`, on them.
+// The state's numbers may be packs of elements: write `select`, `max`, `min`, never `if`, on them. State is a
+// StateInBody, which adds to the ElementState below what there is around the element.
 namespace pliant {
 
 /// What a criterion may look at: the element's law, positions at rest and displacements.
@@ -30,6 +31,16 @@ struct ElementState {
     static constexpr auto table = tabulate<element, Gauss<1>, builtin_scalar<S>>();
     return RestMap<element, S>::at(Coefficients<element, S>::of(rest), table, 0)
         .gradient(Coefficients<element, S>::of(u), table, 0);
+  }
+  /// The volume at rest, m³ (per thickness in 2D), by the formulation's rule.
+  PLIANT_HOST_DEVICE S volume() const {
+    using T = builtin_scalar<S>;
+    static constexpr auto table = tabulate<element, typename F::quadrature, T>();
+    auto const x = Coefficients<element, S>::of(rest);
+    S sum(0);
+    for (int q = 0; q < F::points; ++q)
+      sum = sum + T(table.weight[q]) * RestMap<element, S>::at(x, table, q).volume;
+    return sum;
   }
   /// Where the nodes are now.
   PLIANT_HOST_DEVICE Nodal<element, S> current() const { return rest + u; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/adaptation/criterion/element_state.hpp>
+#include <pliant/adaptation/criterion/unit.hpp>
 
 namespace pliant {
 
@@ -14,6 +15,8 @@ enum class PointWeights {
 /// over size, so that refinement feeds itself and burrows into one corner.
 template <PointWeights Weights = PointWeights::volume>
 struct ForceIntensity {
+  static constexpr Unit unit = Unit::newton;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using F = typename State::formulation;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/adaptation/criterion/element_state.hpp>
+#include <pliant/adaptation/criterion/unit.hpp>
 
 // How well-shaped an element is at this moment. Note that splitting all edges (red refinement) never
 // changes an aspect ratio: give such rules a max_level.
@@ -10,6 +11,8 @@ namespace pliant {
 /// l_max Σl/(4√3 A), quadrilateral l_max Σl/(4 A), tetrahedron l_max ΣA_f/(6√6 V); other
 /// solids: the longest over the shortest of all edges.
 struct AspectRatio {
+  static constexpr Unit unit = Unit::one;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
@@ -53,6 +56,8 @@ struct AspectRatio {
 /// The harmonic mean of the edges' current lengths, n/Σ(1/l_k), m: dominated by the shortest edge
 /// (Caillaud et al. 2013).
 struct HarmonicMeanEdge {
+  static constexpr Unit unit = Unit::metre;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
@@ -64,6 +69,8 @@ struct HarmonicMeanEdge {
 
 /// The harmonic over the arithmetic mean of the edges' lengths: 1 when all are equal, falling to 0.
 struct HarmonicMeanShape {
+  static constexpr Unit unit = Unit::one;
+
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
