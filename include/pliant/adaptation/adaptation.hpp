@@ -108,6 +108,11 @@ class Adaptation {
  private:
   static constexpr bool switches = (SwitchingRule<Rules> || ...);
   static constexpr bool refines = (RefiningRule<Rules> || ...);
+  static constexpr bool takes_means =
+      (!std::same_as<
+           typename detail::TakersOfMeans<decltype(Rules::criterion), typename Rules::from>::type,
+           detail::TypeList<>> ||
+       ...);
 
   /// What an integrator records of a look; lives on in the recording.
   class RecordedLook {
@@ -116,10 +121,12 @@ class Adaptation {
 
     int interval() const { return adapt_.interval_; }
     std::shared_ptr<void const> const& identity() const { return adapt_.identity_; }
-    /// Refining passes through the host, timers do not run in recordings; on the host nothing would be gained.
+    /// Refining passes through the host, means at nodes allocate, timers do not run in recordings; on the host nothing
+    /// would be gained.
     template <class Parts>
     bool can_record(Parts const& parts) const {
-      return !refines && !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
+      return !refines && !takes_means &&
+             !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
              !parts.timers.criteria.timer && !parts.timers.migration.timer;
     }
     template <class Parts>
