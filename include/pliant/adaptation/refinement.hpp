@@ -193,15 +193,19 @@ RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> 
   Point<2> taken{};
   double const added = watched_change(
       parts, [&] { taken = change_topology(parts, plan.after, plan.transfer, give_back); });
-  LedgerEntry<2> const entry{parts.state.time,
-                             "refine",
-                             static_cast<double>(plan.parents.size()),
-                             energy_at(std::as_const(parts), std::as_const(parts).u()) - strain,
-                             kinetic_energy_of(parts) - kinetic,
-                             taken};
+  auto const since = [](double before, double now) {
+    return detail::zero_if_not_finite(now - before);
+  };
+  LedgerEntry<2> const entry{
+      parts.state.time,
+      "refine",
+      static_cast<double>(plan.parents.size()),
+      since(strain, energy_at(std::as_const(parts), std::as_const(parts).u())),
+      since(kinetic, kinetic_energy_of(parts)),
+      taken};
   parts.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
-  if (parts.watched_energy)
+  if (parts.watched_energy && parts.state.integrator.active)
     parts.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
   for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
   return {plan.parents.size(), plan.transfer.new_nodes().size()};

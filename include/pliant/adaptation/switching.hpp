@@ -96,10 +96,13 @@ struct ActVisitor {
     T const half = target.half_step, turn = dot(difference, a);
     T const first = target.is_pending ? half * dot(difference, v) : T(0);
     T const second = target.is_pending ? stiffer + T(2) * turn : stiffer - turn;
-    tally(Counters::kinetic(From, To), static_cast<double>(first + half * half / T(3) * second));
+    double const strain = static_cast<double>(after - before);
+    double const kinetic = static_cast<double>(first + half * half / T(3) * second);
+    bool const booked = is_finite(strain) && is_finite(kinetic);
     tally(Counters::steps_of(From), static_cast<double>(*target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);
-    tally(Counters::energy(From, To), static_cast<double>(after - before));
+    tally(booked ? Counters::energy(From, To) : Counters::unbooked, booked ? strain : 1.0);
+    if (booked) tally(Counters::kinetic(From, To), kinetic);
     target.tags[e] = static_cast<Tag>(To);
     target.since[e] = *target.step;
     target.switches[e] = one_more(target.switches[e]);
