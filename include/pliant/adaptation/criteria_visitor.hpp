@@ -88,11 +88,11 @@ struct TableRules {
 };
 
 /// Evaluates the criteria of rules, each once for each element that it looks at, and hands them over:
-/// take(GroupNumber<G>{}, element, values).
+/// take(GroupNumber<G>{}, element, values, tally).
 template <class Table, class TheRules, class Take>
 struct CriteriaVisitor {
   using T = typename Table::scalar;
-  static constexpr int counters = 1;
+  static constexpr int counters = Take::counters;
   static constexpr bool reads_elements = Table::Laws::reads_elements;
   typename Table::Laws groups;
   TheRules rules;
@@ -108,18 +108,18 @@ struct CriteriaVisitor {
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G> group, Index e,
                                  Vector<T, TheRules::rows> const& values, Again const&,
-                                 Tally const&) const {
-    take(group, e, values);
+                                 Tally const& tally) const {
+    take(group, e, values, tally);
   }
 };
 
 /// Evaluates the criteria of rules on the present state of a body.
 template <class Parts, class Table, class TheRules, class Take>
 void evaluate_criteria(Parts const& parts, Table const& table, TheRules const& rules,
-                       Take const& take) {
+                       Take const& take, typename Parts::template Array<double>& counters) {
   parts.backend.template visit<Table::groups>(
-      table.elements, CriteriaVisitor<Table, TheRules, Take>{table.laws, rules, take},
-      parts.no_counters, parts.rest(), parts.u());
+      table.elements, CriteriaVisitor<Table, TheRules, Take>{table.laws, rules, take}, counters,
+      parts.rest(), parts.u());
 }
 
 }  // namespace pliant::detail

@@ -15,9 +15,10 @@ struct Look {
 /// Keeps the first value of each element.
 template <class T>
 struct Store {
+  static constexpr int counters = 0;
   T* values;  // (elements)
-  template <int G, class V>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own) const {
+  template <int G, class V, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
     values[e] = own[0];
   }
 };
@@ -38,7 +39,8 @@ std::vector<double> evaluate(TheBody const& body, C const& criterion) {
     return detail::TableRules<Table, detail::Look<Fs, C>...>{{detail::Look<Fs, C>{criterion}...}};
   }(typename Table::formulations{});
   auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
-  detail::evaluate_criteria(parts, table, rules, detail::Store<T>{values.data()});
+  detail::evaluate_criteria(parts, table, rules, detail::Store<T>{values.data()},
+                            parts.no_counters);
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)

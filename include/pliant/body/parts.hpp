@@ -86,10 +86,10 @@ struct Parts {
   std::optional<Scratch> scratch{};
   Array<T> without_energy{};    // (nodes, 4) and scratch rows, N: of terms that have no energy
   Array<T> acceleration{};      // (nodes, 4), m/s²: of the present forces, while groups change
-  Array<double> moves{};        // (1): whether a look moves elements between groups
+  Array<double> moves{};        // (1): how many elements a look moves between groups
   Array<std::int64_t> clock{};  // (1): the number of steps at that look
   Array<T> row_sums{};          // (nodes, 4) and scratch rows, of the stable step
-  mutable Array<double> no_counters{};
+  mutable Array<double> no_counters{};  // empty: of visitors that tally nothing
   AdaptationTimers<B> timers{};
 
   Field u() { return node_field<dim>(state.u); }

@@ -14,7 +14,6 @@ void make_arrays(Parts& parts) {
   state.v = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
   if (state.work.size() == 0)  // else it is kept: work does not belong to a topology
     state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
-  parts.no_counters = zeros<double>(parts.backend, 1);
   parts.for_each_type([&](auto& table, auto& elements) {
     using Table = std::remove_reference_t<decltype(table)>;
     elements.tags = table.elements.take_tags();
