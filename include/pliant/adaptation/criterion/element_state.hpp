@@ -10,7 +10,7 @@
 //     PLIANT_HOST_DEVICE auto operator()(State const& e) const { return norm(e.gradient()); }
 //   };
 //
-// The state's numbers may be packs of elements: write `select`, `max`, `min`, never `if`, on them.
+// The state's numbers may be packs of elements: write `select`, `maximum`, `minimum`, never `if`, on them.
 namespace pliant {
 
 /// What a criterion may look at: the element's law, positions at rest and displacements.
