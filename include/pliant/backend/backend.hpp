@@ -45,6 +45,7 @@
 // visitor with `reads_elements = true` gets one more argument before v...: own(field) gives it the
 // values of an ElementField at its element, Vector<S, Components>.
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
+//                              throws Error where an element has a node outside [0, nodes)
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <vector>
 
+#include <pliant/backend/check_nodes.hpp>
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/patch_plan.hpp>
 #include <pliant/cuda/tuning.hpp>
@@ -81,7 +82,7 @@ class CudaElements {
     if (threads_ < 1 || patch_size_ < threads_ || patch_size_ % threads_ != 0)
       throw Error("patches of ", patch_size_, " elements for ", threads_,
                   " threads; give a multiple of the threads");
-    detail::check_nodes<Nodes>(connectivity, nodes);
+    detail::check_nodes(connectivity, nodes);
     tags_ = uploaded(backend, tags);
     tag_data_ = tags_.data();
     connectivity_ = padded(backend, connectivity);
