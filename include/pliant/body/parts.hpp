@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <pliant/body/layout.hpp>
+#include <pliant/body/looker.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/body/timers.hpp>
 #include <pliant/constraint/driven_nodes.hpp>
@@ -71,6 +72,7 @@ struct Parts {
   /// Of the integrator that state.integrator belongs to; null: any. It lives on here: another integrator where
   /// that one was in memory is not taken for it.
   std::shared_ptr<void const> integrator{};
+  std::vector<Looker> lookers{};  // see detail::look_key
   struct Recorded {
     typename B::Recording recording;
     double dt;
