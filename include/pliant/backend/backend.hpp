@@ -35,7 +35,7 @@
 //                              (a GPU records them once as a graph).
 //   synchronize()              waits until all that was asked for is done
 //   timer()                a Timer; start() and stop() do not wait, seconds() does: the time
-//                              that the work between them took, summed
+//                              that the work between them took, summed. A start() without stop() counts nothing
 //
 // Element loops run over Elements<Nodes>, which holds connectivity and a tag per element: the number
 // of the element's group. Each kernel is called with the group as a compile-time constant,
