@@ -44,8 +44,12 @@ TEST_CASE("a check whose refinement exceeds the capacity changes nothing", "[ada
     auto const entries = ledger(body);
     REQUIRE(entries.size() == 2);  // the switches and what groups that change together add
 
+    measure_adaptation(body);
     CHECK_THROWS_AS(adapt.now(body), Error);
 
+    auto& timers = body.parts().timers;
+    CHECK(timers.migration.seconds() > 0);
+    timers = {};
     CHECK(element_count(body) == elements);
     CHECK(body.template groups_of<Quad4>() == groups);
     CHECK(element_steps<Quad4>(body) == steps);
@@ -65,6 +69,29 @@ TEST_CASE("a check whose refinement exceeds the capacity changes nothing", "[ada
     adapt.now(body);
     CHECK(ledger(body).size() == 4);
     CHECK(element_count(body) > elements + 3);
+  });
+}
+
+TEST_CASE("a check that moves no element keeps no copy of the body", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(5);
+    Body body{backend, mesh, soft, Group<QuadRubber>{}, Group<QuadLinear>{}};
+    auto const kept = [&] {
+      std::size_t size = 0;
+      body.parts().for_each_type(
+          [&](auto const& table, auto const&) { size = table.criteria.kept.tags.size(); });
+      return size;
+    };
+    auto const look = [&](double threshold) {
+      Adaptation{when<QuadRubber>(Constant{1}).above(threshold).template become<QuadLinear>(),
+                 when<QuadLinear>(Constant{1}).above(9).refine()}
+          .now(body);
+    };
+
+    look(2);
+    CHECK(kept() == 0);
+    look(0.5);
+    CHECK(kept() == mesh.elements<Quad4>().size());
   });
 }
 

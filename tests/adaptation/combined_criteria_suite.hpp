@@ -33,4 +33,51 @@ TEST_CASE("largest and smallest combine criteria", "[adaptation]") {
   });
 }
 
+struct Missing {
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const&) const {
+    return not_a_number<typename State::scalar>();
+  }
+};
+
+TEST_CASE("where a criterion is NaN, its combinations are, in whatever order", "[adaptation]") {
+  on_each_element<AllBackends>([]<class B, class E>(B const& backend, E) {
+    auto const mesh = distorted_mesh<E>(2);
+    FieldOf<std::size_t{E::dim}> const u(mesh.nodes.size());
+    auto const is_missing = [&](auto const& criterion) {
+      return std::ranges::all_of(values_at<E>(backend, mesh, u, criterion),
+                                 [](double value) { return std::isnan(value); });
+    };
+
+    CHECK(is_missing(largest(Missing{}, EdgeLengthRatio{})));
+    CHECK(is_missing(largest(EdgeLengthRatio{}, Missing{})));
+    CHECK(is_missing(smallest(Missing{}, EdgeLengthRatio{})));
+    CHECK(is_missing(smallest(EdgeLengthRatio{}, Missing{}, AreaRatio{})));
+    CHECK_FALSE(is_missing(largest(EdgeLengthRatio{}, AreaRatio{})));
+  });
+}
+
+TEST_CASE("criteria of displacements that are NaN are NaN", "[adaptation]") {
+  on_each_element<AllBackends>([]<class B, class E>(B const& backend, E) {
+    using T = typename B::scalar;
+    auto const mesh = distorted_mesh<E>(2);
+    auto body = body_of<LinearOn<E>>(backend, mesh);
+    auto const is_missing = [&](auto const& criterion) {
+      return std::ranges::all_of(evaluate<E>(body, criterion),
+                                 [](double value) { return std::isnan(value); });
+    };
+    REQUIRE_FALSE(is_missing(EdgeLengthRatio{}));
+    auto& u = body.parts().state.u;
+    u.upload(std::vector<T>(u.size(), std::numeric_limits<T>::quiet_NaN()));
+
+    CHECK(is_missing(EdgeLengthRatio{}));
+    CHECK(is_missing(AreaRatio{}));
+    CHECK(is_missing(Rotation{}));
+    CHECK(is_missing(AspectRatio{}));
+    CHECK(is_missing(HarmonicMeanEdge{}));
+    CHECK(is_missing(HarmonicMeanShape{}));
+    CHECK(is_missing(ForceIntensity<>{}));
+  });
+}
+
 }  // namespace pliant::test

@@ -69,12 +69,13 @@ std::vector<bool> marks_of(Marking const& m, B const& backend,
   std::iota(numbers.begin(), numbers.end(), 0);
   auto const array = upload(backend, values);
   auto const number = upload(backend, numbers);
-  auto const tags = upload(backend, std::vector<Tag>(values.size(), Tag(3)));
+  auto const candidates =
+      upload(backend, std::vector<Candidate>(values.size(), Candidate::may_act));
   auto histogram = upload(backend, std::vector<std::int64_t>(histogram_bins, 0));
   auto ranking = zeros<Ranking<T>>(backend, 1);
   detail::find_cut(backend, m,
-                   detail::RankedValues<T>{array.data(), tags.data(), number.data(),
-                                           static_cast<Index>(values.size()), Tag(3), sign},
+                   detail::RankedValues<T>{array.data(), candidates.data(), number.data(),
+                                           static_cast<Index>(values.size()), sign},
                    histogram.data(), ranking.data());
   auto const cut = download<Ranking<T>>(ranking)[0].cut;
   std::vector<bool> marks;
@@ -189,6 +190,32 @@ TEST_CASE("negative values are ranked too", "[adaptation]") {
   });
 }
 
+TEST_CASE("a share is rounded down from what it means, not from its product", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    std::vector<T> values(100);
+    std::iota(values.begin(), values.end(), T(1));
+    for (int percent = 0; percent <= 100; ++percent) {
+      auto const marks = marks_of({MarkingKind::top_share, percent / 100.0}, backend, values);
+      CHECK(std::ranges::count(marks, true) == percent);
+    }
+    auto const marks = marks_of({MarkingKind::top_share, 0.2899}, backend, values);
+    CHECK(std::ranges::count(marks, true) == 28);
+  });
+}
+
+TEST_CASE("a bulk is found among values however small", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    for (T size : {T(1), T(1e-12f), T(1e-25f), T(1e-36f)}) {
+      std::vector<T> values;
+      for (int k = 1; k <= 8; ++k) values.push_back(size * T(k));
+      auto const marks = marks_of({MarkingKind::bulk, 0.5}, backend, values);  // 8 + 7 + 6 of 36
+      CHECK(std::ranges::count(marks, true) == 3);
+    }
+  });
+}
+
 #if !defined(__CUDACC__)
 /// Reference, counting what is asked of it.
 struct Counting : Reference<double> {
@@ -228,7 +255,7 @@ TEST_CASE("a cut is found in a pass for each byte, and nothing waits for it", "[
 }
 #endif
 
-TEST_CASE("shares beyond all and budgets of nobody are refused", "[adaptation]") {
+TEST_CASE("shares beyond all and budgets of nothing are refused", "[adaptation]") {
   using F = Formulation<Quad4, Gauss<2>, Hooke>;
   auto const rule = when<F>(EdgeLengthRatio{});
   CHECK_THROWS_AS(rule.top_share(1.01), Error);

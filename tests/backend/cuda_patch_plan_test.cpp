@@ -114,12 +114,6 @@ TEST_CASE("no elements make no patches", "[cuda][patch plan]") {
   CHECK(plan_of<4>({}, 10, 128).patches == 0);
 }
 
-TEST_CASE("a node that does not exist is refused, with its element", "[cuda][patch plan]") {
-  Table<3> const table{{0, 1, 2}, {1, 2, 3}};
-  CHECK_THROWS_WITH(plan_of<3>(table, 3, 128),
-                    "element 1 has node 3, but nodes are numbered from 0 to 2; mend the mesh");
-}
-
 TEST_CASE("a patch with more slots than 16 bits can number is refused", "[cuda][patch plan]") {
   CHECK_THROWS_AS(plan_of<8>({}, 1, 8192), Error);
 }

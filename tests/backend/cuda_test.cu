@@ -435,6 +435,67 @@ TEST_CASE("timers add what they measured, however many measurements there were",
   CHECK(each.seconds() == each.seconds());
 }
 
+TEST_CASE("a measurement that was not stopped is dropped", "[cuda]") {
+  Cuda<double> const backend;
+  auto array = zeros<double>(backend, 1000);
+  auto timer = backend.timer();
+  timer.stop();
+  timer.start();
+  CHECK(timer.seconds() == 0);
+  for (int k = 0; k < 600; ++k) {
+    timer.start();
+    backend.for_each(1000, AddOne{array.data()});
+    if (k % 2 == 0) timer.stop();
+  }
+  CHECK(timer.seconds() > 0);
+  timer.start();
+  timer.stop();
+  CHECK(timer.seconds() > 0);
+}
+
+TEST_CASE("a recording keeps what its verbs use when the backend is gone", "[cuda]") {
+  Cuda<double> const other;
+  CudaRecording recording;
+  auto sum = zeros<double>(other, 1), array = upload(other, std::vector<double>(100000, 2));
+  {
+    Cuda<double> const backend;
+    recording = backend.record([&] { backend.add_sum(100000, Square{array.data()}, sum.data()); });
+  }
+  auto const taken = zeros<double>(other, detail::CudaContext::max_partials);
+  other.synchronize();
+  recording.replay(2);
+  cudaDeviceSynchronize();
+  CHECK(download<double>(sum)[0] == 8e5);
+  CHECK(download<double>(taken) == std::vector<double>(detail::CudaContext::max_partials, 0));
+}
+
+TEST_CASE("patches that a GPU has no room for are made smaller", "[cuda]") {
+  // Elements that share no node need most.
+  std::vector<std::array<Index, 4>> connectivity;
+  for (Index e = 0; e < 5000; ++e) connectivity.push_back({4 * e, 4 * e + 1, 4 * e + 2, 4 * e + 3});
+  std::vector<Tag> const tags(connectivity.size(), Tag(0));
+  Cuda<double> const backend;
+  constexpr int small = detail::patch_tuning<double, 4>().small_size;
+  CudaElements<double, 4> const large(backend, connectivity, tags, 20000, {2048, 256});
+  CHECK(large.patch_size() == small);
+  CHECK(large.threads() == small);
+  CudaElements<double, 4> const fits(backend, connectivity, tags, 20000, {128, 128});
+  CHECK(fits.patch_size() == 128);
+}
+
+TEST_CASE("a kernel keeps the shared memory that it was allowed", "[cuda]") {
+  auto const kernel = reinterpret_cast<void const*>(detail::call_for_each<AddOne>);
+  auto const allowed = [&] {
+    cudaFuncAttributes attributes{};
+    REQUIRE(cudaFuncGetAttributes(&attributes, kernel) == cudaSuccess);
+    return attributes.maxDynamicSharedSizeBytes;
+  };
+  detail::allow_shared_bytes(kernel, 80 << 10, "test");
+  detail::allow_shared_bytes(kernel, 60 << 10, "test");
+  CHECK(allowed() == 80 << 10);
+  CHECK_THROWS_AS(detail::allow_shared_bytes(kernel, 1 << 20, "test"), Error);
+}
+
 TEST_CASE("too large an array is refused with the numbers of bytes", "[cuda]") {
   std::string message;
   try {
@@ -444,5 +505,6 @@ TEST_CASE("too large an array is refused with the numbers of bytes", "[cuda]") {
   }
   CHECK(message.find("out of memory") != std::string::npos);
   CHECK(message.find("281474976710656 bytes was asked for") != std::string::npos);
+  CHECK_THROWS_AS(zeros<double>(Cuda<float>{}, std::size_t{1} << 61), Error);
   CHECK_THROWS_AS(Cuda<float>(CudaOptions{.device = 99}), Error);
 }

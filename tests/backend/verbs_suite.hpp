@@ -367,6 +367,14 @@ TEST_CASE("loops over a list of patches pass over the elements of the others", "
       CHECK(got == sweep(backend, fan, tagged));
       CHECK((got.total != 0) == (list[0] > 0));
     }
+    auto const one = upload(backend, std::vector<Index>{1, 1});
+    for (Index count : {Index{2}, std::numeric_limits<Index>::max()}) {
+      auto const beyond = upload(backend, std::vector<Index>{count, 1});
+      CHECK(sweep(backend, fan, over(fan.elements, beyond)) ==
+            sweep(backend, fan, over(fan.elements, one)));
+    }
+    auto const less_than_none = upload(backend, std::vector<Index>{-1, 1});
+    CHECK(sweep(backend, fan, over(fan.elements, less_than_none)).total == 0);
     CHECK_THROWS_WITH(over(fan.elements, zeros<Index>(backend, 0)), says("list of patches"));
   });
 }
@@ -408,6 +416,18 @@ TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backe
       if (fan.factor(e) != T(0)) visits += e < fan.elements.patch_size() ? 3 : 2;
     auto const counts = download<double>(counters);
     CHECK(counts[0] + counts[1] == visits);
+  });
+}
+
+TEST_CASE("a node that does not exist is refused, with its element", "[backend]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using Elements = typename B::template Elements<3>;
+    using Table = std::vector<std::array<Index, 3>>;
+    std::vector<Tag> const tags(2, Tag(0));
+    CHECK_THROWS_WITH(Elements(backend, Table{{0, 1, 2}, {1, 2, 3}}, 1, tags, 3),
+                      "element 1 has node 3, but nodes are numbered from 0 to 2; mend the mesh");
+    CHECK_THROWS_WITH(Elements(backend, Table{{0, -1, 2}, {1, 2, 0}}, 1, tags, 3),
+                      says("element 0 has node -1"));
   });
 }
 

@@ -57,7 +57,7 @@ class Cuda {
   cudaStream_t stream() const { return context_->stream()->get(); }
   void synchronize() const { context_->stream()->synchronize(); }
   Timer timer() const { return Timer(context_->stream()); }
-  Recording record(std::function<void()> const& f) const { return {context_->stream(), f}; }
+  Recording record(std::function<void()> const& f) const { return {context_, f}; }
   template <class U>
   Array<U> array(std::size_t count) const {
     return {context_->stream(), count};
@@ -103,8 +103,10 @@ class Cuda {
       void (*const by_patch)(detail::PatchView<nodes>, Kernel, NodeField<T, C>, Fields...) =
           detail::accumulate_patches<Groups, nodes, T, C, Kernel, Fields...>;
       auto const patches = active.elements.patch_view({active.list});
-      launch("accumulate", {active.most, active.elements.threads(), Memory::bytes(patches)},
-             by_patch, patches, kernel, out, fields...);
+      int const bytes =
+          Memory::bytes(patches.diagonal_capacity, patches.node_capacity, patches.patch_size);
+      launch("accumulate", {active.most, active.elements.threads(), bytes}, by_patch, patches,
+             kernel, out, fields...);
     }
   }
   template <int Groups, class Table, class Kernel, class... Fields>

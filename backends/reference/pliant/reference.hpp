@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/check_nodes.hpp>
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/host_array.hpp>
 #include <pliant/backend/host_recording.hpp>
@@ -33,8 +34,9 @@ class Reference {
     static constexpr int nodes_per_element = Nodes;
     Elements() = default;
     Elements(Reference const&, std::vector<std::array<Index, Nodes>> connectivity, int,
-             std::vector<Tag> const& tags, Index /* nodes */)
+             std::vector<Tag> const& tags, Index nodes)
         : connectivity_(std::move(connectivity)), tags_(tags.size()) {
+      detail::check_nodes(connectivity_, nodes);
       tags_.upload(tags);
       tag_data_ = tags_.data();
     }

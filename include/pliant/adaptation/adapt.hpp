@@ -19,11 +19,12 @@ concept Strategy = std::copy_constructible<S> && requires(S const& s, Index elem
 namespace detail {
 template <class T, int Group, class S>
 struct TakeAction {
+  static constexpr int counters = 0;
   S strategy;
   Index const* number;  // (elements)
 
-  template <int G, class V>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own) const {
+  template <int G, class V, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
     if constexpr (G == Group) {
       T const value = own[0];
       if (value == value && strategy.action_needed(value)) strategy.action(number[e], value);
@@ -53,7 +54,8 @@ void adapt(TheBody& body, C const& criterion, S const& strategy) {
   detail::TableRules<Table, detail::Look<F, C>> const rules{{detail::Look<F, C>{criterion}}};
   detail::evaluate_criteria(
       std::as_const(parts), std::as_const(table), rules, workspace,
-      detail::TakeAction<T, Table::template group_of<F>, S>{strategy, workspace.number.data()});
+      detail::TakeAction<T, Table::template group_of<F>, S>{strategy, workspace.number.data()},
+      parts.no_counters);
 }
 
 }  // namespace pliant

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <memory>
 
+#include <pliant/adaptation/look_key.hpp>
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/adaptation/table_check.hpp>
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/backend/value_at.hpp>
-#include <pliant/body/checksum.hpp>
 #include <pliant/body/leapfrog_energy.hpp>
-#include <pliant/body/plain_type_name.hpp>
 
 namespace pliant {
 
@@ -37,7 +36,8 @@ struct BeginLook {
 template <Rule... Rules>
 class Adaptation {
  public:
-  explicit Adaptation(Rules... rules) : key_(key_of(rules...)), rules_(std::move(rules)...) {}
+  explicit Adaptation(Rules... rules)
+      : rules_key_(detail::rules_key(rules...)), rules_(std::move(rules)...) {}
 
   /// Looks every n steps only; 8 when not said.
   Adaptation&& every(int calls) && {
@@ -49,7 +49,8 @@ class Adaptation {
     return *this;
   }
   /// Call after each step. The body's state remembers the step of the last look, so that a run that is
-  /// rolled back or loaded looks when the one before would have.
+  /// rolled back or loaded looks when the one before would have: of Adaptations with equal rules, those that
+  /// are first called in the same order. Copies count as one.
   template <DeformableBody TheBody>
   void operator()(TheBody& body) {
     if (steps_to_look(body, body.steps() - 1) > 1) return;
@@ -70,14 +71,20 @@ class Adaptation {
     begin_look(parts, 0);
     decide(parts);
     if constexpr (switches && refines) {
-      for_each_check(parts, [](auto const& check) { check.keep(); });
+      bool moved = false;
       auto const plan = [&] {
         try {
-          switch_groups(parts);
+          if (something_moves(parts)) {
+            for_each_check(parts, [](auto const& check) { check.keep(); });
+            moved = true;
+            move_elements(parts);
+          }
           return refine_marked(parts);
         } catch (...) {  // the mesh is the one of before
-          for_each_check(parts, [](auto const& check) { check.put_back(); });
-          regroup(parts);
+          if (moved) {
+            for_each_check(parts, [](auto const& check) { check.put_back(); });
+            regroup(parts);
+          }
           throw;
         }
       }();
@@ -148,8 +155,9 @@ class Adaptation {
   template <class Parts>
   LastLook& last_look(Parts& parts, std::int64_t first) const {
     auto& looks = parts.state.record.looks;
-    auto const found = std::ranges::find(looks, key_, &LastLook::adaptation);
-    return found != looks.end() ? *found : *looks.insert(found, {key_, first});
+    auto const key = detail::look_key(parts.lookers, rules_key_, identity_);
+    auto const found = std::ranges::find(looks, key, &LastLook::adaptation);
+    return found != looks.end() ? *found : *looks.insert(found, {key, first});
   }
   /// When the last call was at a step. A first one counts as made after a look.
   template <DeformableBody TheBody>
@@ -174,9 +182,8 @@ class Adaptation {
   }
   template <class Parts>
   void decide(Parts& parts) const {
-    parts.timers.criteria.start();
+    auto const measured = parts.timers.criteria.measure();
     for_each_check(parts, [](auto const& check) { check.decide(); });
-    parts.timers.criteria.stop();
   }
 
   template <class Parts, class Visit>
@@ -207,9 +214,10 @@ class Adaptation {
   template <class Parts>
   void move_elements(Parts& parts) const {
     book_switching(parts, [&] {
-      parts.timers.criteria.start();
-      for_each_check(parts, [](auto const& check) { check.act(); });
-      parts.timers.criteria.stop();
+      {
+        auto const measured = parts.timers.criteria.measure();
+        for_each_check(parts, [](auto const& check) { check.act(); });
+      }
       regroup(parts);
     });
   }
@@ -217,24 +225,23 @@ class Adaptation {
   template <class Parts>
   static void regroup(Parts& parts) {
     if constexpr (Parts::backend_type::orders_by_group) {
-      parts.timers.migration.start();
+      auto const measured = parts.timers.migration.measure();
       parts.for_each_type([&](auto& table, auto&) { table.elements.regroup(); });
-      parts.timers.migration.stop();
     }
     forget_forces(parts);
   }
   /// What it has done; listeners are still to be told.
   template <class Parts>
   auto refine_marked(Parts& parts) const {
-    parts.timers.criteria.start();
     int max_level = 0;
     std::vector<std::vector<Index>> marked;
-    for_each_check(parts, [&](auto const& check) { marked.push_back(check.marked(max_level)); });
-    parts.timers.criteria.stop();
-    parts.timers.migration.start();
+    {
+      auto const measured = parts.timers.criteria.measure();
+      for_each_check(parts, [&](auto const& check) { marked.push_back(check.marked(max_level)); });
+    }
+    auto const measured = parts.timers.migration.measure();
     auto plan = plan_refinement(parts, marked, max_level);
     if (plan) (void)commit(parts, *plan);
-    parts.timers.migration.stop();
     return plan;
   }
 
@@ -243,24 +250,7 @@ class Adaptation {
     interval_ = calls;
   }
 
-  /// Tells rules of other types or numbers apart.
-  static std::uint64_t key_of(Rules const&... rules) {
-    std::string text;
-    (name_rule(text, rules), ...);
-    return checksum(text);
-  }
-  template <class TheRule>
-  static void name_rule(std::string& text, TheRule const& rule) {
-    text += detail::plain_type_name<TheRule>();
-    double const numbers[] = {rule.marking.amount, rule.marking.floor,
-                              static_cast<double>(rule.marking.budget)};
-    for (double number : numbers) {
-      text += ' ';
-      detail::MessagePiece(number).add_to(text);
-    }
-  }
-
-  std::uint64_t key_;  // of the last look in a body's record
+  std::uint64_t rules_key_;
   std::shared_ptr<void const> identity_ = std::make_shared<char>();  // copies have the same rules
   std::tuple<Rules...> rules_;
   int interval_ = 8;

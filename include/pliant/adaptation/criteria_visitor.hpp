@@ -139,11 +139,11 @@ struct TableRules {
 };
 
 /// Evaluates the criteria of rules, each once for each element that it looks at, and hands them over:
-/// take(GroupNumber<G>{}, element, values).
+/// take(GroupNumber<G>{}, element, values, tally).
 template <class Table, class TheRules, class Around, class Take>
 struct CriteriaVisitor {
   using T = typename Table::scalar;
-  static constexpr int counters = 1;
+  static constexpr int counters = Take::counters;
   static constexpr int slots = TheRules::Places::count;
   static constexpr bool reads_elements = Table::Laws::reads_elements || slots > 0;
   typename Table::Laws groups;
@@ -163,8 +163,8 @@ struct CriteriaVisitor {
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G> group, Index e,
                                  Vector<T, TheRules::rows> const& values, Again const&,
-                                 Tally const&) const {
-    take(group, e, values);
+                                 Tally const& tally) const {
+    take(group, e, values, tally);
   }
 
  private:
@@ -206,8 +206,8 @@ auto surroundings(Parts const& parts, Table const& table,
 /// Evaluates the criteria of rules on the present state of a body.
 template <class Parts, class Table, class TheRules, class Take>
 void evaluate_criteria(Parts const& parts, Table const& table, TheRules const& rules,
-                       CriteriaWorkspace<typename Parts::backend_type>& workspace,
-                       Take const& take) {
+                       CriteriaWorkspace<typename Parts::backend_type>& workspace, Take const& take,
+                       typename Parts::template Array<double>& counters) {
   using T = typename Parts::T;
   find_values_from_means(parts, table, rules, workspace);
   auto const around = surroundings<T, TheRules>(parts, table, workspace);
@@ -215,7 +215,7 @@ void evaluate_criteria(Parts const& parts, Table const& table, TheRules const& r
       table.elements,
       CriteriaVisitor<Table, TheRules, std::remove_const_t<decltype(around)>, Take>{
           table.laws, rules, around, take},
-      parts.no_counters, parts.rest(), parts.u());
+      counters, parts.rest(), parts.u());
 }
 
 }  // namespace pliant::detail

@@ -17,6 +17,7 @@ struct Decision {
   T sign[count];    // −1: the rule looks for small values
   T beyond[count];  // what sign · value exceeds; of rules that rank: see `rankings`
   std::int64_t stay[count];
+  int max_level[count];
   bool ranks, stores;          // whether some rule ranks; whether values are kept
   Ranking<T> const* rankings;  // (rules)
   T* values;                   // (rows, elements)
@@ -25,23 +26,35 @@ struct Decision {
   Tag const* tags;
   std::int64_t const* since;
   std::int64_t const* step;  // (1): of this look
+  int const* levels;         // (elements): how often each was refined
   Tag* next;                 // (elements)
   std::uint32_t* refining;   // (elements): bit R: rule R refines it
-  double* moves;             // (1): set to 1 where some element goes to another group
+
+  /// Of the elements that go to another group.
+  static constexpr int counters = 1;
 
   /// Takes the values of an element; decides at once if no rule ranks.
-  template <int G, class V>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own) const {
+  template <int G, class V, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own,
+                                     Tally const& tally) const {
     if (stores)
       for (int k = 0; k < All::rows; ++k) value(e, k) = own[k];
     if constexpr ((SwitchingRule<Rules> || ...))
-      if (!ranks) go<G>(e, next_group<G, 0>(e, [&](int k) { return own[k]; }));
+      if (!ranks && goes<G>(e, [&](int k) { return own[k]; })) tally(0, 1.0);
   }
-  /// Decides from the values that are kept.
-  PLIANT_HOST_DEVICE void operator()(Index e) const {
+  /// Decides from the values that are kept; 1 where the element goes to another group.
+  PLIANT_HOST_DEVICE double operator()(Index e) const {
+    bool moves = false;
     dispatch<Table::groups>(tags[e], [&]<int G>(GroupNumber<G>) {
-      go<G>(e, next_group<G, 0>(e, [&](int k) { return value(e, k); }));
+      moves = goes<G>(e, [&](int k) { return value(e, k); });
     });
+    return moves ? 1 : 0;
+  }
+  /// What an element is to rule R, when the cuts of the rules before it are known.
+  template <int R>
+  PLIANT_HOST_DEVICE Candidate candidate(Index e) const {
+    if (tags[e] != static_cast<Tag>(All::template group<R>)) return Candidate::none;
+    return may_act<R>(e) && !is_taken<R, 0>(e) ? Candidate::may_act : Candidate::looked_at;
   }
   PLIANT_HOST_DEVICE void mark_refining(Index e) const {
     std::uint32_t mask = 0;
@@ -53,10 +66,40 @@ struct Decision {
   }
 
  private:
-  template <int G>
-  PLIANT_HOST_DEVICE void go(Index e, Tag group) const {
+  template <int R>
+  static constexpr bool switches = SwitchingRule<typename All::template rule<R>>;
+
+  /// Notes the group that an element is in next; whether that is another.
+  template <int G, class Own>
+  PLIANT_HOST_DEVICE bool goes(Index e, Own const& own) const {
+    Tag const group = next_group<G, 0>(e, own);
     next[e] = group;
-    if (group != G) *moves = 1;
+    return group != G;
+  }
+  /// Whether an element's stay or level lets it act by a rule.
+  template <int R>
+  PLIANT_HOST_DEVICE bool may_act(Index e) const {
+    if constexpr (switches<R>)
+      return *step - since[e] >= stay[R];
+    else if constexpr (RefiningRule<typename All::template rule<R>>)
+      return levels[e] < max_level[R];
+    else
+      return true;
+  }
+  /// Whether a rule before R that does the like acts on an element of its group.
+  template <int R, int K>
+  PLIANT_HOST_DEVICE bool is_taken(Index e) const {
+    if constexpr (K == R) {
+      return false;
+    } else {
+      if constexpr (All::template group<K> == All::template group<R> && switches<K> == switches<R>)
+        if (acts<K>(value(e, All::template row<K>), e)) return true;
+      return is_taken<R, K + 1>(e);
+    }
+  }
+  template <int R>
+  PLIANT_HOST_DEVICE bool acts(T value, Index e) const {
+    return holds<R>(value, e) && may_act<R>(e);
   }
   template <int R>
   PLIANT_HOST_DEVICE bool holds(T value, Index e) const {
@@ -69,8 +112,8 @@ struct Decision {
       return static_cast<Tag>(G);
     } else {
       using TheRule = typename All::template rule<R>;
-      if constexpr (All::template group<R> == G && SwitchingRule<TheRule>)
-        if (holds<R>(own(All::template row<R>), e) && *step - since[e] >= stay[R])
+      if constexpr (All::template group<R> == G && switches<R>)
+        if (acts<R>(own(All::template row<R>), e))
           return static_cast<Tag>(Table::template group_of<typename TheRule::to>);
       return next_group<G, R + 1>(e, own);
     }
@@ -79,9 +122,19 @@ struct Decision {
   PLIANT_HOST_DEVICE void add_refining(Index e, std::uint32_t& mask) const {
     if constexpr (R < count) {
       if constexpr (All::template group<R> == G && RefiningRule<typename All::template rule<R>>)
-        if (holds<R>(value(e, All::template row<R>), e)) mask |= std::uint32_t{1} << R;
+        if (acts<R>(value(e, All::template row<R>), e)) mask |= std::uint32_t{1} << R;
       add_refining<G, R + 1>(e, mask);
     }
+  }
+};
+
+/// Finds what elements are to rule R.
+template <int R, class D>
+struct FindCandidates {
+  D decision;
+  Candidate* candidates;  // (elements)
+  PLIANT_HOST_DEVICE void operator()(Index e) const {
+    candidates[e] = decision.template candidate<R>(e);
   }
 };
 

@@ -9,9 +9,10 @@ namespace detail {
 /// Keeps the first value of each element.
 template <class T>
 struct Store {
+  static constexpr int counters = 0;
   T* values;  // (elements)
-  template <int G, class V>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own) const {
+  template <int G, class V, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
     values[e] = own[0];
   }
 };
@@ -33,7 +34,8 @@ std::vector<double> evaluate(TheBody const& body, C const& criterion) {
   }(typename Table::formulations{});
   auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
   CriteriaWorkspace<typename TheBody::backend_type> workspace;
-  detail::evaluate_criteria(parts, table, rules, workspace, detail::Store<T>{values.data()});
+  detail::evaluate_criteria(parts, table, rules, workspace, detail::Store<T>{values.data()},
+                            parts.no_counters);
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)

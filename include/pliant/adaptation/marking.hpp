@@ -13,12 +13,13 @@ enum class MarkingKind {
   above,                ///< value > amount
   below,                ///< value < amount
   fraction_of_largest,  ///< value > amount · largest value; an infinite one counts as the largest number
-  top_share,            ///< the elements of largest value, `amount` of all that are looked at
+  top_share,            ///< the elements of largest value, `amount` of all that may act
   bulk  ///< the fewest elements whose values add up to `amount` of the total (Dörfler)
 };
 
 /// Which of the elements that a criterion looks at act. Those where it is NaN never act, and are not
-/// counted. Of equal values at the limit of a share or a budget, as many act as it allows, by
+/// counted, nor are those that may not act: whose stay or level forbids it, or that an earlier rule takes. (The
+/// largest value of `fraction_of_largest` may be theirs.) Of equal values at the limit of a share or a budget, as many act as it allows, by
 /// ascending element number; those at the limit of a bulk all act.
 struct Marking {
   MarkingKind kind = MarkingKind::above;

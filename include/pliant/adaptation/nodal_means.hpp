@@ -91,7 +91,7 @@ template <class Laws, class C, int Group, class T>
 struct TakeMeans {
   using F = typename Laws::template formulation<Group>;
   static constexpr bool reads_elements = Laws::reads_elements;
-  static constexpr int counters = 1;
+  static constexpr int counters = 0;
   Laws groups;
   C criterion;
   T* values;  // (elements)

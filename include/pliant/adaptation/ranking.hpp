@@ -8,19 +8,19 @@
 // elements' numbers. Each digit is one histogram and a kernel of one thread; nothing comes to the host.
 namespace pliant::detail {
 
-/// The values that one rule compares with each other: those of the elements of a group.
+/// The values that one rule compares with each other: those of the elements that it may mark.
 template <class T>
 struct RankedValues {
-  T const* values;      // (elements)
-  Tag const* tags;      // (elements)
-  Index const* number;  // (elements): in the order of which equal values act
+  T const* values;              // (elements)
+  Candidate const* candidates;  // (elements)
+  Index const* number;          // (elements): in the order of which equal values act
   Index elements;
-  Tag group;
   T sign;  // −1: the smallest act first
 };
 
 enum class Search {
-  largest,  ///< the largest value
+  highest,  ///< the largest value of all that are looked at
+  largest,  ///< the largest value of those that may act
   bulk,     ///< the largest values that add up to a share of the sum
   count,    ///< so many of the largest values
   tie       ///< among values equal to the last that `count` takes: so many by number
@@ -38,7 +38,9 @@ struct Digit {
   PLIANT_HOST_DEVICE Bin operator()(Index e) const {
     if ((!first || search == Search::tie) && ranking->state != Ranking<T>::searching)
       return {-1, 0};
-    if (ranked.tags[e] != ranked.group) return {-1, 0};
+    Candidate const own = ranked.candidates[e];
+    if (own == Candidate::none || (own == Candidate::looked_at && search != Search::highest))
+      return {-1, 0};
     T const value = ranked.sign * ranked.values[e];
     if (!(value == value)) return {-1, 0};
     if (search == Search::tie)
@@ -57,8 +59,9 @@ struct Digit {
     return candidate ? Bin{static_cast<int>(key >> shift & 255), weight} : Bin{-1, 0};
   }
   PLIANT_HOST_DEVICE std::int64_t weight(T value) const {
-    if (ranking->scale == T(0)) return value > std::numeric_limits<T>::max() ? 1 : 0;
-    return value > T(0) ? static_cast<std::int64_t>(value * ranking->scale) : 0;
+    if (ranking->scale == 0) return value > std::numeric_limits<T>::max() ? 1 : 0;
+    return value > T(0) ? static_cast<std::int64_t>(static_cast<double>(value) * ranking->scale)
+                        : 0;
   }
 };
 
@@ -107,25 +110,28 @@ struct NarrowRanking {
     r.remaining = 1;
     if (search == Search::count) {
       r.remaining = budget;
-      if (kind == MarkingKind::top_share)
-        r.remaining =
-            min(r.remaining, static_cast<std::int64_t>(amount * static_cast<double>(total)));
+      if (kind == MarkingKind::top_share) {
+        // The product may be rounded to below the number that is meant.
+        constexpr double slack = 1 + 4 * std::numeric_limits<double>::epsilon();
+        r.remaining = min(r.remaining,
+                          static_cast<std::int64_t>(amount * slack * static_cast<double>(total)));
+      }
     } else if (search == Search::bulk) {
       double const wanted = amount * static_cast<double>(total);
       auto const whole = static_cast<std::int64_t>(wanted);
       r.remaining = min(total, whole + (static_cast<double>(whole) < wanted ? 1 : 0));
     }
-    r.state = total == 0 || r.remaining <= 0                    ? Ranking<T>::nobody
-              : search == Search::count && r.remaining >= total ? Ranking<T>::everybody
+    r.state = total == 0 || r.remaining <= 0                    ? Ranking<T>::none
+              : search == Search::count && r.remaining >= total ? Ranking<T>::all
                                                                 : Ranking<T>::searching;
   }
 
   PLIANT_HOST_DEVICE void finish(Ranking<T>& r) const {
-    if (r.state == Ranking<T>::nobody) {
-      r.cut = Cut<T>::nobody();
-    } else if (search == Search::largest && kind == MarkingKind::bulk) {
-      r.scale = scale_for(static_cast<Key>(((r.prefix + 1) << shift) - 1));
+    if (r.state == Ranking<T>::none) {
+      r.cut = Cut<T>::none();
     } else if (search == Search::largest) {
+      r.scale = scale_for(static_cast<Key>(((r.prefix + 1) << shift) - 1));
+    } else if (search == Search::highest) {
       constexpr T most = std::numeric_limits<T>::max();  // what is infinite counts as this
       T const largest = max(-most, min(from_ordered_bits<T>(r.prefix), most));
       r.cut.tighten({ordered_bits(static_cast<T>(amount * static_cast<double>(largest))), -1});
@@ -139,17 +145,19 @@ struct NarrowRanking {
   }
 
   /// The power of two by which no sum of so many values up to the largest reaches 2⁶².
-  PLIANT_HOST_DEVICE T scale_for(Key largest) const {
+  PLIANT_HOST_DEVICE double scale_for(Key largest) const {
     constexpr int mantissa = std::numeric_limits<T>::digits - 1;
     constexpr int most = std::numeric_limits<T>::max_exponent - 1;  // the bias of exponents
     constexpr Key sign = Key{1} << (8 * sizeof(T) - 1);
-    if ((largest & sign) == 0) return T(1);  // nothing is positive, and weighs
+    if ((largest & sign) == 0) return 1;  // nothing is positive, and weighs
     int const exponent = static_cast<int>((largest ^ sign) >> mantissa) - most + 1;
-    if (exponent > most + 1) return T(0);
+    if (exponent > most + 1) return 0;
     int bits = 62;
     for (Index n = elements; n > 0; n /= 2) --bits;
-    int const power = min(bits - exponent, most);
-    return std::bit_cast<T>(static_cast<Key>(power + most) << mantissa);
+    // Of double, whatever T is: small values of float need a scale beyond its range.
+    constexpr int bias = std::numeric_limits<double>::max_exponent - 1;
+    int const power = min(bits - exponent, bias);
+    return std::bit_cast<double>(static_cast<std::uint64_t>(power + bias) << 52);
   }
 };
 
@@ -177,7 +185,7 @@ void find_cut(B const& backend, Marking const& m, RankedValues<T> const& ranked,
     }
   };
   constexpr int top = 8 * int{sizeof(T)} - 8;
-  if (m.kind == MarkingKind::fraction_of_largest) find(Search::largest, top, 0);
+  if (m.kind == MarkingKind::fraction_of_largest) find(Search::highest, top, 0);
   if (m.kind == MarkingKind::bulk) {
     find(Search::largest, top, top - 8);  // sign and exponent
     find(Search::bulk, top, 0);

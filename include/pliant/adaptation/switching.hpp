@@ -88,11 +88,13 @@ struct ActVisitor {
       for (int k = 0; k < All::rows; ++k)
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];
     }
-    tally(Counters::kinetic(From, To),
-          static_cast<double>(target.pending_half_kick * dot(difference, v)));
+    double const strain = static_cast<double>(after - before);
+    double const kinetic = static_cast<double>(target.pending_half_kick * dot(difference, v));
+    bool const booked = is_finite(strain) && is_finite(kinetic);
     tally(Counters::steps_of(From), static_cast<double>(*target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);
-    tally(Counters::energy(From, To), static_cast<double>(after - before));
+    tally(booked ? Counters::energy(From, To) : Counters::unbooked, booked ? strain : 1.0);
+    if (booked) tally(Counters::kinetic(From, To), kinetic);
     target.tags[e] = static_cast<Tag>(To);
     target.since[e] = *target.step;
     target.switches[e] = one_more(target.switches[e]);

@@ -59,12 +59,12 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   void decide() const {
     if constexpr (count > 0) {
       auto const decision = this->decision();
-      evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, workspace(),
-                        decision);
+      evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, workspace(), decision,
+                        parts_.moves);
       if constexpr (switches)
         if (decision.ranks) {
-          find_cuts([]<class R>(R const&) { return SwitchingRule<R>; });
-          backend().for_each(table_.count(), decision);
+          find_cuts(decision, []<class R>(R const&) { return SwitchingRule<R>; });
+          backend().add_sum(table_.count(), decision, parts_.moves.data());
         }
     }
   }
@@ -85,20 +85,12 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
     std::vector<Index> marked;
     if constexpr (refines) {
       auto const decision = this->decision();
-      if (decision.ranks) find_cuts([]<class R>(R const&) { return RefiningRule<R>; });
+      if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return RefiningRule<R>; });
       backend().for_each(table_.count(), MarkRefining<Decision<Table, Rules...>>{decision});
       auto const masks = download<std::uint32_t>(workspace().refining);
-      auto const levels = levels_of<typename Table::element>(parts_);
-      auto const level_of_rule = max_levels();
-      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e) {
-        Index const element = table_.user_element[e];
-        bool wanted = false;
-        for (std::size_t r = 0; r < level_of_rule.size(); ++r)
-          wanted = wanted || ((masks[e] >> r & 1) != 0 &&
-                              levels[static_cast<std::size_t>(element)] < level_of_rule[r]);
-        if (wanted) marked.push_back(element);
-      }
-      for (int level : level_of_rule) max_level = std::max(max_level, level);
+      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
+        if (masks[e] != 0) marked.push_back(table_.user_element[e]);
+      for (int level : decision.max_level) max_level = std::max(max_level, level);
     }
     return marked;
   }
@@ -148,13 +140,20 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
         made = true;
       }
     }
-    if constexpr (refines) hold(w.refining, n);
+    if constexpr (refines) {
+      hold(w.refining, n);
+      if (w.levels.size() < n) {
+        w.levels = upload(backend(), internal_levels());
+        made = true;
+      }
+    }
     if (refines || ranks()) hold(w.values, static_cast<std::size_t>(All::rows) * n);
     if (ranks()) {
       if (w.number.size() < n) {
         w.number = upload(backend(), table_.user_element);
         made = true;
       }
+      hold(w.candidates, n);
       hold(w.rankings, std::size_t{count});
       hold(w.histogram, std::size_t{histogram_bins});
     }
@@ -178,6 +177,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
     Decision<Table, Rules...> d{{},
                                 {},
                                 {},
+                                {},
                                 ranks(),
                                 refines || ranks(),
                                 w.rankings.data(),
@@ -187,47 +187,47 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
                                 own.tags,
                                 own.since,
                                 own.step,
+                                w.levels.data(),
                                 w.next.data(),
-                                w.refining.data(),
-                                parts_.moves.data()};
+                                w.refining.data()};
     int r = 0;
-    auto const add = [&](auto const& rule) {
+    auto const add = [&]<class R>(R const& rule) {
       d.sign[r] = rule.marking.below() ? T(-1) : T(1);
       d.beyond[r] = rule.marking.template beyond<T>();
-      if constexpr (SwitchingRule<std::remove_cvref_t<decltype(rule)>>) d.stay[r] = rule.stay;
+      if constexpr (SwitchingRule<R>) d.stay[r] = rule.stay;
+      if constexpr (RefiningRule<R>) d.max_level[r] = rule.options.max_level;
       ++r;
     };
     std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
     return d;
   }
-  template <class Chosen>
-  void find_cuts(Chosen const& chosen) const {
+  /// In the order of the rules: what an earlier one takes is no candidate of a later one.
+  template <class TheDecision, class Chosen>
+  void find_cuts(TheDecision const& decision, Chosen const& chosen) const {
     [&]<int... R>(std::integer_sequence<int, R...>) {
-      (find_cut_of<R>(chosen(std::get<R>(rules_.rules))), ...);
+      (find_cut_of<R>(decision, chosen(std::get<R>(rules_.rules))), ...);
     }(std::make_integer_sequence<int, count>());
   }
-  template <int R>
-  void find_cut_of(bool chosen) const {
+  template <int R, class TheDecision>
+  void find_cut_of(TheDecision const& decision, bool chosen) const {
     if (!chosen) return;
     auto& w = workspace();
     auto const& marking = std::get<R>(rules_.rules).marking;
+    if (marking.ranks())
+      backend().for_each(table_.count(),
+                         FindCandidates<R, TheDecision>{decision, w.candidates.data()});
     auto const offset = static_cast<std::ptrdiff_t>(table_.count()) * All::template row<R>;
     find_cut(backend(), marking,
-             RankedValues<T>{w.values.data() + offset, elements_.tags.data(), w.number.data(),
-                             table_.count(), static_cast<Tag>(All::template group<R>),
-                             marking.below() ? T(-1) : T(1)},
+             RankedValues<T>{w.values.data() + offset, w.candidates.data(), w.number.data(),
+                             table_.count(), marking.below() ? T(-1) : T(1)},
              w.histogram.data(), w.rankings.data() + R);
   }
-  auto max_levels() const {
-    std::array<int, count> levels{};
-    int r = 0;
-    auto const add = [&](auto const& rule) {
-      if constexpr (RefiningRule<std::remove_cvref_t<decltype(rule)>>)
-        levels[static_cast<std::size_t>(r)] = rule.options.max_level;
-      ++r;
-    };
-    std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
-    return levels;
+  std::vector<int> internal_levels() const {
+    auto const levels = levels_of<typename Table::element>(parts_);
+    std::vector<int> internal;
+    for (Index element : table_.user_element)
+      internal.push_back(levels[static_cast<std::size_t>(element)]);
+    return internal;
   }
 
   Parts& parts_;

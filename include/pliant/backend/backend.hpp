@@ -33,7 +33,7 @@
 //                              (a GPU records them once as a graph).
 //   synchronize()              waits until all that was asked for is done
 //   timer()                a Timer; start() and stop() do not wait, seconds() does: the time
-//                              that the work between them took, summed
+//                              that the work between them took, summed. A start() without stop() counts nothing
 //
 // Element loops run over Elements<Nodes>, which holds connectivity and a tag per element: the number
 // of the element's group. Each kernel is called with the group as a compile-time constant,
@@ -43,6 +43,7 @@
 // visitor with `reads_elements = true` gets one more argument before v...: own(field) gives it the
 // values of an ElementField at its element, Vector<S, Components>.
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
+//                              throws Error where an element has a node outside [0, nodes)
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <new>
 #include <span>
 #include <utility>
 
+#include <pliant/backend/array_bytes.hpp>
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
 
@@ -18,7 +18,7 @@ template <class U>
 class HostArray {
  public:
   HostArray() = default;
-  /// Zeroed.
+  /// Zeroed. Throws Error when memory runs out.
   explicit HostArray(std::size_t count) : data_(allocate(count)), size_(count) {
     std::fill_n(data_, count, U(0));
   }
@@ -49,10 +49,12 @@ class HostArray {
   static constexpr std::align_val_t line{64};
 
   static U* allocate(std::size_t count) {
-    if (count > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(U))
-      throw Error("HostArray: an array of ", count,
-                  " values is larger than memory; make a smaller mesh");
-    return static_cast<U*>(::operator new(count * sizeof(U), line));
+    std::size_t const bytes = detail::array_bytes<U>(count);
+    void* const data = ::operator new(bytes, line, std::nothrow);
+    if (data == nullptr)
+      throw Error("out of memory: an array of ", bytes,
+                  " bytes was asked for; use a coarser mesh or single precision");
+    return static_cast<U*>(data);
   }
   void check(std::size_t count) const {
     if (count > size())

@@ -17,13 +17,14 @@ struct ActiveElements {
   Index most;         // how many patches at most
 
   /// Of lists in the host's memory.
-  Index patch_count() const { return list == nullptr ? most : list[0]; }
+  Index patch_count() const { return list == nullptr ? most : std::clamp(list[0], Index{0}, most); }
   Index patch(Index k) const { return list == nullptr ? k : list[k + 1]; }
 };
 
 /// The elements of the patches of a list, for verbs over elements: accumulate(over(elements, list), ...).
 /// The list is an Array<Index> of the backend: how many patches, then their numbers, each at most
-/// once; what is behind them is not read. It is read when the verb runs, so that a kernel can write
+/// once; what is behind them is not read. A count beyond the list's room or the table's patches stands
+/// for these. It is read when the verb runs, so that a kernel can write
 /// it and a recording replays with what the list then holds. Throws Error when it has no room for
 /// the first number.
 template <class Elements, class A>

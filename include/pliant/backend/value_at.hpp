@@ -6,10 +6,13 @@
 
 namespace pliant::detail {
 
+PLIANT_HOST_DEVICE bool is_finite(double x) { return abs(x) <= std::numeric_limits<double>::max(); }
 /// NaN must propagate through a maximum: what is not finite counts as infinite.
 PLIANT_HOST_DEVICE double infinite_if_not_finite(double x) {
-  return x <= std::numeric_limits<double>::max() ? x : std::numeric_limits<double>::infinity();
+  return is_finite(x) ? x : std::numeric_limits<double>::infinity();
 }
+/// Work that is not finite is not booked.
+PLIANT_HOST_DEVICE double zero_if_not_finite(double x) { return is_finite(x) ? x : 0.0; }
 
 /// The values of an array, for maximum and sum.
 template <class T>

@@ -42,19 +42,26 @@ struct Cut {
   PLIANT_HOST_DEVICE void tighten(Cut const& other) {
     if (other.key > key || (other.key == key && other.last < last)) *this = other;
   }
-  PLIANT_HOST_DEVICE static Cut nobody() { return {static_cast<Key>(~Key{0}), -1}; }
+  PLIANT_HOST_DEVICE static Cut none() { return {static_cast<Key>(~Key{0}), -1}; }
+};
+
+/// What an element is to a rule that ranks.
+enum class Candidate : std::uint8_t {
+  none,
+  looked_at,  ///< of the rule's group, but it may not act: it takes nothing of a share, bulk or budget
+  may_act
 };
 
 /// The state of a search for a cut, in the backend's memory.
 template <class T>
 struct Ranking {
-  enum State : std::int32_t { searching, everybody, nobody };
+  enum State : std::int32_t { searching, all, none };
 
   Cut<T> cut;
   OrderedBits<T> prefix;   // leading digits found so far
   OrderedBits<T> key;      // of the value at the limit of a count
   std::int64_t remaining;  // weight that is still to be found among values that begin with `prefix`
-  T scale;                 // from a value to its weight in fixed point; 0: the largest is infinite
+  double scale;            // from a value to its weight in fixed point; 0: the largest is infinite
   State state;
 
   Ranking() = default;
@@ -75,6 +82,8 @@ struct CriteriaWorkspace {
   Array<Tag> next;  // (elements): the group after the check
   Array<std::uint32_t> refining;  // (elements): bit r: rule r wants it refined
   Array<Index> number;            // (elements): the user's
+  Array<Candidate> candidates;    // (elements): of the rule whose cut is searched
+  Array<int> levels;              // (elements): how often each was refined
   Array<std::int64_t> histogram;  // (histogram_bins), zero between searches
   Array<Ranking<T>> rankings;     // (rules)
   /// Copies of what a check changes, to be put back when refinement throws.

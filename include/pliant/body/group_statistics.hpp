@@ -19,7 +19,9 @@ struct CounterLayout {
   static constexpr int kinetic(int from, int to) {
     return Groups + 2 * Groups * Groups + from * Groups + to;
   }
-  static constexpr int count = Groups + 3 * Groups * Groups;
+  /// Moves whose change of energy is not finite, and so is in no sum.
+  static constexpr int unbooked = Groups + 3 * Groups * Groups;
+  static constexpr int count = unbooked + 1;
 };
 
 /// Counts up to the largest number and stays there.

@@ -20,7 +20,8 @@ struct IntegratorState {
   /// Less what was booked, J: what leapfrog keeps, at the start; the total, at the last check.
   double first_energy = std::numeric_limits<double>::quiet_NaN();
   double last_energy = std::numeric_limits<double>::quiet_NaN();
-  double scale = 0;  // the largest of strain and kinetic energy so far, J
+  double scale = 0;     // the largest of strain and kinetic energy so far, J
+  double unbooked = 0;  // changes that were not booked up to the last check
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -36,6 +37,7 @@ struct IntegratorState {
     visit("first energy", r.first_energy...);
     visit("last energy", r.last_energy...);
     visit("scale", r.scale...);
+    visit("unbooked changes", r.unbooked...);
   }
 };
 

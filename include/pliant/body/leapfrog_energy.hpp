@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <pliant/body/velocities.hpp>
 
 namespace pliant {
@@ -73,10 +75,14 @@ void book_switching(Parts& parts, Move const& move) {
   double const step = parts.state.pending_half_kick != 0 ? 0 : parts.state.integrator.step;
   double const before = step > 0 ? acceleration_term(parts) : 0;
   move();
-  if (step > 0)
-    parts.backend.for_each(
-        1, detail::AddValue{parts.state.work.data() + static_cast<int>(Work::switching),
-                            -step * step * (acceleration_term(parts) - before)});
+  if (step == 0) return;
+  double const added = -step * step * (acceleration_term(parts) - before);
+  // What is not finite is not booked; see unbooked_changes.
+  bool const booked = std::isfinite(added);
+  parts.backend.for_each(
+      1, detail::AddValue{
+             parts.state.work.data() + static_cast<int>(booked ? Work::switching : Work::unbooked),
+             booked ? added : 1.0});
 }
 
 }  // namespace pliant

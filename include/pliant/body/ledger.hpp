@@ -102,7 +102,21 @@ double adaptation_energy_of(Parts const& parts) {
         using Table = std::remove_cvref_t<decltype(table)>;
         using Counters = CounterLayout<Table::groups>;
         auto const sums = detail::counters<Table>(parts, elements, which);
-        for (std::size_t k = Counters::energy(0, 0); k < sums.size(); ++k) sum += sums[k];
+        for (std::size_t k = Counters::energy(0, 0); k < std::size_t{Counters::unbooked}; ++k)
+          sum += sums[k];
+      });
+  return sum;
+}
+/// How many changes of the energy are not booked because they are not finite. An integrator that finds more
+/// of them than before has nothing to compare energies with.
+template <class Parts>
+double unbooked_changes(Parts const& parts) {
+  double sum = download<double>(parts.state.work)[static_cast<std::size_t>(Work::unbooked)];
+  detail::for_each_numbered_type(
+      parts, [&](auto const& table, auto const& elements, std::size_t which) {
+        using Table = std::remove_cvref_t<decltype(table)>;
+        sum += detail::counters<Table>(parts, elements,
+                                       which)[std::size_t{CounterLayout<Table::groups>::unbooked}];
       });
   return sum;
 }

@@ -19,7 +19,7 @@ struct SetLoad {
   double step;                      // s; 0: no integrator watches
   Index node;
   Vector<T, Dim> force;
-  double* work;
+  double* work;  // (Work::count)
 
   PLIANT_HOST_DEVICE void operator()(Index) const {
     double added = 0;
@@ -33,7 +33,8 @@ struct SetLoad {
       added -= step * step * change * (2 * static_cast<double>(pull) + change) / (8 * m);
     }
     load.set(node, force);
-    *work += added;
+    bool const booked = is_finite(added);
+    work[static_cast<int>(booked ? Work::changed_loads : Work::unbooked)] += booked ? added : 1.0;
   }
 };
 }  // namespace detail

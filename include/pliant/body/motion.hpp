@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <pliant/backend/field.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/constraint/condition.hpp>
 
 // The node loops of a moving body.
@@ -109,7 +110,7 @@ struct DampingWork {
       work += static_cast<double>(m) * ((to * to - from * from) / 2 - time * pull * half +
                                         sign * time * time * pull * pull / 2);
     }
-    return work;
+    return detail::zero_if_not_finite(work);
   }
 };
 
@@ -119,7 +120,7 @@ struct WorkRate {
   NodeField<T const, Dim> f, v;
   double time;  // s
   PLIANT_HOST_DEVICE double operator()(Index i) const {
-    return time * static_cast<double>(dot(f.at(i), v.at(i)));
+    return detail::zero_if_not_finite(time * static_cast<double>(dot(f.at(i), v.at(i))));
   }
 };
 

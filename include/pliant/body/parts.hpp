@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <pliant/body/layout.hpp>
+#include <pliant/body/looker.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/body/timers.hpp>
 #include <pliant/constraint/driven_nodes.hpp>
@@ -71,6 +72,7 @@ struct Parts {
   /// Of the integrator that stepped last; null: any. It lives on here: another integrator where
   /// that one was in memory is not taken for it.
   std::shared_ptr<void const> integrator{};
+  std::vector<Looker> lookers{};  // see detail::look_key
   struct Recorded {
     typename B::Recording recording;
     double dt;
@@ -86,10 +88,10 @@ struct Parts {
   };
   std::optional<Scratch> scratch{};
   Array<T> without_energy{};    // (nodes, 4) and scratch rows, N: of terms that have no energy
-  Array<double> moves{};        // (1): whether a look moves elements between groups
+  Array<double> moves{};        // (1): how many elements a look moves between groups
   Array<std::int64_t> clock{};  // (1): the number of steps at that look
   Array<T> row_sums{};          // (nodes, 4) and scratch rows, of the stable step
-  mutable Array<double> no_counters{};
+  mutable Array<double> no_counters{};  // empty: of visitors that tally nothing
   AdaptationTimers<B> timers{};
 
   Field u() { return node_field<dim>(state.u); }

@@ -21,7 +21,7 @@ PLIANT_HOST_DEVICE void for_each_point(Nodal<typename F::element, S> const& rest
 template <class T, class Laws>
 struct CommitVisitor {
   static constexpr bool reads_elements = true;
-  static constexpr int counters = 1, count = Laws::internal_variable_count;
+  static constexpr int counters = 0, count = Laws::internal_variable_count;
   Laws groups;
 
   template <int G, class Own, class V>
@@ -88,7 +88,7 @@ PLIANT_HOST_DEVICE void carry_internal_variables(Laws const& groups, Index e, V 
 /// Carries the internal variables of elements that were put into other groups by hand.
 template <class T, class Laws>
 struct CarryInternalVariables {
-  static constexpr int counters = 1;
+  static constexpr int counters = 0;
   Laws groups;
   Tag const* before;  // (elements): their groups; null: none, and all points are at rest
 

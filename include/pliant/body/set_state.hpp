@@ -15,7 +15,6 @@ void make_arrays(Parts& parts) {
   state.v = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
   if (state.work.size() == 0)  // else it is kept: work does not belong to a topology
     state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
-  parts.no_counters = zeros<double>(parts.backend, 1);
   parts.for_each_type([&](auto& table, auto& elements) {
     using Table = std::remove_reference_t<decltype(table)>;
     elements.tags = table.elements.take_tags();
@@ -91,17 +90,16 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
   double const step = parts.watched_energy ? parts.state.integrator.step : 0;
   if (step > 0) evaluate_forces(parts);
   auto const external = external_forces(parts);
-  parts.backend.for_each(1, detail::SetLoad<T, Parts::dim>{
-                                {parts.state.load.data()},
-                                std::as_const(parts).u(),
-                                {parts.layout.f.data()},
-                                parts.layout.mass.data(),
-                                parts.layout.held.data(),
-                                external,
-                                step,
-                                parts.layout.internal_of(node),
-                                detail::vector_of<T>(force),
-                                parts.state.work.data() + static_cast<int>(Work::changed_loads)});
+  parts.backend.for_each(1, detail::SetLoad<T, Parts::dim>{{parts.state.load.data()},
+                                                           std::as_const(parts).u(),
+                                                           {parts.layout.f.data()},
+                                                           parts.layout.mass.data(),
+                                                           parts.layout.held.data(),
+                                                           external,
+                                                           step,
+                                                           parts.layout.internal_of(node),
+                                                           detail::vector_of<T>(force),
+                                                           parts.state.work.data()});
   parts.loads_current = false;
 }
 

@@ -15,8 +15,9 @@
 namespace pliant {
 
 /// Work that is summed where loops run, J: of changes of loads, of mass damping, of driven nodes, of
-/// pressures; and of changes of group, what no element knows alone (see book_switching).
-enum class Work : int { changed_loads, damping, motions, pressures, switching, count };
+/// pressures; and of changes of group, what no element knows alone (see book_switching). `unbooked` counts the
+/// changes of loads whose work is not finite, and so is in no sum.
+enum class Work : int { changed_loads, damping, motions, pressures, switching, unbooked, count };
 
 /// What a run changes of the elements of one type, in internal order.
 template <Backend B, int Groups>

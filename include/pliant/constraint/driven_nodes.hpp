@@ -58,7 +58,7 @@ struct MotionWork {
       work -= static_cast<double>(force) * (lag * before + (drifts ? kick * after : 0.0));
       if (drifts) work += static_cast<double>(mass[i]) * (after * after - before * before) / 2;
     }
-    return work;
+    return zero_if_not_finite(work);
   }
 };
 

@@ -65,6 +65,15 @@ template <class T>
 PLIANT_HOST_DEVICE T min(T const& a, T const& b) {
   return select(b < a, b, a);
 }
+/// The larger and the smaller of two numbers; NaN where either is, as max and min are not.
+template <class T>
+PLIANT_HOST_DEVICE T maximum(T const& a, T const& b) {
+  return select(b == b, max(a, b), b);
+}
+template <class T>
+PLIANT_HOST_DEVICE T minimum(T const& a, T const& b) {
+  return select(b == b, min(a, b), b);
+}
 /// 1 / x. Single precision on a GPU: to the last bit or its neighbour, without the branch that an
 /// exact division takes for the sake of numbers below 1e-38.
 template <class T>

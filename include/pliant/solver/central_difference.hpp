@@ -164,9 +164,18 @@ class CentralDifference {
     if (step == own.step) return;
     // The energy that leapfrog keeps depends on the step.
     double const change = (own.step * own.step - step * step) * acceleration_term(parts);
-    parts.state.energy_of_steps += change;
-    own.last_energy -= change;
+    if (std::isfinite(change)) {
+      parts.state.energy_of_steps += change;
+      own.last_energy -= change;
+    } else {
+      forget_energies(own);
+    }
     own.step = step;
+  }
+
+  /// The next check has nothing to compare with.
+  static void forget_energies(IntegratorState& own) {
+    own.first_energy = own.last_energy = std::numeric_limits<double>::quiet_NaN();
   }
 
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
@@ -179,6 +188,8 @@ class CentralDifference {
     auto const energies = leapfrog_energy(parts);
     double const booked = booked_energy(parts);
     double const total = energies.total - booked, kept = energies.kept() - booked;
+    double const unbooked = unbooked_changes(parts);
+    if (unbooked != own.unbooked) forget_energies(own);
     bool const watched =
         !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
     // An unstable step lets the total grow while what leapfrog keeps stays; a state that stiffens faster than
@@ -191,6 +202,7 @@ class CentralDifference {
     if (std::isfinite(total) && !grew) {
       own.scale = std::max(own.scale, present);
       own.last_energy = total;
+      own.unbooked = unbooked;
       if (!std::isfinite(own.first_energy)) own.first_energy = kept;
       own.next_check = state.steps + options_.check_interval;
       keep_checkpoint(parts);

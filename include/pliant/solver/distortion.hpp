@@ -12,7 +12,7 @@ namespace detail {
 /// stretched or flattened.
 template <class T, class Laws>
 struct DistortionVisitor {
-  static constexpr int counters = 1;
+  static constexpr int counters = 0;
   T* values;  // (elements)
 
   template <int G, class V>

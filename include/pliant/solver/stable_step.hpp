@@ -40,7 +40,7 @@ PLIANT_HOST_DEVICE S spectral_bound(Tensor<S, N> a) {
 /// Writes a bound of the largest eigenvalue of M_e⁻¹ K_e, 1/s², for each element.
 template <class T, class Laws>
 struct ElementSpectra {
-  static constexpr int counters = 1;
+  static constexpr int counters = 0;
   static constexpr bool reads_elements = Laws::reads_elements;
   Laws groups;
   T density;

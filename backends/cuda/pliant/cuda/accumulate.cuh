@@ -3,30 +3,10 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
-#include <pliant/cuda/node_rows.cuh>
 #include <pliant/cuda/patch_loop.cuh>
+#include <pliant/cuda/patch_memory.cuh>
 
 namespace pliant::detail {
-
-/// What a block of accumulation keeps in shared memory, in this order.
-template <class T, int Nodes, int C, int M>
-struct PatchMemory {
-  static constexpr int diagonal_bytes(int capacity) { return (capacity * 2 + 15) / 16 * 16; }
-  static int bytes(PatchView<Nodes> const& patches) {
-    return diagonal_bytes(patches.diagonal_capacity) +
-           NodeRows<T, M>::bytes(patches.node_capacity) +
-           patches.patch_size * Nodes * C * int{sizeof(T)};
-  }
-  __device__ explicit PatchMemory(PatchView<Nodes> const& patches, char* memory)
-      : diagonals(reinterpret_cast<std::uint16_t*>(memory)),
-        rows{reinterpret_cast<T*>(memory + diagonal_bytes(patches.diagonal_capacity)),
-             patches.node_capacity},
-        staging(rows.data + NodeRows<T, M>::width * patches.node_capacity) {}
-
-  std::uint16_t* diagonals;
-  NodeRows<T, M> rows;
-  T* staging;  // (slots, C)
-};
 
 /// Some columns of the node rows of an element.
 template <int Offset, int C, class T, int Nodes, int M>
@@ -64,7 +44,8 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   constexpr auto tuning = patch_tuning<T, Nodes>();
   constexpr int M = (Fields::components + ... + 0);
   extern __shared__ __align__(16) char shared_memory[];
-  PatchMemory<T, Nodes, C, M> const memory(patches, shared_memory);
+  PatchMemory<T, Nodes, C, M> const memory(patches.diagonal_capacity, patches.node_capacity,
+                                           shared_memory);
   // Another kernel may have written the list.
   if (patches.active.list != nullptr) begin_after_previous_kernel();
   Index const patch = patches.active.patch(static_cast<Index>(blockIdx.x));

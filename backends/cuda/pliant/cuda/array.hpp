@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include <pliant/backend/array_bytes.hpp>
 #include <pliant/cuda/stream.hpp>
 
 namespace pliant {
@@ -58,13 +59,14 @@ class DeviceArray {
 
  private:
   void allocate() {
-    cudaError_t const status = cudaMalloc(&data_, size_ * sizeof(U));
+    std::size_t const bytes = detail::array_bytes<U>(size_);
+    cudaError_t const status = cudaMalloc(&data_, bytes);
     if (status != cudaErrorMemoryAllocation) return detail::check(status, "cudaMalloc");
     cudaGetLastError();
     std::size_t free = 0, total = 0;
     cudaMemGetInfo(&free, &total);
-    throw Error("CUDA: out of memory: an array of ", size_ * sizeof(U),
-                " bytes was asked for, and ", free, " of ", total,
+    throw Error("CUDA: out of memory: an array of ", bytes, " bytes was asked for, and ", free,
+                " of ", total,
                 " bytes are free; use a coarser mesh, single precision, or a larger GPU");
   }
   void copy(void* to, void const* from, std::size_t count, cudaMemcpyKind kind) const {

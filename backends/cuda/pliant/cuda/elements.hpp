@@ -4,7 +4,10 @@
 #include <concepts>
 #include <vector>
 
+#include <pliant/backend/check_nodes.hpp>
 #include <pliant/cuda/array.hpp>
+#include <pliant/cuda/launch.hpp>
+#include <pliant/cuda/patch_memory.cuh>
 #include <pliant/cuda/patch_plan.hpp>
 #include <pliant/cuda/tuning.hpp>
 
@@ -71,8 +74,8 @@ class CudaElements {
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                int /* groups */, std::vector<Tag> const& tags, Index nodes)
       : CudaElements(backend, connectivity, tags, nodes, tuned(connectivity.size())) {}
-  /// With patches of a given size and threads per block, for tuning. Throws Error when the size is no
-  /// multiple of the threads.
+  /// With patches of a given size and threads per block, for tuning; small ones where the GPU has no room in
+  /// shared memory for those. Throws Error when the size is no multiple of the threads.
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads)
       : count_(static_cast<Index>(connectivity.size())),
@@ -81,7 +84,7 @@ class CudaElements {
     if (threads_ < 1 || patch_size_ < threads_ || patch_size_ % threads_ != 0)
       throw Error("patches of ", patch_size_, " elements for ", threads_,
                   " threads; give a multiple of the threads");
-    detail::check_nodes<Nodes>(connectivity, nodes);
+    detail::check_nodes(connectivity, nodes);
     tags_ = uploaded(backend, tags);
     tag_data_ = tags_.data();
     connectivity_ = padded(backend, connectivity);
@@ -110,12 +113,22 @@ class CudaElements {
  private:
   void plan(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
             Index nodes) {
-    auto const plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size_).plan();
+    auto plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size_).plan();
+    constexpr int small = detail::patch_tuning<T, Nodes>().small_size;
+    if (patch_size_ > small && shared_bytes(plan) > detail::most_shared_bytes(backend.device())) {
+      patch_size_ = threads_ = small;
+      plan = detail::PatchPlanner<Nodes>(connectivity, nodes, small).plan();
+    }
     node_capacity_ = plan.node_capacity;
     diagonal_capacity_ = plan.diagonal_capacity;
     rows_ = uploaded(backend, plan.rows);
     nodes_ = uploaded(backend, plan.nodes);
     diagonals_ = uploaded(backend, plan.diagonals);
+  }
+  /// What accumulation takes of a block's shared memory with three fields of three components.
+  static int shared_bytes(detail::PatchPlan<Nodes> const& plan) {
+    using Memory = detail::PatchMemory<T, Nodes, 3, 9>;
+    return Memory::bytes(plan.diagonal_capacity, plan.node_capacity, plan.patch_size);
   }
   static std::array<int, 2> tuned(std::size_t count) {
     constexpr auto t = detail::patch_tuning<T, Nodes>();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mutex>
+
 #include <pliant/config.hpp>
 #include <pliant/cuda/check.hpp>
 
@@ -23,15 +25,39 @@ __device__ __forceinline__ void begin_after_previous_kernel() {
 #endif
 }
 
+/// The dynamic shared memory, in bytes, that a block may ask for on a device.
+inline int most_shared_bytes(int device) {
+  int most = 0;
+  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device),
+        "cudaDeviceGetAttribute");
+  return most;
+}
+
+/// Lets a kernel ask for so much dynamic shared memory. What it may ask for is never lowered: recordings hold
+/// launches of the same kernel with more.
+inline void allow_shared_bytes(void const* kernel, int bytes, char const* verb) {
+  static std::mutex mutex;  // between the question and the answer
+  std::lock_guard const lock(mutex);
+  cudaFuncAttributes attributes{};
+  check(cudaFuncGetAttributes(&attributes, kernel), verb);
+  if (attributes.maxDynamicSharedSizeBytes >= bytes) return;
+  int device = 0;
+  check(cudaGetDevice(&device), verb);
+  int const most = most_shared_bytes(device) - static_cast<int>(attributes.sharedSizeBytes);
+  if (bytes > most)
+    throw Error("CUDA: ", verb, " needs ", bytes,
+                " bytes of shared memory per block, and this GPU has ", most,
+                "; number elements so that neighbours share nodes, or make patches smaller");
+  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), verb);
+}
+
 /// Launches a kernel; `verb` names it in the Error when that fails.
 template <class... Parameters, class... Arguments>
 void launch(Start start, char const* verb, LaunchShape const& shape, cudaStream_t stream,
             void (*kernel)(Parameters...), Arguments const&... arguments) {
   constexpr int without_asking = 48 << 10;
   if (shape.shared_bytes > without_asking)
-    check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel),
-                               cudaFuncAttributeMaxDynamicSharedMemorySize, shape.shared_bytes),
-          verb);
+    allow_shared_bytes(reinterpret_cast<void const*>(kernel), shape.shared_bytes, verb);
   cudaLaunchConfig_t config{};
   config.gridDim = dim3(static_cast<unsigned>(shape.blocks));
   config.blockDim = dim3(static_cast<unsigned>(shape.threads));

@@ -42,17 +42,7 @@ struct PatchPlan {
   std::vector<std::uint16_t> diagonals;  // (patches, diagonal_capacity)
 };
 
-/// Throws Error when an element has a node that does not exist.
-template <int Nodes>
-void check_nodes(std::vector<std::array<Index, Nodes>> const& connectivity, Index nodes) {
-  for (std::size_t e = 0; e < connectivity.size(); ++e)
-    for (Index node : connectivity[e])
-      if (node < 0 || node >= nodes)
-        throw Error("element ", e, " has node ", node, ", but nodes are numbered from 0 to ",
-                    nodes - 1, "; mend the mesh");
-}
-
-/// Plans patches, one after the other.
+/// Plans patches, one after the other. Nodes were checked before.
 template <int Nodes>
 class PatchPlanner {
  public:
@@ -65,7 +55,6 @@ class PatchPlanner {
       throw Error("patches of ", patch_size,
                   " elements have more slots than 16 "
                   "bits can number; make them smaller");
-    check_nodes<Nodes>(connectivity, nodes);
     plan_.patch_size = patch_size;
     plan_.rows.resize(connectivity.size());
   }

@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include <pliant/cuda/stream.hpp>
+#include <pliant/cuda/context.hpp>
 
 namespace pliant {
 
@@ -12,22 +12,23 @@ class CudaRecording {
  public:
   CudaRecording() = default;
   /// Records what f launches; runs none of it.
-  CudaRecording(detail::SharedStream stream, std::function<void()> const& f)
-      : stream_(std::move(stream)) {
-    auto const device = stream_->enter();
+  CudaRecording(std::shared_ptr<detail::CudaContext const> context, std::function<void()> const& f)
+      : context_(std::move(context)) {
+    auto const& stream = context_->stream();
+    auto const device = stream->enter();
     // Other threads may call CUDA while this one records.
-    detail::check(cudaStreamBeginCapture(stream_->get(), cudaStreamCaptureModeThreadLocal),
+    detail::check(cudaStreamBeginCapture(stream->get(), cudaStreamCaptureModeThreadLocal),
                   "cudaStreamBeginCapture");
     cudaGraph_t graph = nullptr;
     try {
       f();
     } catch (...) {
-      cudaStreamEndCapture(stream_->get(), &graph);
+      cudaStreamEndCapture(stream->get(), &graph);
       if (graph != nullptr) cudaGraphDestroy(graph);
       cudaGetLastError();
       throw;
     }
-    detail::check(cudaStreamEndCapture(stream_->get(), &graph), "cudaStreamEndCapture");
+    detail::check(cudaStreamEndCapture(stream->get(), &graph), "cudaStreamEndCapture");
     cudaGraphExec_t executable = nullptr;
     cudaError_t const status = cudaGraphInstantiate(&executable, graph, 0);
     cudaGraphDestroy(graph);
@@ -37,13 +38,14 @@ class CudaRecording {
 
   void replay(int n) const {
     if (!graph_) throw Error("CUDA: replay of an empty recording; make it with record");
-    auto const device = stream_->enter();
+    auto const& stream = context_->stream();
+    auto const device = stream->enter();
     for (int k = 0; k < n; ++k)
-      detail::check(cudaGraphLaunch(graph_.get(), stream_->get()), "cudaGraphLaunch");
+      detail::check(cudaGraphLaunch(graph_.get(), stream->get()), "cudaGraphLaunch");
   }
 
  private:
-  detail::SharedStream stream_;
+  std::shared_ptr<detail::CudaContext const> context_;  // whose memory the verbs use
   std::shared_ptr<CUgraphExec_st> graph_;
 };
 

@@ -14,15 +14,20 @@ class CudaTimer {
  public:
   explicit CudaTimer(detail::SharedStream stream) : stream_(std::move(stream)) {}
 
+  /// Begins a measurement; one that was not stopped is dropped.
   void start() {
+    drop_open();
     if (running_.size() == most_running) collect(0);
     if (running_.size() == most_running) collect(1);
     running_.emplace_back(record(), nullptr);
   }
-  void stop() { running_.back().second = record(); }
+  /// Ends it; nothing where none is open.
+  void stop() {
+    if (is_open()) running_.back().second = record();
+  }
   /// Waits for what was measured.
   double seconds() {
-    collect(running_.size());
+    collect(running_.size() - (is_open() ? 1 : 0));
     return seconds_;
   }
 
@@ -30,6 +35,12 @@ class CudaTimer {
   static constexpr std::size_t most_running = 256;
   using Event = std::shared_ptr<CUevent_st>;
 
+  bool is_open() const { return !running_.empty() && !running_.back().second; }
+  void drop_open() {
+    if (!is_open()) return;
+    idle_.push_back(std::move(running_.back().first));
+    running_.pop_back();
+  }
   Event record() {
     Event event;
     if (idle_.empty()) {
@@ -47,7 +58,7 @@ class CudaTimer {
   /// Waits for the first `waited` measurements; adds them and those after them that are finished.
   void collect(std::size_t waited) {
     std::size_t done = 0;
-    for (; done < running_.size(); ++done) {
+    for (; done < running_.size() && running_[done].second; ++done) {
       auto& [from, to] = running_[done];
       cudaError_t const status =
           done < waited ? cudaEventSynchronize(to.get()) : cudaEventQuery(to.get());

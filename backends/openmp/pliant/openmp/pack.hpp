@@ -47,6 +47,7 @@ struct Pack {
   friend PLIANT_HOST_DEVICE Pack& operator-=(Pack& a, Pack b) { return a = a - b; }
   friend PLIANT_HOST_DEVICE Pack& operator*=(Pack& a, Pack b) { return a = a * b; }
   friend PLIANT_HOST_DEVICE Mask operator<(Pack a, Pack b) { return a.v < b.v; }
+  friend PLIANT_HOST_DEVICE Mask operator==(Pack a, Pack b) { return a.v == b.v; }
 };
 
 template <class T, int L>

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/check_nodes.hpp>
 #include <pliant/backend/host_array.hpp>
 #include <pliant/math/group_by_key.hpp>
 
@@ -32,6 +33,7 @@ class Patches {
         tags_(tags.size()),
         ordered_tags_(tags.size()),
         order_(connectivity.size()) {
+    check_nodes(connectivity, nodes);
     tags_.upload(tags);
     tag_data_ = tags_.data();
     for (std::size_t e = 0; e < connectivity.size(); ++e)

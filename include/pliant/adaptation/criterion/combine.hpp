@@ -27,9 +27,9 @@ struct ExtremeOf : SharedUnit<First, Rest...> {
     if constexpr (I == sizeof...(Rest))
       return value;
     else if constexpr (X == Extreme::largest)
-      return max(value, from<I + 1>(e));
+      return maximum(value, from<I + 1>(e));
     else
-      return min(value, from<I + 1>(e));
+      return minimum(value, from<I + 1>(e));
   }
 };
 
@@ -37,12 +37,12 @@ template <Extreme X, class... Cs>
 inline constexpr bool stateless<ExtremeOf<X, Cs...>> = (stateless<Cs> && ...);
 }  // namespace detail
 
-/// The largest of several criteria.
+/// The largest of several criteria; NaN where one of them is.
 template <class... Cs>
 auto largest(Cs... criteria) {
   return detail::ExtremeOf<detail::Extreme::largest, Cs...>(criteria...);
 }
-/// The smallest of several criteria.
+/// The smallest of several criteria; NaN where one of them is.
 template <class... Cs>
 auto smallest(Cs... criteria) {
   return detail::ExtremeOf<detail::Extreme::smallest, Cs...>(criteria...);

@@ -18,12 +18,12 @@ struct EdgeLengthRatio {
     for (int k = 0; k < State::edge_count; ++k) {
       auto const edge = e.edge(k);
       S const s = edge.squared_change / edge.squared_rest;
-      longest = max(longest, s);
-      shortest = min(shortest, s);
+      longest = maximum(longest, s);
+      shortest = minimum(shortest, s);
     }
     auto const ratio = [](S const& s)
                            PLIANT_INLINE { return s / (S(1) + sqrt(max(S(0), S(1) + s))); };
-    return max(ratio(longest), -ratio(shortest));
+    return maximum(ratio(longest), -ratio(shortest));
   }
 };
 

@@ -10,7 +10,7 @@
 //     PLIANT_HOST_DEVICE auto operator()(State const& e) const { return norm(e.gradient()); }
 //   };
 //
-// The state's numbers may be packs of elements: write `select`, `max`, `min`, never `if`, on them. State is a
+// The state's numbers may be packs of elements: write `select`, `maximum`, `minimum`, never `if`, on them. State is a
 // StateInBody, which adds to the ElementState below what there is around the element.
 namespace pliant {
 

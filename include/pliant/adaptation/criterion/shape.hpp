@@ -22,8 +22,8 @@ struct AspectRatio {
     for (int k = 0; k < State::edge_count; ++k) {
       S const length = e.edge(k).length();
       sum = sum + length;
-      longest = max(longest, length);
-      shortest = min(shortest, length);
+      longest = maximum(longest, length);
+      shortest = minimum(shortest, length);
     }
     if constexpr (State::dim == 3 && !std::same_as<typename E::cell, Tetrahedron>) {
       return longest / shortest;

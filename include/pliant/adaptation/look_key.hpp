@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include <pliant/adaptation/rule.hpp>
+#include <pliant/body/checksum.hpp>
+#include <pliant/body/looker.hpp>
+#include <pliant/body/plain_type_name.hpp>
+
+// Which of a body's last looks is an Adaptation's: files keep them, so that numbers are the same in each process.
+namespace pliant::detail {
+
+template <class U>
+void add_bytes(std::string& text, U value) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  text.append(bytes, sizeof value);
+}
+
+template <class TheRule>
+void name_rule(std::string& text, TheRule const& rule) {
+  text += plain_type_name<TheRule>();
+  Marking const& marking = rule.marking;
+  add_bytes(text, static_cast<std::int64_t>(marking.kind));
+  add_bytes(text, marking.amount);
+  add_bytes(text, marking.floor);
+  add_bytes(text, marking.budget);
+  if constexpr (SwitchingRule<TheRule>) add_bytes(text, std::int64_t{rule.stay});
+  if constexpr (RefiningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.max_level});
+}
+
+/// Tells rules of other types or numbers apart, the data of criteria aside: they may hold bytes without a value.
+template <class... Rules>
+std::uint64_t rules_key(Rules const&... rules) {
+  std::string text;
+  (name_rule(text, rules), ...);
+  return checksum(text);
+}
+
+/// The number of an Adaptation's last look. Of those with the same key, each has its own, in the order in which
+/// they first looked at the body; one that is gone leaves its to the next that comes.
+inline std::uint64_t look_key(std::vector<Looker>& lookers, std::uint64_t rules,
+                              std::shared_ptr<void const> const& adaptation) {
+  std::uint64_t before = 0;
+  Looker* free = nullptr;
+  std::uint64_t number_of_free = 0;
+  for (Looker& looker : lookers) {
+    if (looker.rules != rules) continue;
+    auto const other = looker.adaptation.lock();
+    if (other == adaptation) return rules + before;
+    if (!other && free == nullptr) {
+      free = &looker;
+      number_of_free = before;
+    }
+    ++before;
+  }
+  if (free != nullptr) {
+    free->adaptation = adaptation;
+    return rules + number_of_free;
+  }
+  lookers.push_back({rules, adaptation});
+  return rules + before;
+}
+
+}  // namespace pliant::detail
