@@ -95,6 +95,7 @@ void put_in_force(Parts& parts, typename Parts::layout_type layout,
   parts.state.topology = std::move(topology);
   parts.state.prescribed = std::move(prescribed);
   parts.recorded.reset();
+  parts.schedule.reset();
   parts.checkpoint.reset();
   parts.has_checkpoint = false;
   parts.scratch.reset();

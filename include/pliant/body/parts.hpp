@@ -7,6 +7,7 @@
 
 #include <pliant/body/layout.hpp>
 #include <pliant/body/state.hpp>
+#include <pliant/body/step_schedule.hpp>
 #include <pliant/body/timers.hpp>
 #include <pliant/constraint/driven_nodes.hpp>
 #include <pliant/force/element_groups.hpp>
@@ -77,6 +78,7 @@ struct Parts {
     long revision;
   };
   std::optional<Recorded> recorded{};
+  std::optional<StepSchedule<B>> schedule{};  // of local time steps; see solver/local_steps.hpp
   struct Scratch {
     Array<T> u, du, f;
   };

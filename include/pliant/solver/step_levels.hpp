@@ -1,0 +1,160 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include <pliant/solver/element_limits.hpp>
+
+// Levels of local time steps: of elements from their own stable steps, in the backend's memory.
+namespace pliant {
+
+namespace detail {
+
+inline constexpr int limit_bins_per_octave = 16;
+
+/// Sorts elements by their stable step over the shortest one, on a logarithmic scale.
+template <class T>
+struct LimitBin {
+  T const* squared_frequency;
+  double largest;
+  PLIANT_HOST_DEVICE Bin operator()(Index e) const {
+    double const x = static_cast<double>(squared_frequency[e]);
+    double bin = histogram_bins - 1;
+    if (x > 0) bin = min(bin, limit_bins_per_octave / 2 * std::log2(largest / x) + 1e-6);
+    return {static_cast<int>(bin), 1};
+  }
+};
+
+/// Element evaluations per time, in those of the longest step of `shortest` for all: with a step of level 0
+/// that is 2^(bin/16) times the shortest stable one.
+inline double cost_of(std::array<std::int64_t, histogram_bins> const& bins, double bin) {
+  double cost = 0;
+  for (int b = 0; b < histogram_bins; ++b) {
+    double const levels = std::max(0.0, std::ceil((bin - b) / limit_bins_per_octave - 1e-6));
+    cost += static_cast<double>(bins[static_cast<std::size_t>(b)]) * std::exp2(levels);
+  }
+  return cost / std::exp2(bin / limit_bins_per_octave);
+}
+
+/// The level that an element needs. It goes down only when its stable step is longer than that level needs
+/// by `margin`, so that one near a power of two does not go back and forth.
+template <class T>
+struct AssignLevel {
+  T const* squared_frequency;
+  StepLevel* level;
+  double coarsest;  // 1/s²: the largest squared frequency of level 0
+  double margin;    // 1 and a share
+
+  PLIANT_HOST_DEVICE double level_for(double x) const {
+    return min(static_cast<double>(most_step_levels),
+               max(0.0, std::ceil(std::log2(x / coarsest) / 2 - 1e-6)));
+  }
+  PLIANT_HOST_DEVICE void operator()(Index e) const {
+    double const x = static_cast<double>(squared_frequency[e]);
+    if (!(x > 0)) {
+      level[e] = 0;
+      return;
+    }
+    double const present = level[e];
+    level[e] =
+        static_cast<StepLevel>(max(level_for(x), min(present, level_for(x * margin * margin))));
+  }
+};
+
+/// 2^(8 level): sums of these over fewer than 256 elements tell the highest level.
+PLIANT_HOST_DEVICE double level_to_weight(int level) {
+  double weight = 1;
+  for (int k = 0; k < level; ++k) weight *= 256;
+  return weight;
+}
+PLIANT_HOST_DEVICE int weight_to_level(double sum) {
+  int level = 0;
+  for (; sum >= 256; sum /= 256) ++level;
+  return level;
+}
+
+template <class T>
+struct LevelsToWeights {
+  StepLevel const* level;
+  T* weight;
+  PLIANT_HOST_DEVICE void operator()(Index e) const {
+    weight[e] = static_cast<T>(level_to_weight(level[e]));
+  }
+};
+/// Adds the weight of each element to its nodes.
+template <class T>
+struct SpreadWeight {
+  static constexpr bool reads_elements = true;
+  ElementField<T const, 1> weights;
+  template <int G, class Own, class S, int N, int C>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, Own const& own, Matrix<S, N, C> const&) const {
+    auto const weight = own(weights);
+    Matrix<S, N, 1> out;
+    for (int a = 0; a < N; ++a) out(a, 0) = weight[0];
+    return out;
+  }
+};
+/// Sums of weights become levels, at least `least` where a term acts.
+template <class T>
+struct SumsToLevels {
+  NodeField<T, 1> field;
+  StepLevel const* touched;  // by terms; may be null
+  int least;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    int const level = weight_to_level(static_cast<double>(field(i, 0)));
+    field(i, 0) = static_cast<T>(touched && touched[i] ? max(level, least) : level);
+  }
+};
+template <class T>
+struct TouchedLevel {
+  NodeField<T, 1> field;
+  StepLevel const* touched;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    return touched[i] ? weight_to_level(static_cast<double>(field(i, 0))) : 0;
+  }
+};
+/// The highest level of an element's nodes becomes its own.
+template <class T>
+struct TakeHighest {
+  static constexpr int counters = 1;
+  T* weights;  // (elements)
+  template <int G, class S, int N>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, Matrix<S, N, 1> const& x) const {
+    Vector<S, 1> highest;
+    highest[0] = x(0, 0);
+    for (int a = 1; a < N; ++a) highest[0] = max(highest[0], x(a, 0));
+    return highest;
+  }
+  template <int G, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const& highest, Again const&,
+                                 Tally const&) const {
+    weights[e] = static_cast<T>(level_to_weight(static_cast<int>(highest[0])));
+  }
+};
+/// A patch steps with its finest element: so do the others in it.
+template <class T>
+struct RaisePatch {
+  T* weights;         // (elements)
+  StepLevel* levels;  // (patches)
+  Index patch_size, count;
+  PLIANT_HOST_DEVICE void operator()(Index p) const {
+    Index const first = p * patch_size, last = min(count, first + patch_size);
+    T highest = T(1);
+    for (Index e = first; e < last; ++e) highest = max(highest, weights[e]);
+    for (Index e = first; e < last; ++e) weights[e] = highest;
+    levels[p] = static_cast<StepLevel>(weight_to_level(static_cast<double>(highest)));
+  }
+};
+template <class T>
+struct TakeLevel {
+  NodeField<T, 1> field;
+  StepLevel* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = static_cast<StepLevel>(field(i, 0)); }
+};
+struct DifferentTag {
+  Tag const *a, *b;
+  PLIANT_HOST_DEVICE double operator()(Index e) const { return a[e] != b[e]; }
+};
+
+}  // namespace detail
+}  // namespace pliant
