@@ -1,6 +1,8 @@
 #pragma once
 
 #include <complex>
+#include <sstream>
+#include <stdexcept>
 
 #include <Eigen/Eigenvalues>
 
@@ -207,6 +209,252 @@ TEST_CASE("the work of what pulls at a body with local steps is booked", "[solve
   INFO(coarse << " " << fine);
   CHECK(std::abs(coarse) < 0.01);
   CHECK(std::abs(fine) < 0.1 * std::abs(coarse));
+}
+
+/// A strip whose right half is split once, and there its right quarter again.
+template <class F, class B>
+auto split_strip(B const& backend) {
+  auto body = body_of<F>(backend, mesh::rectangle({.size = {1, 0.25}, .cells = {16, 4}}), gel);
+  for (double from : {0.5, 0.75}) {
+    std::vector<Index> right;
+    auto const& mesh = body.mesh();
+    for (std::size_t e = 0; e < mesh.template elements<Quad4>().size(); ++e) {
+      double least = 1;
+      for (Index node : mesh.template elements<Quad4>()[e])
+        least = std::min(least, mesh.nodes[static_cast<std::size_t>(node)][0]);
+      if (least >= from - 1e-9) right.push_back(static_cast<Index>(e));
+    }
+    refine(body, {right});
+  }
+  body.clamp(body.mesh().boundary("left"));
+  return body;
+}
+
+/// The level at which each element steps, in internal order.
+template <class TheBody>
+std::vector<int> levels_of(TheBody const& body) {
+  auto const& elements = body.parts().layout.template table<Quad4>().elements;
+  std::vector<int> levels;
+  for (Index e = 0; e < elements.count(); ++e)
+    levels.push_back(
+        body.parts()
+            .schedule->patch_levels[0][static_cast<std::size_t>(e / elements.patch_size())]);
+  return levels;
+}
+/// By how much the step of some element is longer than it is stable by itself.
+template <class TheBody>
+double largest_excess(TheBody& body, LocalSteps const& step) {
+  double largest = 0;
+  auto& parts = body.parts();
+  auto const levels = levels_of(body);
+  double least = std::numeric_limits<double>::infinity();
+  for (auto shares : {detail::MassShares::own, detail::MassShares::by_rows}) {
+    largest = 0;
+    (void)detail::bound_elements(parts, shares);
+    auto const bounds =
+        download<typename TheBody::scalar>(parts.layout.template table<Quad4>().scratch);
+    for (std::size_t e = 0; e < bounds.size(); ++e)
+      largest = std::max(largest, step.macro_step() * std::exp2(-levels[e]) / 2 *
+                                      std::sqrt(static_cast<double>(bounds[e])));
+    least = std::min(least, largest);
+  }
+  return least;
+}
+
+TEST_CASE("fine elements have two rings of their level around them", "[solver]") {
+  auto body = split_strip<Rubber>(Patches<1>{});
+  auto step = unwatched();
+  step(body);
+  auto const& parts = body.parts();
+  auto const levels = levels_of(body);
+  auto const own = download<StepLevel>(std::get<0>(parts.state.elements).step_levels);
+  auto const& mesh = body.mesh();
+  auto const& user_element = parts.layout.template table<Quad4>().user_element;
+  // Two elements touch where they read the same free node.
+  std::vector<std::vector<Index>> read(own.size());
+  for (std::size_t e = 0; e < own.size(); ++e)
+    for (Index node : mesh.template elements<Quad4>()[static_cast<std::size_t>(user_element[e])])
+      parts.state.topology->interpolation.for_each_master(
+          node, [&](Index master, double) { read[e].push_back(master); });
+  auto const around = [&](std::vector<int> const& of) {
+    auto highest = of;
+    for (std::size_t a = 0; a < of.size(); ++a)
+      for (std::size_t b = 0; b < of.size(); ++b)
+        if (std::ranges::find_first_of(read[a], read[b]) != read[a].end())
+          highest[a] = std::max(highest[a], of[b]);
+    return highest;
+  };
+
+  CHECK(levels == around(around({own.begin(), own.end()})));
+  CHECK(std::ranges::max(levels) == 2);
+  CHECK(std::ranges::min(levels) == 0);
+  CHECK(largest_excess(body, step) < 0.8 + 1e-9);
+}
+
+TEST_CASE("levels follow elements that stiffen, between macro steps", "[solver]") {
+  on_each_backend<std::tuple<Patches<1>, MainBackend>>([]<class B>(B const& backend) {
+    auto body = split_strip<Rubber>(backend);
+    // Its left, coarse part is pressed together to a third.
+    body.drive(body.mesh().boundary("right"), [](double t) -> Point<2> {
+      return {-0.45 * std::min(1.0, t / 2), 0};
+    });
+    LocalSteps step;
+    step(body, 8);
+    double const before = step.macro_step();
+    auto const first = levels_of(body);
+    double worst = 0;
+    bool changed = false;
+    while (body.time() < 2) {
+      step(body, 8);
+      worst = std::max(worst, largest_excess(body, step));
+      changed = changed || levels_of(body) != first || step.macro_step() != before;
+    }
+
+    CHECK(changed);
+    CHECK(worst < 0.85);
+    CHECK(step.retries() == 0);
+  });
+}
+
+TEST_CASE("a level goes down only when its step would be stable with some room", "[solver]") {
+  std::vector<double> const squared_frequency{1, 4, 4.5, 15, 17, 64};
+  std::vector<StepLevel> level{1, 1, 0, 2, 1, 3};
+  detail::AssignLevel<double> const assign{squared_frequency.data(), level.data(), 1, 1.1};
+
+  for (Index e = 0; e < 6; ++e) assign(e);
+
+  // Half the step at 4, a quarter at 16: what needs more gets it at once.
+  CHECK(level == std::vector<StepLevel>{1, 1, 2, 2, 3, 3});
+}
+
+TEST_CASE("elements that move to a stiffer law take its level before they step", "[solver]") {
+  using Stiff = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+  auto body = [] {
+    Body made{Patches<1>{}, mesh::rectangle({.size = {1, 0.25}, .cells = {16, 4}}), gel,
+              Group<Rubber>{}, Group<Stiff>{SaintVenantKirchhoff<double>::from({4e6, 0.3, 1e3})}};
+    made.clamp(made.mesh().boundary("left"));
+    made.set_gravity({0, -1});
+    return made;
+  }();
+  LocalSteps step;
+  step(body, 3);
+  REQUIRE(body.parts().schedule->finest == 0);
+  double const before = step.macro_step();
+
+  // As a check on the device would: nothing else is told.
+  auto& tags = std::get<0>(body.parts().state.elements).tags;
+  auto moved = download<Tag>(tags);
+  moved[5] = 1;
+  tags.upload(moved);
+  step(body, 1);
+
+  CHECK(step.macro_step() * std::exp2(-levels_of(body)[5]) < 0.3 * before);
+  CHECK(largest_excess(body, step) < 0.8 + 1e-9);
+}
+
+TEST_CASE("a run with local steps goes on from a file with the same bits", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const make = [&] {
+      auto body = split_strip<Rubber>(backend);
+      body.set_gravity({0, -2});
+      return body;
+    };
+    auto straight = make();
+    LocalSteps step{{.check_interval = 7, .watch_interval = 3}};
+    step(straight, 20);
+    std::stringstream file;
+    straight.save(file);
+    auto other = make();
+    other.load(file);
+    LocalSteps again{{.check_interval = 7, .watch_interval = 3}};
+
+    step(straight, 20);
+    again(other, 20);
+
+    CHECK(difference(straight.displacements(), other.displacements()) <= between_runs(1e-12));
+    CHECK(difference(straight.velocities(), other.velocities()) <= between_runs(1e-11));
+    CHECK(straight.time() == other.time());
+    CHECK(levels_of(straight) == levels_of(other));
+  });
+}
+
+TEST_CASE("a macro step that goes wrong is rolled back", "[solver]") {
+  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+    auto body = split_strip<Rubber>(backend);
+    body.set_gravity({0, -1});
+    LocalSteps step{{.check_interval = 16}};
+    step(body, 40);
+    auto u = body.parts().layout.padded(body.displacements());
+    for (auto& x : u) x = NAN;
+    body.parts().state.u.upload(u);
+
+    Advanced const done = step(body, 20);
+
+    CHECK(done.rolled_back);
+    CHECK(step.retries() == 1);
+    CHECK(body.steps() <= 40);
+    step(body, 40);
+    CHECK(std::isfinite(total_energy(body)));
+  });
+}
+
+TEST_CASE("a motion that throws within a macro step leaves the last whole one", "[solver]") {
+  Patches<1> const backend;
+  bool fails = true;
+  auto const driven = [&](Motion<2> motion) {
+    auto body = split_strip<Rubber>(backend);
+    body.drive(body.mesh().boundary("right"), std::move(motion));
+    return body;
+  };
+  auto const pull = [](double t) -> Point<2> { return {0.1 * t, 0}; };
+  auto failing = driven([&](double t) -> Point<2> {
+    if (fails && t > 0.05) throw std::runtime_error("no signal");
+    return pull(t);
+  });
+  auto smooth = driven(pull);
+  auto step = unwatched(), other = unwatched();
+
+  CHECK_THROWS_AS(step(failing, 60), std::runtime_error);
+  CHECK(failing.time() == Approx(0.05).margin(step.macro_step()));
+  CHECK(failing.time() < 0.05);
+  fails = false;
+  other(smooth, static_cast<int>(failing.steps()));
+
+  CHECK(difference(failing.displacements(), smooth.displacements()) == 0);
+  CHECK(difference(failing.velocities(), smooth.velocities()) == 0);
+  CHECK(failing.time() == smooth.time());
+}
+
+TEST_CASE("an integrator takes over from another one", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = split_strip<Rubber>(backend);
+    body.set_gravity({0, -1});
+    LocalSteps local;
+    CentralDifference global;
+    double const before = total_energy(body);
+    for (int k = 0; k < 5; ++k) {
+      local(body, 4);
+      global(body, 9);
+    }
+
+    CHECK(body.steps() == 65);
+    CHECK(strain_energy(body) > 0.01);
+    CHECK(total_energy(body) - before == Approx(0).margin(0.02 * strain_energy(body)));
+  });
+}
+
+TEST_CASE("options of local steps that cannot be meant are refused", "[solver]") {
+  CHECK_THROWS_WITH(LocalSteps{{.safety = 0.9}}, says("0.85"));
+  CHECK_THROWS_WITH(LocalSteps{{.safety = 0}}, says("safety"));
+  CHECK_THROWS_AS(LocalSteps{{.macro_step = -1}}, Error);
+  CHECK_THROWS_AS(LocalSteps{{.macro_step = INFINITY}}, Error);
+  CHECK_THROWS_AS(LocalSteps{{.check_interval = 0}}, Error);
+  CHECK_THROWS_AS(LocalSteps{{.energy_growth = NAN}}, Error);
+  auto body = split_strip<Rubber>(Patches<1>{});
+  LocalSteps longest{{.macro_step = 1e6}};
+  CHECK_THROWS_WITH(longest(body), says("macro step of"));
+  LocalSteps step;
+  CHECK_THROWS_WITH(step(body, -1), says("0 or more"));
 }
 
 TEST_CASE("with one level local steps are central differences", "[solver]") {

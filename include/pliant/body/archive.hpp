@@ -91,6 +91,7 @@ void check_sizes(State const& state, Layout const& layout) {
     for (Tag tag : download<Tag>(elements.tags)) demand(tag < Table::groups || tag == no_group);
     demand(elements.internal_variables.size() == count * Table::Laws::internal_variable_count);
     demand(elements.step_levels.size() == 0 || elements.step_levels.size() == count);
+    demand(elements.step_distortions.size() == elements.step_levels.size());
     for (StepLevel level : download<StepLevel>(elements.step_levels))
       demand(level <= most_step_levels);
     demand(statistics.since.size() == (statistics.open ? count : 0));

@@ -24,6 +24,8 @@ struct GroupState {
   typename B::template Array<typename B::scalar> internal_variables;  // (variables, elements)
   /// (elements): at which level of local time steps each is stable; empty without them.
   typename B::template Array<StepLevel> step_levels;
+  /// (elements): how distorted each was when its level was chosen.
+  typename B::template Array<typename B::scalar> step_distortions;
   GroupStatistics<B, Groups> statistics;
 
   template <class Visit, class... S>
@@ -31,6 +33,7 @@ struct GroupState {
     visit("groups", s.tags...);
     visit("internal variables", s.internal_variables...);
     visit("step levels", s.step_levels...);
+    visit("distortions at step levels", s.step_distortions...);
     visit("statistics kept", s.statistics.open...);
     visit("steps of the last switches", s.statistics.since...);
     visit("numbers of switches", s.statistics.switches...);

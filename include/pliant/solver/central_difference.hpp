@@ -97,7 +97,7 @@ class CentralDifference {
   void begin(Parts& parts) {
     parts.watched_energy = leapfrog_energy<Parts>;
     auto& own = parts.state.integrator;
-    bool const resumed = own.active && parts.integrator == nullptr;
+    bool const resumed = own.active && own.macro_step == 0 && parts.integrator == nullptr;
     if (own.active && (parts.integrator == identity_ || resumed)) {
       parts.integrator = identity_;
       return;

@@ -53,22 +53,30 @@ NodeField<typename Parts::T, 1> node_scratch(Parts& parts) {
   return {parts.row_sums.data()};
 }
 
-/// Leaves in each table's scratch a bound of the square of the highest frequency of each element with its own
-/// share of mass, λ_max(M_e⁻¹ K_e), 1/s². Terms beside the elements have no mass: where D_i are their row
-/// sums, each element around node i takes its share of D_i by mass, which adds at most max_i D_i/m_i. Returns
-/// the largest. Throws Error when it is not finite.
+/// How a node's mass is shared out to the elements around it: what each brings, or in proportion to the sums of
+/// absolute values of its rows of stiffness. Bounds hold as long as all elements share alike.
+enum class MassShares { own, by_rows };
+
+/// Leaves in each table's scratch a bound of the square of the highest frequency of each element with its share
+/// of mass, λ_max(M_e⁻¹ K_e), 1/s². With its own share that is the element's eigenvalue (Irons and Treharne
+/// 1971), and terms beside the elements, which have no mass, add at most max_i D_i/m_i where D_i are
+/// their row sums, if each element takes its share of D_i by mass. With shares by rows it is
+/// max_i R_i/m_i over its nodes, where R_i = Σ_e Σ_j |K_e,ij| (unassembled Gershgorin discs). Returns the
+/// largest. Throws Error when it is not finite.
 template <class Parts>
-double bound_elements(Parts& parts) {
+double bound_elements(Parts& parts, MassShares shares) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
   auto const at = std::as_const(parts).here();
-  bool const terms = !parts.pressures.empty() || !parts.terms.empty();
+  bool const by_rows = shares == MassShares::by_rows;
+  bool const uses_rows = by_rows || !parts.pressures.empty() || !parts.terms.empty();
   auto const quotient = node_scratch(parts);
-  if (terms) {
+  if (uses_rows) {
     NodeField<T, dim> const rows{parts.row_sums.data()};
     clear_rows(parts, rows);
     for_each_added_term(parts, [&](auto const& term) { term.add_row_sums(backend, at, rows); });
+    if (by_rows) parts.elements().add_row_sums(backend, at, rows);
     parts.layout.interpolation.apply_transpose(backend, rows);
     backend.for_each(
         parts.layout.nodes,
@@ -82,13 +90,14 @@ double bound_elements(Parts& parts) {
     if (table.count() == 0) return;
     if (table.scratch.size() == 0)
       table.scratch = zeros<T>(backend, static_cast<std::size_t>(table.count()));
-    backend.for_each(table.count(), FillValue<T>{table.scratch.data(), T(0)});  // of no group
-    backend.template visit<Table::groups>(
-        table.elements,
-        ElementSpectra<T, typename Table::Laws>{table.laws, static_cast<T>(parts.material.density),
-                                                table.scratch.data()},
-        parts.no_counters, at.rest, at.u);
-    if (terms)
+    backend.for_each(table.count(), FillValue<T>{table.scratch.data(), T(0)});
+    if (!by_rows)
+      backend.template visit<Table::groups>(
+          table.elements,
+          ElementSpectra<T, typename Table::Laws>{
+              table.laws, static_cast<T>(parts.material.density), table.scratch.data()},
+          parts.no_counters, at.rest, at.u);
+    if (uses_rows)
       backend.template visit<Table::groups>(
           table.elements, AddLargestOfNodes<T>{table.scratch.data()}, parts.no_counters,
           NodeField<T const, 1>{quotient.data});

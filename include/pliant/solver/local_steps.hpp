@@ -121,13 +121,13 @@ class LocalSteps {
     if (whole) make_schedule(parts);
   }
 
-  /// A look at how much the elements are distorted: where that has changed, their stable steps have too.
+  /// A look at how much each element is distorted: where that has changed by as much as a stretch by 1.07 at
+  /// rest does, stable steps may have by a tenth.
   template <class Parts>
   void watch(Parts& parts) {
     auto& own = parts.state.integrator;
     own.next_watch = parts.state.steps + options_.watch_interval;
-    double const distortion = largest_distortion(parts);
-    if (!(std::abs(distortion - own.distortion) <= 0.1 * (1 + own.distortion)))
+    if (own.next_refresh > parts.state.steps && !(detail::distortion_change(parts) <= 0.02))
       own.next_refresh = parts.state.steps;
   }
 
@@ -136,10 +136,9 @@ class LocalSteps {
   void refresh(Parts& parts) {
     auto& own = parts.state.integrator;
     own.next_refresh = parts.state.steps + options_.refresh_interval;
-    own.distortion = largest_distortion(parts);
+    detail::keep_distortions(parts);
     double const before = parts.schedule ? correction(parts) : 0;
-    double const largest = detail::bound_elements(parts);
-    double const coarsest = coarsest_step(parts, largest);
+    double const coarsest = coarsest_step(parts);
     bool const anew = own.macro_step != options_.safety * coarsest;
     own.macro_step = options_.safety * coarsest;
     parts.for_each_type([&](auto& table, auto& elements) {
@@ -159,41 +158,41 @@ class LocalSteps {
       own.first_energy = own.last_energy - correction(parts);
   }
 
-  /// The longest step of level 0 for which all levels are stable, s. It stays until another one takes a quarter
-  /// fewer evaluations.
+  /// The stable step of level 0 for which steps take the fewest evaluations, s, with the elements' bounds left as
+  /// bound_elements does: of both ways to share mass out, the cheaper one. The present macro step stays until
+  /// another takes a fifth fewer.
   template <class Parts>
-  double coarsest_step(Parts& parts, double largest) const {
-    auto const& own = parts.state.integrator;
-    double const shortest = 2 / std::sqrt(largest);
-    double const most = shortest * std::exp2(most_step_levels);
-    if (options_.macro_step > 0) {
-      if (options_.macro_step > options_.safety * most)
-        throw Error("LocalSteps: a macro step of ", options_.macro_step, " s is more than 2^",
-                    most_step_levels, " of the shortest stable steps; give one of at most ",
-                    options_.safety * most, " s");
-      return options_.macro_step / options_.safety;
+  double coarsest_step(Parts& parts) const {
+    using detail::MassShares;
+    double const given =
+        (options_.macro_step > 0 ? options_.macro_step : parts.state.integrator.macro_step) /
+        options_.safety;
+    double present[2], best[2], step[2];
+    for (MassShares shares : {MassShares::own, MassShares::by_rows}) {
+      auto const k = static_cast<std::size_t>(shares);
+      double const largest = detail::bound_elements(parts, shares);
+      auto const counts = detail::count_limits(parts, largest);
+      double const shortest = 2 / std::sqrt(largest);
+      present[k] = detail::cost_of(counts, shortest, given);
+      best[k] = std::numeric_limits<double>::infinity();
+      for (int b = 0; b <= most_step_levels * detail::limit_bins_per_octave; ++b) {
+        double const t =
+            shortest * std::exp2(static_cast<double>(b) / detail::limit_bins_per_octave);
+        double const cost = detail::cost_of(counts, shortest, t);
+        if (cost >= best[k]) continue;
+        best[k] = cost;
+        step[k] = t;
+      }
     }
-    auto bins = zeros<std::int64_t>(parts.backend, histogram_bins);
-    parts.for_each_type([&](auto& table, auto&) {
-      parts.backend.histogram(table.count(),
-                              detail::LimitBin<typename Parts::T>{table.scratch.data(), largest},
-                              bins.data());
-    });
-    std::array<std::int64_t, histogram_bins> counts{};
-    bins.download(counts);
-    int best = 0;
-    for (int b = 1; b <= most_step_levels * detail::limit_bins_per_octave; ++b)
-      if (counts[static_cast<std::size_t>(b)] > 0 &&
-          detail::cost_of(counts, b) < detail::cost_of(counts, best))
-        best = b;
-    double const present =
-        own.macro_step > 0
-            ? std::log2(own.macro_step / options_.safety / shortest) * detail::limit_bins_per_octave
-            : -1;
-    if (present >= 0 && present <= most_step_levels * detail::limit_bins_per_octave &&
-        detail::cost_of(counts, present) <= 1.25 * detail::cost_of(counts, best))
-      return own.macro_step / options_.safety;
-    return shortest * std::exp2(static_cast<double>(best) / detail::limit_bins_per_octave);
+    bool const stays = options_.macro_step > 0 ||
+                       std::min(present[0], present[1]) <= 1.25 * std::min(best[0], best[1]);
+    auto const& cost = stays ? present : best;
+    auto const cheaper = cost[0] <= cost[1] ? MassShares::own : MassShares::by_rows;
+    if (!std::isfinite(cost[static_cast<std::size_t>(cheaper)]))
+      throw Error("LocalSteps: a macro step of ", options_.macro_step, " s is more than 2^",
+                  most_step_levels, " of the shortest stable steps; give a shorter one");
+    if (cheaper == MassShares::own) (void)detail::bound_elements(parts, cheaper);
+    return stays ? given : step[static_cast<std::size_t>(cheaper)];
   }
 
   /// What the total energy at the end of a macro step has over that of the steps around.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
+#include <pliant/solver/distortion.hpp>
 #include <pliant/solver/element_limits.hpp>
 
 // Levels of local time steps: of elements from their own stable steps, in the backend's memory.
@@ -12,28 +14,52 @@ namespace detail {
 
 inline constexpr int limit_bins_per_octave = 16;
 
-/// Sorts elements by their stable step over the shortest one, on a logarithmic scale.
+/// Sorts patches by the stable step of their finest element over the shortest of all, on a logarithmic scale.
 template <class T>
 struct LimitBin {
   T const* squared_frequency;
   double largest;
-  PLIANT_HOST_DEVICE Bin operator()(Index e) const {
-    double const x = static_cast<double>(squared_frequency[e]);
+  Index patch_size, count;
+  PLIANT_HOST_DEVICE Bin operator()(Index p) const {
+    Index const first = p * patch_size, last = min(count, first + patch_size);
+    T highest = T(0);
+    for (Index e = first; e < last; ++e) highest = max(highest, squared_frequency[e]);
+    double const x = static_cast<double>(highest);
     double bin = histogram_bins - 1;
     if (x > 0) bin = min(bin, limit_bins_per_octave / 2 * std::log2(largest / x) + 1e-6);
-    return {static_cast<int>(bin), 1};
+    return {static_cast<int>(bin), last - first};
   }
 };
 
-/// Element evaluations per time, in those of the longest step of `shortest` for all: with a step of level 0
-/// that is 2^(bin/16) times the shortest stable one.
-inline double cost_of(std::array<std::int64_t, histogram_bins> const& bins, double bin) {
+using LimitCounts = std::array<std::int64_t, histogram_bins>;
+
+/// How many elements have which stable step, as bound_elements left it, with the largest of these bounds.
+template <class Parts>
+LimitCounts count_limits(Parts& parts, double largest) {
+  auto bins = zeros<std::int64_t>(parts.backend, histogram_bins);
+  parts.for_each_type([&](auto& table, auto&) {
+    parts.backend.histogram(table.elements.patch_count(),
+                            LimitBin<typename Parts::T>{table.scratch.data(), largest,
+                                                        table.elements.patch_size(), table.count()},
+                            bins.data());
+  });
+  LimitCounts counts{};
+  bins.download(counts);
+  return counts;
+}
+
+/// Element evaluations per second with a stable step of level 0, where the shortest stable step is `shortest`;
+/// infinite for steps of no length and for too many levels.
+inline double cost_of(LimitCounts const& counts, double shortest, double step) {
+  double const bin = limit_bins_per_octave * std::log2(step / shortest);
+  if (!(step > 0) || bin > limit_bins_per_octave * most_step_levels)
+    return std::numeric_limits<double>::infinity();
   double cost = 0;
   for (int b = 0; b < histogram_bins; ++b) {
-    double const levels = std::max(0.0, std::ceil((bin - b) / limit_bins_per_octave - 1e-6));
-    cost += static_cast<double>(bins[static_cast<std::size_t>(b)]) * std::exp2(levels);
+    double const level = std::max(0.0, std::ceil((bin - b) / limit_bins_per_octave - 1e-6));
+    cost += static_cast<double>(counts[static_cast<std::size_t>(b)]) * std::exp2(level);
   }
-  return cost / std::exp2(bin / limit_bins_per_octave);
+  return cost / step;
 }
 
 /// The level that an element needs. It goes down only when its stable step is longer than that level needs
@@ -151,10 +177,48 @@ struct TakeLevel {
   StepLevel* to;
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = static_cast<StepLevel>(field(i, 0)); }
 };
+/// How much a distortion changed, against what it was.
+template <class T>
+struct DistortionChange {
+  T const *present, *before;
+  PLIANT_HOST_DEVICE double operator()(Index e) const {
+    double const was = static_cast<double>(before[e]);
+    return infinite_if_not_finite(std::abs(static_cast<double>(present[e]) - was) / (1 + was));
+  }
+};
 struct DifferentTag {
   Tag const *a, *b;
   PLIANT_HOST_DEVICE double operator()(Index e) const { return a[e] != b[e]; }
 };
+
+/// Keeps how distorted elements are, for those levels that are chosen now.
+template <class Parts>
+void keep_distortions(Parts& parts) {
+  using T = typename Parts::T;
+  parts.for_each_type([&](auto& table, auto& elements) {
+    auto const count = static_cast<std::size_t>(table.count());
+    if (elements.step_distortions.size() != count)
+      elements.step_distortions = zeros<T>(parts.backend, count);
+    if (count == 0) return;
+    evaluate_distortion(parts, table);
+    parts.backend.for_each(table.count(),
+                           CopyValue<T>{table.scratch.data(), elements.step_distortions.data()});
+  });
+}
+/// By which share of 1 + distortion an element's changed since then, the largest.
+template <class Parts>
+double distortion_change(Parts& parts) {
+  double largest = 0;
+  parts.for_each_type([&](auto& table, auto& elements) {
+    if (table.count() == 0) return;
+    evaluate_distortion(parts, table);
+    largest = std::max(
+        largest, parts.backend.maximum(
+                     table.count(), DistortionChange<typename Parts::T>{
+                                        table.scratch.data(), elements.step_distortions.data()}));
+  });
+  return largest;
+}
 
 }  // namespace detail
 }  // namespace pliant
