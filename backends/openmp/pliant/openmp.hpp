@@ -205,7 +205,11 @@ class OpenMP {
       auto const [first, last] = elements.scratch_of(active.patch(k));
       for (Index own = first; own < last; ++own) {
         auto const f = elements.folded_of_row(own);
-        if (f.rows.size() > 1 && *std::ranges::find_if(f.rows, is_active) != own) continue;
+        if (f.rows.size() == 1) {
+          for (int c = 0; c < C; ++c) out(f.node, c) += out(own, c);
+          continue;
+        }
+        if (*std::ranges::find_if(f.rows, is_active) != own) continue;
         for (Index row : f.rows)
           if (is_active(row))
             for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
