@@ -12,6 +12,7 @@
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/backend/kernel.hpp>
 #include <pliant/error.hpp>
+#include <pliant/openmp/few_patches.hpp>
 #include <pliant/openmp/pack_members.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/threads.hpp>
@@ -127,12 +128,12 @@ class OpenMP {
                    Values<nodes, Fields>...>();
     auto const active = detail::active(table);
     auto const& elements = active.elements;
-    if (active.list != nullptr && 4 * active.patch_count() < 3 * elements.patch_count())
-      return accumulate_few<Groups>(active, kernel, out, fields...);
-    if (active.list != nullptr) clear_scratch(elements, out);
     auto const accumulate_in = [&](Index k) {
       accumulate_patch<Groups>(elements, active.patch(k), kernel, out, fields...);
     };
+    if (active.list != nullptr && 4 * active.patch_count() < 3 * elements.patch_count())
+      return detail::accumulate_few(threads_, active, accumulate_in, out);
+    if (active.list != nullptr) clear_scratch(elements, out);
     threads_.for_each_block(active.patch_count(), accumulate_in, elements.folded_count(),
                             [&](Index k) {
                               auto const f = elements.folded(k);
@@ -185,37 +186,6 @@ class OpenMP {
   using Values = Matrix<Scalar, Nodes, Field::components>;
 
   using PackMembers = detail::PackMembers<T>;
-
-  /// Over a list of few patches: what the others would add is not looked at. Every row of an active patch is
-  /// folded by the first active one among those that add to its node.
-  template <int Groups, int Nodes, class Kernel, int C, class... Fields>
-  void accumulate_few(ActiveElements<Elements<Nodes>> const& active, Kernel const& kernel,
-                      NodeField<T, C> out, Fields const&... fields) const {
-    auto const& elements = active.elements;
-    std::vector<unsigned char> acts(static_cast<std::size_t>(elements.patch_count()), 0);
-    for (Index k = 0; k < active.patch_count(); ++k)
-      acts[static_cast<std::size_t>(active.patch(k))] = 1;
-    auto const is_active = [&](Index row) {
-      return acts[static_cast<std::size_t>(elements.patch_of_row(row))] != 0;
-    };
-    threads_.for_each_block(active.patch_count(), [&](Index k) {
-      accumulate_patch<Groups>(elements, active.patch(k), kernel, out, fields...);
-    });
-    threads_.for_each_block(active.patch_count(), [&](Index k) {
-      auto const [first, last] = elements.scratch_of(active.patch(k));
-      for (Index own = first; own < last; ++own) {
-        auto const f = elements.folded_of_row(own);
-        if (f.rows.size() == 1) {
-          for (int c = 0; c < C; ++c) out(f.node, c) += out(own, c);
-          continue;
-        }
-        if (*std::ranges::find_if(f.rows, is_active) != own) continue;
-        for (Index row : f.rows)
-          if (is_active(row))
-            for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
-      }
-    });
-  }
 
   /// Patches that are passed over add nothing.
   template <int Nodes, int C>

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pliant/solver/central_difference.hpp>
+#include <pliant/solver/coarsest_step.hpp>
 #include <pliant/solver/macro_steps.hpp>
 #include <pliant/solver/make_schedule.hpp>
 
@@ -138,7 +139,8 @@ class LocalSteps {
     own.next_refresh = parts.state.steps + options_.refresh_interval;
     detail::keep_distortions(parts);
     double const before = parts.schedule ? correction(parts) : 0;
-    double const coarsest = coarsest_step(parts);
+    double const coarsest =
+        detail::choose_coarsest_step(parts, options_.macro_step, options_.safety);
     bool const anew = own.macro_step != options_.safety * coarsest;
     own.macro_step = options_.safety * coarsest;
     parts.for_each_type([&](auto& table, auto& elements) {
@@ -156,43 +158,6 @@ class LocalSteps {
       own.first_energy += before - correction(parts);
     else
       own.first_energy = own.last_energy - correction(parts);
-  }
-
-  /// The stable step of level 0 for which steps take the fewest evaluations, s, with the elements' bounds left as
-  /// bound_elements does: of both ways to share mass out, the cheaper one. The present macro step stays until
-  /// another takes a fifth fewer.
-  template <class Parts>
-  double coarsest_step(Parts& parts) const {
-    using detail::MassShares;
-    double const given =
-        (options_.macro_step > 0 ? options_.macro_step : parts.state.integrator.macro_step) /
-        options_.safety;
-    double present[2], best[2], step[2];
-    for (MassShares shares : {MassShares::own, MassShares::by_rows}) {
-      auto const k = static_cast<std::size_t>(shares);
-      double const largest = detail::bound_elements(parts, shares);
-      auto const counts = detail::count_limits(parts, largest);
-      double const shortest = 2 / std::sqrt(largest);
-      present[k] = detail::cost_of(counts, shortest, given);
-      best[k] = std::numeric_limits<double>::infinity();
-      for (int b = 0; b <= most_step_levels * detail::limit_bins_per_octave; ++b) {
-        double const t =
-            shortest * std::exp2(static_cast<double>(b) / detail::limit_bins_per_octave);
-        double const cost = detail::cost_of(counts, shortest, t);
-        if (cost >= best[k]) continue;
-        best[k] = cost;
-        step[k] = t;
-      }
-    }
-    bool const stays = options_.macro_step > 0 ||
-                       std::min(present[0], present[1]) <= 1.25 * std::min(best[0], best[1]);
-    auto const& cost = stays ? present : best;
-    auto const cheaper = cost[0] <= cost[1] ? MassShares::own : MassShares::by_rows;
-    if (!std::isfinite(cost[static_cast<std::size_t>(cheaper)]))
-      throw Error("LocalSteps: a macro step of ", options_.macro_step, " s is more than 2^",
-                  most_step_levels, " of the shortest stable steps; give a shorter one");
-    if (cheaper == MassShares::own) (void)detail::bound_elements(parts, cheaper);
-    return stays ? given : step[static_cast<std::size_t>(cheaper)];
   }
 
   /// What the total energy at the end of a macro step has over that of the steps around.

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <limits>
-
+#include <pliant/body/step_schedule.hpp>
 #include <pliant/solver/distortion.hpp>
 #include <pliant/solver/element_limits.hpp>
 
@@ -11,56 +8,6 @@
 namespace pliant {
 
 namespace detail {
-
-inline constexpr int limit_bins_per_octave = 16;
-
-/// Sorts patches by the stable step of their finest element over the shortest of all, on a logarithmic scale.
-template <class T>
-struct LimitBin {
-  T const* squared_frequency;
-  double largest;
-  Index patch_size, count;
-  PLIANT_HOST_DEVICE Bin operator()(Index p) const {
-    Index const first = p * patch_size, last = min(count, first + patch_size);
-    T highest = T(0);
-    for (Index e = first; e < last; ++e) highest = max(highest, squared_frequency[e]);
-    double const x = static_cast<double>(highest);
-    double bin = histogram_bins - 1;
-    if (x > 0) bin = min(bin, limit_bins_per_octave / 2 * std::log2(largest / x) + 1e-6);
-    return {static_cast<int>(bin), last - first};
-  }
-};
-
-using LimitCounts = std::array<std::int64_t, histogram_bins>;
-
-/// How many elements have which stable step, as bound_elements left it, with the largest of these bounds.
-template <class Parts>
-LimitCounts count_limits(Parts& parts, double largest) {
-  auto bins = zeros<std::int64_t>(parts.backend, histogram_bins);
-  parts.for_each_type([&](auto& table, auto&) {
-    parts.backend.histogram(table.elements.patch_count(),
-                            LimitBin<typename Parts::T>{table.scratch.data(), largest,
-                                                        table.elements.patch_size(), table.count()},
-                            bins.data());
-  });
-  LimitCounts counts{};
-  bins.download(counts);
-  return counts;
-}
-
-/// Element evaluations per second with a stable step of level 0, where the shortest stable step is `shortest`;
-/// infinite for steps of no length and for too many levels.
-inline double cost_of(LimitCounts const& counts, double shortest, double step) {
-  double const bin = limit_bins_per_octave * std::log2(step / shortest);
-  if (!(step > 0) || bin > limit_bins_per_octave * most_step_levels)
-    return std::numeric_limits<double>::infinity();
-  double cost = 0;
-  for (int b = 0; b < histogram_bins; ++b) {
-    double const level = std::max(0.0, std::ceil((bin - b) / limit_bins_per_octave - 1e-6));
-    cost += static_cast<double>(counts[static_cast<std::size_t>(b)]) * std::exp2(level);
-  }
-  return cost / step;
-}
 
 /// The level that an element needs. It goes down only when its stable step is longer than that level needs
 /// by `margin`, so that one near a power of two does not go back and forth.
