@@ -153,6 +153,38 @@ TEST_CASE("local steps are of second order, with all that pulls at a body", "[so
   CHECK(error(middle) / error(fine) == Approx(4).epsilon(0.1));
 }
 
+TEST_CASE("local steps take elements of several types and laws", "[solver]") {
+  using Triangles = Formulation<Tri3, Gauss<1>, NeoHookean>;
+  using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+  auto mesh = mixed_mesh(10);
+  for (auto& p : mesh.nodes) p[0] = std::pow(p[0] + 0.3, 2.2);  // smaller to the left
+  auto const make = [&] {
+    Body body{Patches<2>{}, mesh, gel, Group<Triangles>{}, Group<Rubber>{}, Group<Turning>{}};
+    body.template assign<Turning>({0, 3, 6, 9, 12, 15});
+    body.clamp(mesh.boundary("right"));
+    body.set_gravity({0, -3});
+    return body;
+  };
+  double time = 0;
+  auto const run = [&](double safety, int steps) {
+    auto body = make();
+    LocalSteps step{{.safety = safety}};
+    step(body, steps);
+    CHECK(body.parts().schedule->finest >= 2);
+    CHECK(body.parts().schedule->evaluations < 0.8);
+    time = body.time();
+    return body.displacements();
+  };
+  auto const coarse = run(0.4, 20), fine = run(0.2, 40);
+  auto body = make();
+  CentralDifference step{{.step = time / 2000}};
+  step(body, 2000);
+  auto const exact = body.displacements();
+
+  CHECK(difference(coarse, exact) < 1e-3 * largest(exact));
+  CHECK(difference(coarse, exact) / difference(fine, exact) == Approx(4).epsilon(0.1));
+}
+
 TEST_CASE("local steps keep linear momentum, and energy for long", "[solver]") {
   Patches<1> const backend;
   auto body = graded_body<Rubber>(backend, 3, gel);
