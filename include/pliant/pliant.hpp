@@ -53,3 +53,4 @@
 #include <pliant/quadrature/gauss.hpp>
 #include <pliant/quadrature/lobatto.hpp>
 #include <pliant/solver/central_difference.hpp>
+#include <pliant/solver/local_steps.hpp>

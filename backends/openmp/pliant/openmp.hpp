@@ -12,6 +12,7 @@
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/backend/kernel.hpp>
 #include <pliant/error.hpp>
+#include <pliant/openmp/few_patches.hpp>
 #include <pliant/openmp/pack_members.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/threads.hpp>
@@ -127,10 +128,12 @@ class OpenMP {
                    Values<nodes, Fields>...>();
     auto const active = detail::active(table);
     auto const& elements = active.elements;
-    if (active.list != nullptr) clear_scratch(elements, out);
     auto const accumulate_in = [&](Index k) {
       accumulate_patch<Groups>(elements, active.patch(k), kernel, out, fields...);
     };
+    if (active.list != nullptr && 4 * active.patch_count() < 3 * elements.patch_count())
+      return detail::accumulate_few(threads_, active, accumulate_in, out);
+    if (active.list != nullptr) clear_scratch(elements, out);
     threads_.for_each_block(active.patch_count(), accumulate_in, elements.folded_count(),
                             [&](Index k) {
                               auto const f = elements.folded(k);

@@ -17,7 +17,7 @@ namespace pliant {
 namespace detail {
 
 inline constexpr std::string_view archive_magic{"PLIANT\r\n", 8};
-inline constexpr std::uint32_t archive_version = 1;
+inline constexpr std::uint32_t archive_version = 2;
 
 /// Writes members of a state. The first mesh is not written: the body has it.
 template <class M>
@@ -90,6 +90,10 @@ void check_sizes(State const& state, Layout const& layout) {
     demand(elements.tags.size() == count);
     for (Tag tag : download<Tag>(elements.tags)) demand(tag < Table::groups || tag == no_group);
     demand(elements.internal_variables.size() == count * Table::Laws::internal_variable_count);
+    demand(elements.step_levels.size() == 0 || elements.step_levels.size() == count);
+    demand(elements.step_distortions.size() == elements.step_levels.size());
+    for (StepLevel level : download<StepLevel>(elements.step_levels))
+      demand(level <= most_step_levels);
     demand(statistics.since.size() == (statistics.open ? count : 0));
     demand(statistics.switches.size() == (statistics.open ? count : 0));
     demand(statistics.counters.size() == (statistics.open ? counters : 0));

@@ -127,6 +127,7 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.recorded.reset();
   parts.recorded_stretch.reset();
   parts.recorded_with_look.reset();
+  parts.schedule.reset();
   parts.checkpoint.reset();
   parts.has_checkpoint = false;
   parts.scratch.reset();

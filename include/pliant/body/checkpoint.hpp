@@ -25,6 +25,7 @@ void roll_back(Parts& parts) {
   set_step_size(parts, step);
   parts.for_each_type([](auto& table, auto&) { table.elements.regroup(); });
   parts.loads_current = false;
+  parts.schedule.reset();
   ++parts.revision;  // gravity and damping may be others
 }
 

@@ -10,6 +10,7 @@ namespace pliant {
 struct IntegratorState {
   bool active = false;    // an integrator has taken this state over
   double step = 0;        // s
+  double macro_step = 0;  // s: of level 0 of local steps, before `slower`; 0 without them
   double slower = 1;      // the step is this often smaller than the stable one asks
   double distortion = 0;  // the largest when the step was chosen
   double asked_step = 0;  // s, and the safety: what it was chosen by
@@ -27,6 +28,7 @@ struct IntegratorState {
   static void for_each_member(Visit const& visit, R&... r) {
     visit("active", r.active...);
     visit("step", r.step...);
+    visit("macro step", r.macro_step...);
     visit("slower", r.slower...);
     visit("distortion", r.distortion...);
     visit("step that was asked for", r.asked_step...);

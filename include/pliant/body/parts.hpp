@@ -8,6 +8,7 @@
 #include <pliant/body/layout.hpp>
 #include <pliant/body/looker.hpp>
 #include <pliant/body/state.hpp>
+#include <pliant/body/step_schedule.hpp>
 #include <pliant/body/timers.hpp>
 #include <pliant/constraint/driven_nodes.hpp>
 #include <pliant/force/element_groups.hpp>
@@ -83,6 +84,7 @@ struct Parts {
   std::optional<Recorded> recorded{};            // a step
   std::optional<Recorded> recorded_stretch{};    // several
   std::optional<Recorded> recorded_with_look{};  // and a look of an adaptation behind them
+  std::optional<StepSchedule<B>> schedule{};     // of local time steps; see solver/local_steps.hpp
   struct Scratch {
     Array<T> u, du, f;
   };

@@ -21,6 +21,8 @@ void make_arrays(Parts& parts) {
     elements.internal_variables =
         zeros<typename Parts::T>(parts.backend, static_cast<std::size_t>(table.count()) *
                                                     Table::Laws::internal_variable_count);
+    elements.step_levels = {};
+    elements.step_distortions = {};
     if constexpr (Table::Laws::reads_elements)
       table.laws.data = {table.values.data(), elements.internal_variables.data(), table.count()};
   });

@@ -9,6 +9,7 @@
 #include <pliant/body/group.hpp>
 #include <pliant/body/group_statistics.hpp>
 #include <pliant/body/integrator_state.hpp>
+#include <pliant/body/step_schedule.hpp>
 #include <pliant/constraint/condition.hpp>
 #include <pliant/topology/topology.hpp>
 
@@ -24,12 +25,18 @@ template <Backend B, int Groups>
 struct GroupState {
   typename B::template Array<Tag> tags;                               // (elements): their groups
   typename B::template Array<typename B::scalar> internal_variables;  // (variables, elements)
+  /// (elements): at which level of local time steps each is stable; empty without them.
+  typename B::template Array<StepLevel> step_levels;
+  /// (elements): how distorted each was when its level was chosen.
+  typename B::template Array<typename B::scalar> step_distortions;
   GroupStatistics<B, Groups> statistics;
 
   template <class Visit, class... S>
   static void for_each_member(Visit const& visit, S&... s) {
     visit("groups", s.tags...);
     visit("internal variables", s.internal_variables...);
+    visit("step levels", s.step_levels...);
+    visit("distortions at step levels", s.step_distortions...);
     visit("statistics kept", s.statistics.open...);
     visit("steps of the last switches", s.statistics.since...);
     visit("numbers of switches", s.statistics.switches...);

@@ -25,6 +25,17 @@ struct WeightedRow {
     field.set(node[k], sum);
   }
 };
+/// Raises a node to the largest value of others, where that is more.
+template <class T>
+struct LargestOfRow {
+  NodeField<T, 1> field;
+  Index const *node, *first, *other;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    T largest = field(node[k], 0);
+    for (Index j = first[k]; j < first[k + 1]; ++j) largest = max(largest, field(other[j], 0));
+    field(node[k], 0) = largest;
+  }
+};
 template <class T, int C>
 struct ClearRow {
   NodeField<T, C> field;
@@ -64,6 +75,14 @@ class InterpolationOn {
     add_transpose(backend, field);
     clear(backend, field);
   }
+  /// Raises masters to the largest value of their slaves, where that is more.
+  void raise_masters(B const& backend, NodeField<T, 1> field) const {
+    if (!empty()) backend.for_each(to_masters_.count, to_masters_.largest(field));
+  }
+  /// Raises slaves to the largest value of their masters, where that is more.
+  void raise_slaves(B const& backend, NodeField<T, 1> field) const {
+    if (!empty()) backend.for_each(to_slaves_.count, to_slaves_.largest(field));
+  }
   /// Sets a field to zero at the slaves.
   template <int C>
   void clear(B const& backend, NodeField<T, C> field) const {
@@ -90,6 +109,9 @@ class InterpolationOn {
     template <int C, bool Add>
     detail::WeightedRow<T, C, Add> rows(NodeField<T, C> field) const {
       return {field, node.data(), first.data(), other.data(), weight.data()};
+    }
+    detail::LargestOfRow<T> largest(NodeField<T, 1> field) const {
+      return {field, node.data(), first.data(), other.data()};
     }
   };
 

@@ -71,6 +71,7 @@ void make_room_for_forces(Parts& parts) {
     clear_rows(parts, parts.f());
   parts.forces_current = false;
   parts.scratch.reset();
+  parts.schedule.reset();
   ++parts.revision;
 }
 

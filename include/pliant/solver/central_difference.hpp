@@ -124,7 +124,7 @@ class CentralDifference {
     parts.watched_energy = leapfrog_energy<Parts>;
     auto& own = parts.state.integrator;
     std::int64_t const now = parts.state.steps;
-    bool const resumed = own.active && parts.integrator == nullptr;
+    bool const resumed = own.active && own.macro_step == 0 && parts.integrator == nullptr;
     if (own.active && (parts.integrator == identity_ || resumed)) {
       parts.integrator = identity_;
       if (own.asked_step != options_.step || own.safety != options_.safety) own.next_refresh = now;

@@ -39,21 +39,29 @@ struct DistortionVisitor {
 
 }  // namespace detail
 
+namespace detail {
+/// Leaves the distortion of each element in its table's scratch.
+template <class Parts, class Table>
+void evaluate_distortion(Parts& parts, Table& table) {
+  using T = typename Parts::T;
+  if (table.scratch.size() == 0)
+    table.scratch = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
+  parts.backend.template visit<Table::groups>(
+      table.elements, DistortionVisitor<T, typename Table::Laws>{table.scratch.data()},
+      parts.no_counters, parts.rest(), std::as_const(parts).u());
+}
+}  // namespace detail
+
 /// The largest distortion of an element, ‖F‖² + ‖F⁻¹‖² − 2 d in its middle.
 template <class Parts>
 double largest_distortion(Parts& parts) {
-  using T = typename Parts::T;
   double largest = 0;
   parts.for_each_type([&](auto& table, auto&) {
-    using Table = std::remove_cvref_t<decltype(table)>;
     if (table.count() == 0) return;
-    if (table.scratch.size() == 0)
-      table.scratch = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
-    parts.backend.template visit<Table::groups>(
-        table.elements, detail::DistortionVisitor<T, typename Table::Laws>{table.scratch.data()},
-        parts.no_counters, parts.rest(), std::as_const(parts).u());
+    detail::evaluate_distortion(parts, table);
     largest = std::max(
-        largest, parts.backend.maximum(table.count(), detail::ValueAt<T>{table.scratch.data()}));
+        largest, parts.backend.maximum(table.count(),
+                                       detail::ValueAt<typename Parts::T>{table.scratch.data()}));
   });
   return largest;
 }

@@ -76,6 +76,14 @@ class Patches {
             {fold_rows_.data() + fold_first_[i], fold_rows_.data() + fold_first_[i + 1]}};
   }
 
+  /// Where a scratch row is folded, and which patch adds to it.
+  Folded folded_of_row(Index row) const {
+    return folded(row_folds_[static_cast<std::size_t>(row - first_row())]);
+  }
+  Index patch_of_row(Index row) const {
+    return row_patches_[static_cast<std::size_t>(row - first_row())];
+  }
+
   /// Orders the elements of each patch by group, stably; patches whose tags did not change keep their
   /// order without a look.
   void regroup() {
@@ -91,6 +99,7 @@ class Patches {
   }
 
  private:
+  Index first_row() const { return scratch_first_.front(); }
   void order(Index patch) {
     Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
     Index* next = order_.data() + first;
@@ -138,6 +147,14 @@ class Patches {
     fold_first_.push_back(scratch_nodes_);
     fold_rows_ = by_node.order;
     for (Index& fold_row : fold_rows_) fold_row += nodes;
+    row_folds_.resize(static_cast<std::size_t>(scratch_nodes_));
+    row_patches_.resize(row_folds_.size());
+    for (std::size_t k = 0; k < folded_.size(); ++k)
+      for (Index r : folded(static_cast<Index>(k)).rows)
+        row_folds_[static_cast<std::size_t>(r - nodes)] = static_cast<Index>(k);
+    for (Index p = 0; p < patch_count(); ++p)
+      for (auto [r, last] = scratch_of(p); r < last; ++r)
+        row_patches_[static_cast<std::size_t>(r - nodes)] = p;
   }
 
   int groups_ = 1;
@@ -149,6 +166,7 @@ class Patches {
   Index scratch_nodes_ = 0;
   std::vector<Index> scratch_first_;                    // (patches + 1)
   std::vector<Index> folded_, fold_first_, fold_rows_;  // compressed rows
+  std::vector<Index> row_folds_, row_patches_;          // (scratch rows)
 };
 
 }  // namespace pliant::detail

@@ -1,0 +1,180 @@
+#pragma once
+
+#include <pliant/constraint/conditions.hpp>
+#include <pliant/solver/impulse_kernels.hpp>
+
+// Macro steps with local time steps, on the parts of a body. Within one, layout.f has impulses over the finest step
+// in place of forces.
+namespace pliant {
+
+namespace detail {
+
+/// Which half-kicks an event gives: of steps that end then, of steps that begin then.
+struct Halves {
+  bool ends, begins;
+};
+
+template <class Parts>
+MovingNodes<typename Parts::T, Parts::dim> moving_nodes(Parts& parts, double macro_step) {
+  auto const& schedule = *parts.schedule;
+  return {schedule.nodes.data(),    schedule.rates.data(),
+          parts.layout.mass.data(), parts.layout.held.data(),
+          external_forces(parts),   {macro_step, schedule.finest, parts.state.damping}};
+}
+
+/// Adds the impulses of the elements and terms whose level is at least `lowest`, over the finest step.
+template <class Parts>
+void accumulate_impulses(Parts& parts, int lowest) {
+  using T = typename Parts::T;
+  auto const& schedule = *parts.schedule;
+  auto const& backend = parts.backend;
+  auto const at = std::as_const(parts).here();
+  auto const weight = [&](int level) {
+    return static_cast<T>(std::ldexp(1.0, schedule.finest - level));
+  };
+  if (lowest <= schedule.term_level && !(parts.pressures.empty() && parts.terms.empty())) {
+    for_each_added_term(parts, [&](auto const& term) { term.add_force(backend, at, parts.f()); });
+    if (schedule.term_level < schedule.finest)
+      backend.for_each(
+          schedule.node_counts[static_cast<std::size_t>(schedule.term_level)],
+          ScaleRows<T>{parts.layout.f.data(), schedule.nodes.data(), weight(schedule.term_level)});
+  }
+  std::size_t type = 0;
+  parts.for_each_type([&](auto& table, auto&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    auto const& lists = schedule.patches[type++];
+    table.with_geometry([&](auto geometry) {
+      for (int level = lowest; level <= schedule.finest; ++level) {
+        auto const& list = lists[static_cast<std::size_t>(level)];
+        if (list.size() < 2) continue;  // no patch
+        backend.template accumulate<Table::groups>(
+            over(table.elements, list),
+            ImpulseKernel<T, typename Table::Laws, geometry.value>{table.laws, weight(level)},
+            parts.f(), at.rest, at.u);
+      }
+    });
+  });
+  parts.layout.interpolation.add_transpose(backend, parts.f());
+}
+
+/// One moment of a macro step at which nothing below a level acts: impulses, and the nodes that take them.
+template <class Parts>
+void act(Parts& parts, double macro_step, int lowest, Halves halves) {
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& backend = parts.backend;
+  auto const& schedule = *parts.schedule;
+  Index const count = schedule.node_counts[static_cast<std::size_t>(lowest)];
+  accumulate_impulses(parts, lowest);
+  auto const nodes = moving_nodes(parts, macro_step);
+  typename Parts::ConstField const v = std::as_const(parts).v(), impulses{parts.layout.f.data()};
+  double* const work = parts.state.work.data();
+  if (parts.state.damping > 0)
+    backend.add_sum(count,
+                    ImpulseDampingWork<T, dim>{nodes, v, impulses, halves.ends, halves.begins},
+                    work + static_cast<int>(Work::damping));
+  double const half = std::ldexp(macro_step, -schedule.finest) / 2;
+  for (auto const& driven : parts.driven)
+    driven.add_work(backend, v, impulses, parts.layout.mass.data(), nodes.external.gravity,
+                    nodes.external.load, halves.ends ? half : 0, halves.begins ? half : 0,
+                    halves.begins, work + static_cast<int>(Work::motions));
+  bool const hidden = lowest <= schedule.term_level && evaluate_terms_without_energy(parts);
+  auto const book_hidden = [&](bool acts) {
+    if (hidden && acts)
+      backend.add_sum(
+          parts.layout.nodes,
+          WorkRate<T, dim>{
+              {parts.without_energy.data()}, v, std::ldexp(macro_step, -schedule.term_level) / 2},
+          work + static_cast<int>(Work::pressures));
+  };
+  book_hidden(halves.ends);
+  backend.for_each(count, AdvanceByImpulses<T, dim>{nodes, parts.u(), parts.v(), parts.f(),
+                                                    halves.ends, halves.begins});
+  book_hidden(halves.begins);
+  if (halves.begins) parts.layout.interpolation.apply(backend, parts.u());
+}
+
+/// The lowest level that acts at finest step j of a macro step.
+inline int lowest_level(std::int64_t j, int finest) {
+  int level = finest;
+  while (level > 0 && j % (std::int64_t{2} << (finest - level)) == 0) --level;
+  return level;
+}
+
+}  // namespace detail
+
+/// Σ m Δv²/2, J, where Δv are the half-kicks around the end of a macro step, each over its own step: what the
+/// total energy has over that of the steps around. Forces are left cleared.
+template <class Parts>
+double half_kick_energy(Parts& parts, double macro_step) {
+  using T = typename Parts::T;
+  forget_forces(parts);
+  detail::accumulate_impulses(parts, 0);
+  double const sum = parts.backend.sum(
+      parts.layout.nodes, detail::HalfKickEnergy<T, Parts::dim>{
+                              detail::moving_nodes(parts, macro_step), {parts.layout.f.data()}});
+  clear_rows(parts, parts.f());
+  return sum;
+}
+
+/// Takes macro steps of a constant size, s, with a schedule; velocities belong to the displacements before and
+/// after. Throws Error where a motion is not finite, at the end of the last macro step before that.
+template <class Parts>
+void take_macro_steps(Parts& parts, double macro_step, int steps) {
+  using detail::act;
+  auto& state = parts.state;
+  auto& schedule = *parts.schedule;
+  int const finest = schedule.finest;
+  std::int64_t const events = std::int64_t{1} << finest;
+  double const fine = std::ldexp(macro_step, -finest);
+  forget_forces(parts);
+  // What allocates or hands loads on to masters is no part of a step.
+  (void)external_forces(parts);
+  (void)detail::reserve_terms_without_energy(parts);
+  auto const inside = [&parts, macro_step, finest, events] {
+    for (std::int64_t j = 1; j < events; ++j)
+      act(parts, macro_step, detail::lowest_level(j, finest), {true, true});
+  };
+  bool const follows = !parts.driven.empty();
+  auto& recorded = schedule.recorded;
+  if (!follows && finest > 0 &&
+      (!recorded || recorded->step != macro_step || recorded->revision != parts.revision))
+    recorded = {parts.backend.record(inside), macro_step, parts.revision};
+
+  bool moving = false;  // a macro step has begun: kicks of the next one go with those of its end
+  auto const end = [&] {
+    if (moving) act(parts, macro_step, 0, {true, false});
+    moving = false;
+    parts.layout.interpolation.apply(parts.backend, parts.v());
+  };
+  for (; steps > 0; --steps) {
+    double const begun = state.time;
+    if (follows) {
+      try {  // all that this macro step will ask
+        for (std::int64_t j = 1; j <= events; ++j)
+          ask_motions(parts, begun + static_cast<double>(j) * fine, fine);
+        ask_motions(parts, begun + fine, fine);
+      } catch (...) {
+        end();
+        throw;
+      }
+    }
+    act(parts, macro_step, 0, {moving, true});
+    moving = true;
+    if (follows) {
+      place_driven_nodes(parts);
+      for (std::int64_t j = 1; j < events; ++j) {
+        ask_motions(parts, begun + static_cast<double>(j + 1) * fine, fine);
+        act(parts, macro_step, detail::lowest_level(j, finest), {true, true});
+        place_driven_nodes(parts);
+      }
+    } else if (finest > 0) {
+      recorded->recording.replay(1);
+    }
+    state.time = begun + macro_step;
+    ++state.steps;
+  }
+  end();
+}
+
+}  // namespace pliant

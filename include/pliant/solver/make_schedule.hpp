@@ -1,0 +1,177 @@
+#pragma once
+
+#include <pliant/solver/step_levels.hpp>
+
+// From the levels at which elements are stable to who acts when.
+namespace pliant {
+
+namespace detail {
+
+/// Which nodes added force terms act on; empty without terms.
+template <class Parts>
+auto nodes_of_terms(Parts const& parts) {
+  constexpr int dim = Parts::dim;
+  typename Parts::template Array<StepLevel> none;
+  if (parts.pressures.empty() && parts.terms.empty()) return none;
+  auto const at_rest = [](Index) { return Point<dim>{}; };
+  std::vector<Point<dim>> places(static_cast<std::size_t>(parts.layout.nodes));
+  auto const& mesh = parts.state.topology->mesh;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[static_cast<std::size_t>(parts.layout.internal_node[i])] = mesh.nodes[i];
+  std::vector<StepLevel> touched(places.size(), 0);
+  for_each_added_term(parts, [&](auto const& term) {
+    term.for_each_element([&](Index i) { return places[static_cast<std::size_t>(i)]; }, at_rest,
+                          false,
+                          [&](ElementMatrix const& element) {
+                            for (Index i : element.nodes) touched[static_cast<std::size_t>(i)] = 1;
+                          });
+  });
+  return upload(parts.backend, touched);
+}
+
+/// Makes the levels of nodes from those of elements: the highest around each, through slaves too.
+template <class Parts>
+void spread_to_nodes(Parts& parts, NodeField<typename Parts::T, 1> field) {
+  using T = typename Parts::T;
+  clear_rows(parts, {field.data});
+  parts.for_each_type([&](auto& table, auto&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    if (table.count() == 0) return;
+    parts.backend.template accumulate<Table::groups>(
+        table.elements, SpreadWeight<T>{{table.scratch.data(), table.count()}}, field,
+        parts.rest());
+  });
+}
+
+/// Lists of the patches of each level, for over().
+template <Backend B>
+auto patches_by_level(B const& backend, std::vector<StepLevel> const& levels, int finest) {
+  std::vector<typename B::template Array<Index>> lists;
+  for (int l = 0; l <= finest; ++l) {
+    std::vector<Index> list{0};
+    for (std::size_t p = 0; p < levels.size(); ++p)
+      if (levels[p] == l) list.push_back(static_cast<Index>(p));
+    list[0] = static_cast<Index>(list.size()) - 1;
+    lists.push_back(upload(backend, list));
+  }
+  return lists;
+}
+
+/// Sorts nodes by the rate at which they move, finest first.
+template <Backend B>
+void sort_nodes(B const& backend, std::vector<StepLevel> const& rates, StepSchedule<B>& schedule) {
+  auto const levels = static_cast<std::size_t>(schedule.finest) + 1;
+  schedule.node_counts.assign(levels, 0);
+  for (StepLevel r : rates) ++schedule.node_counts[r];
+  for (std::size_t l = levels - 1; l > 0; --l)
+    schedule.node_counts[l - 1] += schedule.node_counts[l];
+  std::vector<Index> order(rates.size());
+  std::vector<StepLevel> ordered(rates.size());
+  std::vector<Index> next(schedule.node_counts.begin() + 1, schedule.node_counts.end());
+  next.push_back(0);
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    auto const at = static_cast<std::size_t>(next[rates[i]]++);
+    order[at] = static_cast<Index>(i);
+    ordered[at] = rates[i];
+  }
+  schedule.nodes = upload(backend, order);
+  schedule.rates = upload(backend, ordered);
+}
+
+}  // namespace detail
+
+/// Makes parts.schedule from the levels of elements in the state. Twice, an element takes the highest level of
+/// those that it shares a node with, slaves standing for their masters: with fewer rings around fine
+/// elements some graded meshes are unstable. Then a patch takes the level of its finest element. A node
+/// moves at the highest level of what reads it. Added force terms act at the highest level of the elements
+/// that stand at their nodes. One that is right already stays. Lists are made on the host.
+template <class Parts>
+void make_schedule(Parts& parts) {
+  using T = typename Parts::T;
+  using B = typename Parts::backend_type;
+  auto const& backend = parts.backend;
+  auto const& interpolation = parts.layout.interpolation;
+  auto const field = detail::node_scratch(parts);
+  auto const touched = detail::nodes_of_terms(parts);
+  StepLevel const* const at_terms = touched.size() > 0 ? touched.data() : nullptr;
+  StepSchedule<B> schedule;
+
+  parts.for_each_type([&](auto& table, auto& elements) {
+    if (table.count() == 0) return;
+    if (table.scratch.size() == 0)
+      table.scratch = zeros<T>(backend, static_cast<std::size_t>(table.count()));
+    backend.for_each(table.count(),
+                     detail::LevelsToWeights<T>{elements.step_levels.data(), table.scratch.data()});
+  });
+  for (int ring = 0; ring < 2; ++ring) {
+    detail::spread_to_nodes(parts, field);
+    if (ring == 0 && at_terms)
+      schedule.term_level = static_cast<int>(
+          backend.maximum(parts.layout.nodes, detail::TouchedLevel<T>{field, at_terms}));
+    backend.for_each(parts.layout.nodes,
+                     detail::SumsToLevels<T>{field, at_terms, schedule.term_level});
+    interpolation.raise_masters(backend, field);
+    interpolation.raise_slaves(backend, field);
+    parts.for_each_type([&](auto& table, auto&) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      if (table.count() == 0) return;
+      backend.template visit<Table::groups>(table.elements,
+                                            detail::TakeHighest<T>{table.scratch.data()},
+                                            parts.no_counters, NodeField<T const, 1>{field.data});
+    });
+  }
+  double work = 0, elements = 0;
+  parts.for_each_type([&](auto& table, auto& of_type) {
+    auto levels = zeros<StepLevel>(backend, static_cast<std::size_t>(table.elements.patch_count()));
+    backend.for_each(table.elements.patch_count(),
+                     detail::RaisePatch<T>{table.scratch.data(), levels.data(),
+                                           table.elements.patch_size(), table.count()});
+    schedule.patch_levels.push_back(download<StepLevel>(levels));
+    for (std::size_t p = 0; p < schedule.patch_levels.back().size(); ++p) {
+      int const level = schedule.patch_levels.back()[p];
+      Index const first = static_cast<Index>(p) * table.elements.patch_size();
+      double const size = std::min(table.elements.patch_size(), table.count() - first);
+      schedule.finest = std::max(schedule.finest, level);
+      work += size * std::exp2(level);
+      elements += size;
+    }
+    schedule.tags.push_back(zeros<Tag>(backend, of_type.tags.size()));
+    backend.for_each(table.count(),
+                     detail::CopyValue<Tag>{of_type.tags.data(), schedule.tags.back().data()});
+  });
+  if (parts.schedule && parts.schedule->patch_levels == schedule.patch_levels &&
+      parts.schedule->term_level == schedule.term_level) {
+    parts.schedule->tags = std::move(schedule.tags);
+    return;
+  }
+  schedule.evaluations = elements > 0 ? work / (elements * std::exp2(schedule.finest)) : 1;
+
+  detail::spread_to_nodes(parts, field);
+  backend.for_each(parts.layout.nodes,
+                   detail::SumsToLevels<T>{field, at_terms, schedule.term_level});
+  interpolation.raise_masters(backend, field);
+  auto rates = zeros<StepLevel>(backend, static_cast<std::size_t>(parts.layout.nodes));
+  backend.for_each(parts.layout.nodes, detail::TakeLevel<T>{field, rates.data()});
+  detail::sort_nodes(backend, download<StepLevel>(rates), schedule);
+  for (auto const& levels : schedule.patch_levels)
+    schedule.patches.push_back(detail::patches_by_level(backend, levels, schedule.finest));
+  parts.schedule = std::move(schedule);
+}
+
+/// Whether elements have changed groups since the schedule was made: their levels may be wrong.
+template <class Parts>
+bool groups_changed(Parts& parts) {
+  bool changed = false;
+  std::size_t type = 0;
+  parts.for_each_type([&](auto& table, auto& elements) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    auto const& tags = parts.schedule->tags[type++];
+    if constexpr (Table::groups > 1)
+      changed =
+          changed || parts.backend.sum(table.count(),
+                                       detail::DifferentTag{elements.tags.data(), tags.data()}) > 0;
+  });
+  return changed;
+}
+
+}  // namespace pliant
