@@ -207,11 +207,15 @@ TEST_CASE("a share is rounded down from what it means, not from its product", "[
 TEST_CASE("a bulk is found among values however small", "[adaptation]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;
-    for (T size : {T(1), T(1e-12f), T(1e-25f), T(1e-36f)}) {
-      std::vector<T> values;
-      for (int k = 1; k <= 8; ++k) values.push_back(size * T(k));
-      auto const marks = marks_of({MarkingKind::bulk, 0.5}, backend, values);  // 8 + 7 + 6 of 36
-      CHECK(std::ranges::count(marks, true) == 3);
+    for (T size : {T(1), T(1e-12f), T(1e-25f), T(2e-38f)}) {
+      std::vector<T> values(1001, size);
+      values[500] = 1000 * size;
+      auto const count = [&](double share) {
+        auto const marks = marks_of({MarkingKind::bulk, share}, backend, values);
+        return std::ranges::count(marks, true);
+      };
+      CHECK(count(0.48) == 1);
+      CHECK(count(0.52) == 1001);
     }
   });
 }
