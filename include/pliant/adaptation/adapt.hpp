@@ -20,6 +20,8 @@ namespace detail {
 template <class T, int Group, class S>
 struct TakeAction {
   static constexpr int counters = 0;
+  template <int>
+  static constexpr bool bounded = false;
   S strategy;
   Index const* number;  // (elements)
 

@@ -171,6 +171,15 @@ struct CriteriaVisitor {
   template <int G, class Own, class V>
   PLIANT_HOST_DEVICE auto at(Own const& own, V const& rest, V const& u) const {
     auto const& law = law_at<G>(own);
+    if constexpr (Take::template bounded<G>) {
+      using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+      auto const h = state_of<typename Table::template formulation<G>>(law, rest, u).gradient();
+      if (!any_less(S(take.quiet[G]), dot(h, h))) {
+        Vector<S, TheRules::rows> none;
+        for (int k = 0; k < TheRules::rows; ++k) none[k] = S(std::numeric_limits<T>::lowest());
+        return none;
+      }
+    }
     if constexpr (slots > 0)
       return rules.template evaluate<G>(
           law, rest, u, groups, around, own,

@@ -30,8 +30,16 @@ struct Decision {
   Tag* next;                 // (elements)
   std::uint32_t* refining;   // (elements): bit R: rule R refines it
 
+  T quiet[Table::groups];  // H:H up to which no element of a group acts; negative: not known
+
   /// Of the elements that go to another group.
   static constexpr int counters = 1;
+  /// Whether every criterion that looks at group G, and some does, bounds the gradients of those that act.
+  template <int G>
+  static constexpr bool bounded = LinearSimplex<typename Table::element> &&
+                                  ((Table::template group_of<typename Rules::from> == G) || ...) &&
+                                  ((Table::template group_of<typename Rules::from> != G ||
+                                    BoundedCriterion<decltype(Rules::criterion)>)&&...);
 
   /// Takes the values of an element; decides at once if no rule ranks.
   template <int G, class V, class Tally>

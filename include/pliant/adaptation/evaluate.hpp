@@ -10,6 +10,8 @@ namespace detail {
 template <class T>
 struct Store {
   static constexpr int counters = 0;
+  template <int>
+  static constexpr bool bounded = false;
   T* values;  // (elements)
   template <int G, class V, class Tally>
   PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {

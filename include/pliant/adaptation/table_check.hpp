@@ -189,7 +189,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
                                 own.step,
                                 w.levels.data(),
                                 w.next.data(),
-                                w.refining.data()};
+                                w.refining.data(),
+                                {}};
     int r = 0;
     auto const add = [&]<class R>(R const& rule) {
       d.sign[r] = rule.marking.below() ? T(-1) : T(1);
@@ -199,9 +200,33 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
       ++r;
     };
     std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      ((d.quiet[G] = quiet<G>()), ...);
+    }(std::make_integer_sequence<int, Table::groups>());
     return d;
   }
   /// In the order of the rules: what an earlier one takes is no candidate of a later one.
+  /// See Decision::quiet.
+  template <int G>
+  T quiet() const {
+    if constexpr (!Decision<Table, Rules...>::template bounded<G>) {
+      return T(-1);
+    } else {
+      if (refines || ranks()) return T(-1);  // values are kept, and compared
+      double least = std::numeric_limits<double>::infinity();
+      auto const add = [&]<class R>(R const& rule) {
+        if constexpr (Table::template group_of<typename R::from> == G)
+          least = std::min(
+              least, rule.marking.below()
+                         ? -1
+                         : rule.criterion.least_gradient(
+                               static_cast<double>(rule.marking.template beyond<T>()), Parts::dim));
+      };
+      std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
+      constexpr double rounding = 0.999;
+      return least > 0 ? static_cast<T>(square(rounding * least)) : T(-1);
+    }
+  }
   template <class TheDecision, class Chosen>
   void find_cuts(TheDecision const& decision, Chosen const& chosen) const {
     [&]<int... R>(std::integer_sequence<int, R...>) {

@@ -57,6 +57,12 @@ PLIANT_HOST_DEVICE constexpr T select(bool condition, T a, T b) {
   return condition ? a : b;
 }
 
+/// Whether a < b; of packs, whether it is so for some element.
+template <Arithmetic T>
+PLIANT_HOST_DEVICE constexpr bool any_less(T a, T b) {
+  return a < b;
+}
+
 template <class T>
 PLIANT_HOST_DEVICE T max(T const& a, T const& b) {
   return select(a < b, b, a);

@@ -61,6 +61,14 @@ PLIANT_HOST_DEVICE Pack<T, L> select(typename Pack<T, L>::Mask mask, Pack<T, L> 
 }
 
 template <class T, int L>
+PLIANT_HOST_DEVICE bool any_less(Pack<T, L> a, Pack<T, L> b) {
+  auto const mask = a < b;
+  typename Pack<T, L>::Integer some = 0;
+  for (int l = 0; l < L; ++l) some |= mask[l];
+  return some != 0;
+}
+
+template <class T, int L>
 PLIANT_HOST_DEVICE Pack<T, L> abs(Pack<T, L> const& x) {
   return select(x < Pack<T, L>(0), -x, x);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <tuple>
 
 #include <pliant/adaptation/criterion/criterion.hpp>
@@ -15,6 +16,15 @@ struct ExtremeOf : SharedUnit<First, Rest...> {
 
   explicit ExtremeOf(First first, Rest... rest) : criteria(first, rest...) {}
 
+  double least_gradient(double threshold, int dim) const
+    requires(X == Extreme::largest && BoundedCriterion<First> && (BoundedCriterion<Rest> && ...))
+  {
+    return std::apply(
+        [&](auto const&... criterion) {
+          return std::min({criterion.least_gradient(threshold, dim)...});
+        },
+        criteria);
+  }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     return from<0>(e);

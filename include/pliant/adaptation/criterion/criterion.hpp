@@ -36,6 +36,14 @@ concept Criterion =
 template <class C, class F>
 concept Estimator = Criterion<C, F> && Measure<C> && (C::unit == Unit::joule);
 
+/// A criterion that knows a norm |H| = √(H:H) of the displacement gradient that elements have at the least where
+/// its value is above a threshold, if H is the same all over the element: checks leave out elements of smaller
+/// gradients.
+template <class C>
+concept BoundedCriterion = requires(C const& criterion, double threshold, int dim) {
+  { criterion.least_gradient(threshold, dim) } -> std::convertible_to<double>;
+};
+
 namespace detail {
 /// Criteria without data are equal when their types are.
 template <class C>

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include <pliant/adaptation/criterion/element_state.hpp>
 #include <pliant/adaptation/criterion/unit.hpp>
 
@@ -10,6 +14,8 @@ namespace pliant {
 struct EdgeLengthRatio {
   static constexpr Unit unit = Unit::one;
 
+  /// ||F e| − 1| ≤ |H e| for a unit vector e.
+  static double least_gradient(double threshold, int) { return threshold; }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
@@ -32,6 +38,10 @@ struct EdgeLengthRatio {
 struct AreaRatio {
   static constexpr Unit unit = Unit::one;
 
+  /// |det(I + H) − 1| ≤ (1 + |H|)^dim − 1, by Hadamard's inequality.
+  static double least_gradient(double threshold, int dim) {
+    return std::pow(1 + std::max(threshold, 0.0), 1.0 / dim) - 1;
+  }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using E = typename State::element;
@@ -60,6 +70,10 @@ struct AreaRatio {
 struct Rotation {
   static constexpr Unit unit = Unit::one;
 
+  /// R is the rotation next to F: √2 · value = |R − I| ≤ |R − F| + |F − I| ≤ 2 |H|; where F inverts, |H| ≥ 1.
+  static double least_gradient(double threshold, int) {
+    return std::min(threshold / std::numbers::sqrt2, 1.0);
+  }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
