@@ -192,15 +192,14 @@ RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> 
                                       layout, *plan.after, held, v);
   };
   auto [next, taken] = change_topology(parts, plan.after, plan.transfer, give_back);
-  auto const since = [](double before, double now) {
-    return detail::zero_if_not_finite(now - before);
-  };
-  LedgerEntry<2> const entry{next.state.time,
-                             "refine",
-                             static_cast<double>(plan.parents.size()),
-                             since(strain, energy_at(std::as_const(next), std::as_const(next).u())),
-                             since(kinetic, kinetic_energy_of(next)),
-                             taken};
+  auto const change = [](double from, double to) { return detail::zero_if_not_finite(to - from); };
+  LedgerEntry<2> const entry{
+      next.state.time,
+      "refine",
+      static_cast<double>(plan.parents.size()),
+      change(strain, energy_at(std::as_const(next), std::as_const(next).u())),
+      change(kinetic, kinetic_energy_of(next)),
+      taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
   double const added = watched_change(next, before);
