@@ -102,7 +102,7 @@ struct Fan {
 };
 
 TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     static_assert(Backend<B>);
     static_assert(BackendArray<typename B::template Array<Index>, Index>);
     auto array = zeros<float>(backend, 1000);
@@ -126,7 +126,7 @@ TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
 }
 
 TEST_CASE("copies beyond the end of an array are refused", "[backend]") {
-  on_each_backend<AllBackends>([](auto const& backend) {
+  on_each_backend<AllPairs>([](auto const& backend) {
     auto array = zeros<float>(backend, 1000);
     std::vector<float> numbers(1001, 1.0f);
 
@@ -139,7 +139,7 @@ TEST_CASE("copies beyond the end of an array are refused", "[backend]") {
 }
 
 TEST_CASE("node loops see every node once", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     for (Index n : {0, 1, 31, 4096, 4097, 100000}) {
       INFO(n << " nodes");
       auto seen = zeros<double>(backend, static_cast<std::size_t>(n));
@@ -187,7 +187,7 @@ void check_rows(B const& backend) {
 }
 
 TEST_CASE("fields read and write their components of a row", "[backend]") {
-  on_each_backend<AllBackends>([](auto const& backend) {
+  on_each_backend<AllPairs>([](auto const& backend) {
     check_rows<1>(backend);
     check_rows<2>(backend);
     check_rows<3>(backend);
@@ -204,7 +204,7 @@ struct LastByte {
 };
 
 TEST_CASE("a histogram adds weights to bins", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     for (bool all_alike : {false, true})
       for (Index n : {0, 1, 31, 4097, 1000003}) {
         INFO(n << " values");
@@ -222,7 +222,7 @@ TEST_CASE("a histogram adds weights to bins", "[backend]") {
 }
 
 TEST_CASE("a recording does again what was recorded", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     auto seen = zeros<double>(backend, 3);
 
     auto const recording =
@@ -237,7 +237,7 @@ TEST_CASE("a recording does again what was recorded", "[backend]") {
 }
 
 TEST_CASE("accumulate adds each element's values to its nodes, by group", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using T = typename B::scalar;
     Fan<B> fan(backend);
     auto out = upload(backend, std::vector<T>(node_stride * fan.rows(), T(3)));
@@ -265,7 +265,7 @@ TEST_CASE("accumulate adds each element's values to its nodes, by group", "[back
 }
 
 TEST_CASE("loops over elements see each element of a group once", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using T = typename B::scalar;
     Fan<B> fan(backend);
     auto const check = [&] {
@@ -327,7 +327,7 @@ auto sweep(B const& backend, Fan<B> const& fan, Table const& table) {
 }
 
 TEST_CASE("loops over a list of patches pass over the elements of the others", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     Fan<B> fan(backend);
     Index const patches = fan.elements.patch_count();
     REQUIRE(patches > 2);
@@ -380,7 +380,7 @@ TEST_CASE("loops over a list of patches pass over the elements of the others", "
 }
 
 TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using T = typename B::scalar;
     Fan<B> fan(backend);
     auto out = zeros<T>(backend, node_stride * fan.rows());
@@ -420,7 +420,7 @@ TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backe
 }
 
 TEST_CASE("a node that does not exist is refused, with its element", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using Elements = typename B::template Elements<3>;
     using Table = std::vector<std::array<Index, 3>>;
     std::vector<Tag> const tags(2, Tag(0));
@@ -432,7 +432,7 @@ TEST_CASE("a node that does not exist is refused, with its element", "[backend]"
 }
 
 TEST_CASE("a table without elements does nothing", "[backend]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using T = typename B::scalar;
     typename B::template Elements<3> elements{backend, {}, 2, {}, 4};
     auto const x = upload(backend, std::vector<T>(16, T(1)));

@@ -29,6 +29,13 @@ using MainBackend = Reference<double>;
 #endif
 
 using DoubleBackends = Backends<double>;
-using AllBackends = decltype(std::tuple_cat(Backends<float>{}, Backends<double>{}));
+/// Each backend in each precision: what tests backends themselves.
+using AllPairs = decltype(std::tuple_cat(Backends<float>{}, Backends<double>{}));
+/// Each backend and each precision, on CPUs in pairs.
+#if defined(_OPENMP) && !defined(__CUDACC__)
+using AllBackends = std::tuple<Reference<float>, OpenMP<double>>;
+#else
+using AllBackends = AllPairs;
+#endif
 
 }  // namespace pliant::test
