@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <pliant/adaptation/family_momentum.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/body/change_topology.hpp>
 #include <pliant/element/linear.hpp>
 

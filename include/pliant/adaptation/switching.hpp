@@ -2,6 +2,7 @@
 
 #include <pliant/adaptation/criteria_visitor.hpp>
 #include <pliant/adaptation/rule.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/body/group_statistics.hpp>
 #include <pliant/body/point_visitors.hpp>
 

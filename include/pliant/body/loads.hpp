@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/backend/value_at.hpp>
 #include <pliant/body/parts.hpp>
 
 // Gravity, damping and nodal loads of a body.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/constraint/condition.hpp>
 
 namespace pliant {
