@@ -1,4 +1,4 @@
-"""The table of bench/compare/run: folder of <before|after>.<round>.json, rounds, file for the figures."""
+"""The table of bench/compare/run: folder of <before|after>.<round>.json, rounds, command, file for the figures."""
 
 import json
 import statistics
@@ -30,8 +30,11 @@ def main():
         medians = (statistics.median(t[name]) for t in (before, after))
         print(f"| {name} | " + " | ".join(f"{m:.2f}" for m in medians)
               + f" | {middle:.3f} | {low:.3f} to {high:.3f} |")
-    if len(sys.argv) > 3:
-        Path(sys.argv[3]).write_text(json.dumps({"before": before, "after": after}, indent=1) + "\n")
+    if len(sys.argv) > 4:
+        context = json.loads((folder / "after.0.json").read_text())["context"]
+        figures = {"command": sys.argv[3], "machine": context, "unit": "us",
+                   "times": {"before": before, "after": after}}
+        Path(sys.argv[4]).write_text(json.dumps(figures, indent=1) + "\n")
 
 
 if __name__ == "__main__":
