@@ -200,12 +200,12 @@ class Adaptation {
   void switch_groups(Parts& parts) const {
     if (!asks_whether_to_switch(parts) || something_moves(parts)) move_elements(parts);
   }
-  /// Between the steps of leapfrog nothing follows from a switch but the elements' own: on a backend that looks at
-  /// each tag as it goes, the host need not know of it.
+  /// Between the steps of leapfrog, and where no integrator has a step, nothing follows from a switch but the
+  /// elements' own: on a backend that looks at each tag as it goes, the host need not know of it.
   template <class Parts>
   static bool asks_whether_to_switch(Parts const& parts) {
     return Parts::backend_type::orders_by_group || parts.forces_current ||
-           parts.state.pending_half_kick == 0;
+           (parts.state.pending_half_kick == 0 && parts.state.integrator.step > 0);
   }
   template <class Parts>
   static bool something_moves(Parts const& parts) {
