@@ -173,6 +173,10 @@ TEST_CASE("a loaded run follows the options of the integrator that goes on with 
     CHECK(resume({.safety = 0.5}) == Approx(0.5 * stable_step(loaded)));
     first(body, 10);
     CHECK(first.step() == 1e-3);
+
+    CentralDifference safer{{.safety = 0.4}};
+    safer(body, 20);
+    CHECK(resume({.safety = 0.8}) == Approx(0.8 * stable_step(loaded)));
   });
 }
 

@@ -293,6 +293,26 @@ double largest_excess(TheBody& body, LocalSteps const& step) {
   return least;
 }
 
+TEST_CASE("what pulls where elements are coarse gives the impulse of its time", "[solver]") {
+  Patches<1> const backend;
+  auto body = body_of<Rubber>(backend, mesh::rectangle({.size = {6, 1}, .cells = {12, 2}}), gel);
+  for (int round = 0; round < 2; ++round)
+    refine(body, {{static_cast<Index>(body.mesh().template elements<Quad4>().size()) - 1}});
+  double const pressure = 1e-3;  // Pa, and so small that the side stays where it is
+  body.press(body.mesh().boundary("left"), pressure);
+  auto step = unwatched();
+  step(body, 40);
+  auto const& schedule = *body.parts().schedule;
+  REQUIRE(schedule.term_level < schedule.finest);
+
+  double pushed = 0;
+  auto const now = body.velocities();
+  for (std::size_t i = 0; i < now.size(); ++i)
+    pushed += body.parts().layout.mass_list[i] * now[i][0];
+
+  CHECK(pushed == Approx(pressure * body.time()).epsilon(1e-5));  // on 1 m
+}
+
 TEST_CASE("fine elements have two rings of their level around them", "[solver]") {
   auto body = split_strip<Rubber>(Patches<1>{});
   auto step = unwatched();
