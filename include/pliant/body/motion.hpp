@@ -5,6 +5,7 @@
 #include <pliant/backend/field.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/constraint/condition.hpp>
+#include <pliant/math/functions.hpp>
 
 // The node loops of a moving body.
 namespace pliant {
@@ -27,8 +28,15 @@ struct HalfKick {
     double const x = damping * time;
     return {static_cast<T>(std::exp(-x)), static_cast<T>(x > 0 ? -std::expm1(-x) / damping : time)};
   }
-  PLIANT_HOST_DEVICE T operator()(T v, T a) const { return keep * v + gain * a; }
+  PLIANT_HOST_DEVICE T operator()(T v, T a) const { return multiply_add(keep, v, gain * a); }
 };
+
+/// The acceleration in one direction of a node that a force pulls. Every kernel that moves nodes or books work
+/// has this one and HalfKick, so that they agree to the bit.
+template <class T>
+PLIANT_HOST_DEVICE T acceleration_in(T force, T inverse_mass, T gravity) {
+  return multiply_add(force, inverse_mass, gravity);
+}
 
 /// Brings velocities and displacements forward:
 ///   v ← the half-kick that the last step left pending
@@ -57,8 +65,7 @@ struct Advance {
     T const inverse_mass = T(1) / m;
     for (int k = 0; k < Dim; ++k) {
       if (mask >> k & 1) continue;
-      T a = force[k] * inverse_mass + external.gravity[k];
-      if (external.load) a += load[k] * inverse_mass;
+      T const a = acceleration_in(force[k] + load[k], inverse_mass, external.gravity[k]);
       T const speed = kick(lag(velocity[k], a), a);
       velocity[k] = speed;
       displacement[k] += drift * speed;
@@ -74,11 +81,12 @@ PLIANT_HOST_DEVICE Vector<T, Dim> acceleration_of(Index i, NodeField<T const, Di
                                                   DirectionMask held,
                                                   ExternalForces<T, Dim> const& external) {
   auto a = Vector<T, Dim>::zero();
+  T const inverse_mass = T(1) / m;
   for (int k = 0; k < Dim; ++k) {
     if (held >> k & 1) continue;
     T force = f.data ? f(i, k) : T(0);
     if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
-    a[k] = force / m + external.gravity[k];
+    a[k] = acceleration_in(force, inverse_mass, external.gravity[k]);
   }
   return a;
 }

@@ -51,6 +51,24 @@ PLIANT_HOST_DEVICE T abs(T x) {
   return std::fabs(x);
 }
 
+/// a b + c, which every kernel rounds alike: once where the target has an instruction for it, else twice.
+/// Compilers choose kernel by kernel how they round `a * b + c`; what two kernels must agree on is written so.
+template <std::floating_point T>
+PLIANT_HOST_DEVICE T multiply_add(T a, T b, T c) {
+#if defined(__CUDA_ARCH__)
+  return std::fma(a, b, c);
+#else
+  // A target without such an instruction has nothing to contract to.
+#if defined(__FP_FAST_FMA)
+  if constexpr (std::same_as<T, double>) return std::fma(a, b, c);
+#endif
+#if defined(__FP_FAST_FMAF)
+  if constexpr (std::same_as<T, float>) return std::fma(a, b, c);
+#endif
+  return a * b + c;
+#endif
+}
+
 /// `condition ? a : b`, evaluated without a branch on packs of elements.
 template <Arithmetic T>
 PLIANT_HOST_DEVICE constexpr T select(bool condition, T a, T b) {

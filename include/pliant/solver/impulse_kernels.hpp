@@ -69,8 +69,10 @@ struct MovingNodes {
     T const inverse_mass = T(1) / m;
     for (int k = 0; k < Dim; ++k) {
       if (held[i] >> k & 1) continue;
-      a[k] = rates.share[r] * impulse[k] * inverse_mass + external.gravity[k];
-      if (external.load) a[k] += NodeField<T const, Dim>{external.load}(i, k) * inverse_mass;
+      T load = T(0);
+      if (external.load) load = NodeField<T const, Dim>{external.load}(i, k);
+      a[k] = acceleration_in(multiply_add(rates.share[r], impulse[k], load), inverse_mass,
+                             external.gravity[k]);
     }
     return a;
   }
