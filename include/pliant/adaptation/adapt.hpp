@@ -55,7 +55,8 @@ void adapt(TheBody& body, C const& criterion, S const& strategy) {
     workspace.number = upload(parts.backend, table.user_element);
   detail::TableRules<Table, detail::Look<F, C>> const rules{{detail::Look<F, C>{criterion}}};
   detail::evaluate_criteria(
-      std::as_const(parts), std::as_const(table), rules, workspace,
+      std::as_const(parts), std::as_const(table), detail::active(std::as_const(table).elements),
+      rules, workspace,
       detail::TakeAction<T, Table::template group_of<F>, S>{strategy, workspace.number.data()},
       parts.no_counters);
 }

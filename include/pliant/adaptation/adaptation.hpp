@@ -5,6 +5,7 @@
 
 #include <pliant/adaptation/look_key.hpp>
 #include <pliant/adaptation/refinement.hpp>
+#include <pliant/adaptation/sleep_look.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/adaptation/table_check.hpp>
 #include <pliant/backend/host_recording.hpp>
@@ -32,7 +33,8 @@ struct BeginLook {
 /// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
 /// for the elements of its formulation, and the elements that it marks act. Where several rules that
 /// switch look at one formulation, the first that holds acts. Rules that switch go before rules that
-/// refine, which look at the groups after it. An element where a criterion is NaN does not act by that rule.
+/// refine, which look at the groups after it, and these before one that puts patches to sleep. In sleeping patches
+/// nothing switches. An element where a criterion is NaN does not act by that rule.
 template <Rule... Rules>
 class Adaptation {
  public:
@@ -64,7 +66,7 @@ class Adaptation {
   /// as it was; but for what listeners throw, who are told when all is done.
   template <DeformableBody TheBody>
   void now(TheBody& body) {
-    static_assert((TheBody::layout_type::template acts<typename Rules::from> && ...),
+    static_assert((acts_on<TheBody, Rules>() && ...),
                   "a rule is for an element type that the body's mesh does not have");
     auto& parts = body.parts();
     prepare(parts);
@@ -94,6 +96,11 @@ class Adaptation {
     } else if constexpr (refines) {
       if (auto const plan = refine_marked(parts)) tell_listeners(parts, *plan);
     }
+    if constexpr (sleeps) {
+      static_assert(!TheBody::has_internal_variables,
+                    "sleep takes no laws with internal variables, which go on relaxing at rest");
+      look_for_rest(parts, sleep_rule());
+    }
   }
 
   int interval() const { return interval_; }
@@ -115,11 +122,26 @@ class Adaptation {
  private:
   static constexpr bool switches = (SwitchingRule<Rules> || ...);
   static constexpr bool refines = (RefiningRule<Rules> || ...);
-  static constexpr bool takes_means =
-      (!std::same_as<
-           typename detail::TakersOfMeans<decltype(Rules::criterion), typename Rules::from>::type,
-           detail::TypeList<>> ||
-       ...);
+  static constexpr bool sleeps = (SleepingRule<Rules> || ...);
+  static_assert((0 + ... + int{SleepingRule<Rules>}) <= 1,
+                "an Adaptation has at most one rule that puts patches to sleep");
+  template <class R>
+  static constexpr bool takes_means_by() {
+    if constexpr (SleepingRule<R>)
+      return false;
+    else
+      return !std::same_as<
+          typename detail::TakersOfMeans<decltype(R::criterion), typename R::from>::type,
+          detail::TypeList<>>;
+  }
+  static constexpr bool takes_means = (takes_means_by<Rules>() || ...);
+  template <class TheBody, class R>
+  static constexpr bool acts_on() {
+    if constexpr (SleepingRule<R>)
+      return true;
+    else
+      return TheBody::layout_type::template acts<typename R::from>;
+  }
 
   /// What an integrator records of a look; lives on in the recording.
   class RecordedLook {
@@ -128,11 +150,11 @@ class Adaptation {
 
     int interval() const { return adapt_.interval_; }
     std::shared_ptr<void const> const& identity() const { return adapt_.identity_; }
-    /// Refining passes through the host, means at nodes allocate, timers do not run in recordings; on the host nothing
+    /// Refining and sleep pass through the host, means at nodes allocate, timers do not run in recordings; on the host nothing
     /// would be gained.
     template <class Parts>
     bool can_record(Parts const& parts) const {
-      return !refines && !takes_means &&
+      return !refines && !takes_means && !sleeps &&
              !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
              !parts.timers.criteria.timer && !parts.timers.migration.timer;
     }
@@ -152,6 +174,17 @@ class Adaptation {
     Adaptation adapt_;
   };
 
+  auto sleep_rule() const {
+    return std::get<0>(std::apply(
+        [](auto const&... rule) { return std::tuple_cat(sleep_rule_of(rule)...); }, rules_));
+  }
+  template <class R>
+  static auto sleep_rule_of(R const& rule) {
+    if constexpr (SleepingRule<R>)
+      return std::tuple<R>{rule};
+    else
+      return std::tuple<>{};
+  }
   template <class Parts>
   LastLook& last_look(Parts& parts, std::int64_t first) const {
     auto& looks = parts.state.record.looks;

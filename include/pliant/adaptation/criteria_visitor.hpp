@@ -212,16 +212,17 @@ auto surroundings(Parts const& parts, Table const& table,
   return around;
 }
 
-/// Evaluates the criteria of rules on the present state of a body.
-template <class Parts, class Table, class TheRules, class Take>
-void evaluate_criteria(Parts const& parts, Table const& table, TheRules const& rules,
+/// Evaluates the criteria of rules on the present state of a body, at some elements of a table.
+template <class Parts, class Table, class Elements, class TheRules, class Take>
+void evaluate_criteria(Parts const& parts, Table const& table,
+                       ActiveElements<Elements> const& elements, TheRules const& rules,
                        CriteriaWorkspace<typename Parts::backend_type>& workspace, Take const& take,
                        typename Parts::template Array<double>& counters) {
   using T = typename Parts::T;
   find_values_from_means(parts, table, rules, workspace);
   auto const around = surroundings<T, TheRules>(parts, table, workspace);
   parts.backend.template visit<Table::groups>(
-      table.elements,
+      elements,
       CriteriaVisitor<Table, TheRules, std::remove_const_t<decltype(around)>, Take>{
           table.laws, rules, around, take},
       counters, parts.rest(), parts.u());

@@ -36,8 +36,8 @@ std::vector<double> evaluate(TheBody const& body, C const& criterion) {
   }(typename Table::formulations{});
   auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
   CriteriaWorkspace<typename TheBody::backend_type> workspace;
-  detail::evaluate_criteria(parts, table, rules, workspace, detail::Store<T>{values.data()},
-                            parts.no_counters);
+  detail::evaluate_criteria(parts, table, detail::active(table.elements), rules, workspace,
+                            detail::Store<T>{values.data()}, parts.no_counters);
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)

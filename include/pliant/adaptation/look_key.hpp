@@ -20,8 +20,7 @@ void add_bytes(std::string& text, U value) {
 }
 
 template <class TheRule>
-void name_rule(std::string& text, TheRule const& rule) {
-  text += plain_type_name<TheRule>();
+void name_marking(std::string& text, TheRule const& rule) {
   Marking const& marking = rule.marking;
   add_bytes(text, static_cast<std::int64_t>(marking.kind));
   add_bytes(text, marking.amount);
@@ -29,6 +28,16 @@ void name_rule(std::string& text, TheRule const& rule) {
   add_bytes(text, marking.budget);
   if constexpr (SwitchingRule<TheRule>) add_bytes(text, std::int64_t{rule.stay});
   if constexpr (RefiningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.max_level});
+}
+template <class TheRule>
+void name_rule(std::string& text, TheRule const& rule) {
+  text += plain_type_name<TheRule>();
+  if constexpr (SleepingRule<TheRule>) {
+    add_bytes(text, rule.below);
+    add_bytes(text, rule.for_steps);
+  } else {
+    name_marking(text, rule);
+  }
 }
 
 /// Tells rules of other types or numbers apart, the data of criteria aside: they may hold bytes without a value.

@@ -28,6 +28,18 @@ struct RefineRule {
   RefineOptions options;
 };
 
+struct SleepOptions {
+  double below;  // m/s
+  std::int64_t for_steps = 64;
+};
+
+/// Patches whose nodes have been slower than `below` for so many steps, and which nothing pulls at that would give
+/// them that speed in as many, sleep until something would.
+struct SleepRule {
+  double below;
+  std::int64_t for_steps;
+};
+
 namespace detail {
 template <class R>
 concept MarksElements = requires(R const& rule) {
@@ -48,7 +60,13 @@ template <class R>
 concept RefiningRule = detail::MarksElements<R> && requires(R const& rule) {
   { rule.options.max_level } -> std::convertible_to<int>;
 };
+/// Puts patches to sleep that are at rest, whatever their formulation; `sleep` makes one.
 template <class R>
-concept Rule = SwitchingRule<R> || RefiningRule<R>;
+concept SleepingRule = requires(R const& rule) {
+  { rule.below } -> std::convertible_to<double>;
+  { rule.for_steps } -> std::convertible_to<std::int64_t>;
+};
+template <class R>
+concept Rule = SwitchingRule<R> || RefiningRule<R> || SleepingRule<R>;
 
 }  // namespace pliant

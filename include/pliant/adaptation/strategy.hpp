@@ -8,6 +8,7 @@
 //   when<Linear>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine({.max_level = 6})
 //   when<Linear>(RecoveredStress{}).bulk(0.5).refine({.max_level = 6})
 //   when<Linear>(all(VonMises{} > 1e5, Rotation{} < 0.1)).holds().become<Nonlinear>()
+//   sleep({.below = 1e-3, .for_steps = 64})
 namespace pliant {
 
 namespace detail {
@@ -108,6 +109,17 @@ class When {
   }
   C criterion_;
 };
+
+/// Lets patches sleep while they are at rest; see SleepRule. An Adaptation has at most one. Throws Error for a
+/// speed that is not positive, and for fewer steps than one.
+inline SleepRule sleep(SleepOptions const& options) {
+  if (!(options.below > 0) || !std::isfinite(options.below))
+    throw Error("sleep: below is ", options.below, " m/s; give a positive speed");
+  if (options.for_steps < 1 || options.for_steps > std::numeric_limits<std::int32_t>::max() / 2)
+    throw Error("sleep: for_steps is ", options.for_steps,
+                "; give at least 1, and 10⁹ at the most");
+  return {options.below, options.for_steps};
+}
 
 template <class From, class C>
 When<From, C> when(C criterion) {

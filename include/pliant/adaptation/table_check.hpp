@@ -59,8 +59,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   void decide() const {
     if constexpr (count > 0) {
       auto const decision = this->decision();
-      evaluate_criteria(std::as_const(parts_), std::as_const(table_), rules_, workspace(), decision,
-                        parts_.moves);
+      evaluate_criteria(std::as_const(parts_), std::as_const(table_), elements(), rules_,
+                        workspace(), decision, parts_.moves);
       if constexpr (switches)
         if (decision.ranks) {
           find_cuts(decision, []<class R>(R const&) { return SwitchingRule<R>; });
@@ -71,7 +71,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   void act() const {
     if constexpr (switches)
       backend().template visit<Table::groups>(
-          table_.elements,
+          parts_.awake_in(table_),
           ActVisitor<Table, Parts::dim, Rules...>{
               table_.laws, rules_,
               surroundings<T, All>(std::as_const(parts_), std::as_const(table_), workspace()),
@@ -104,6 +104,10 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
 
  private:
   // What of the body is read and changed.
+  /// Those that are looked at: of rules that compare elements with each other, and of those that refine, all.
+  auto elements() const {
+    return refines || ranks() ? active(table_.elements) : parts_.awake_in(table_);
+  }
   B const& backend() const { return parts_.backend; }
   CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
   SwitchTarget<T> target() const {

@@ -23,4 +23,11 @@ struct ValueAt {
   }
 };
 
+template <class T>
+struct FillValue {
+  T* values;
+  T value;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { values[i] = value; }
+};
+
 }  // namespace pliant::detail

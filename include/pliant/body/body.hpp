@@ -139,7 +139,7 @@ class Body {
   /// (nodes, dim), N: internal forces −∂W/∂u of the present displacements, pressures and the user's force
   /// terms, without gravity and loads; those of slaves are with their masters.
   Points forces() {
-    evaluate_forces(*parts_);
+    evaluate_all_forces(*parts_);
     parts_->layout.interpolation.clear(parts_->backend, parts_->f());
     return parts_->layout.in_user_order(parts_->layout.f);
   }

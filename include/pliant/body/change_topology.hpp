@@ -118,6 +118,7 @@ void follow_state(Parts& parts) {
   renew_terms(parts);
   make_room_for_forces(parts);
   set_step_size(parts, std::exchange(parts.state.step_size, 0.0));  // its laws are new
+  follow_rest(parts);
 }
 
 /// Makes parts that parts_on gave those of the body, and cannot fail: whatever throws has thrown before. What is
@@ -128,6 +129,8 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.recorded_stretch.reset();
   parts.recorded_with_look.reset();
   parts.schedule.reset();
+  parts.patch_nodes = std::move(next.patch_nodes);
+  parts.awake = std::move(next.awake);
   parts.checkpoint.reset();
   parts.has_checkpoint = false;
   parts.scratch.reset();
@@ -141,6 +144,7 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.row_sums = {};
   parts.without_energy = {};
   parts.forces_current = next.forces_current;
+  parts.forces_complete = next.forces_complete;
   parts.loads_current = next.loads_current;
   parts.revision = next.revision + 1;
 }
@@ -162,6 +166,7 @@ ChangedTopology<Parts> change_topology(
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   synchronize_velocities(parts);
+  wake_all(parts);
   auto const& old = parts.layout;
   auto u = old.in_user_order(parts.state.u), v = old.in_user_order(parts.state.v);
   detail::check_field("refine (displacements)", u, old.nodes);
@@ -198,6 +203,7 @@ ChangedTopology<Parts> change_topology(
       parts_on(parts, std::move(layout), std::move(topology), std::move(prescribed)), taken};
   auto& next = changed.parts;
   auto& state = next.state;
+  state.rest.clear();
   state.record.totals = detail::closed_totals(parts);
   state.record.born = state.steps;
   state.u.upload(next.layout.padded(u));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/body/velocities.hpp>
+#include <pliant/body/sleep.hpp>
 
 // States to go back to.
 namespace pliant {
@@ -25,6 +25,7 @@ void roll_back(Parts& parts) {
   set_step_size(parts, step);
   parts.for_each_type([](auto& table, auto&) { table.elements.regroup(); });
   parts.loads_current = false;
+  follow_rest(parts);
   parts.schedule.reset();
   ++parts.revision;  // gravity and damping may be others
 }

@@ -5,6 +5,17 @@
 
 namespace pliant {
 
+/// Two upper bounds of ω², 1/s²: by the elements' eigenvalues, and by the sums of rows over masses.
+struct FrequencyBounds {
+  double elements = 0, rows = 0;
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("by elements", r.elements...);
+    visit("by rows", r.rows...);
+  }
+};
+
 /// What an explicit integrator keeps from call to call. It stands in the body's state, so that a run that
 /// is rolled back or resumed goes on as it would have.
 struct IntegratorState {

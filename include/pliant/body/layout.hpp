@@ -29,6 +29,13 @@ struct Layout<B, Mesh<Es...>, Fs...> {
                 "every element type of the mesh needs a Group of a formulation on that element");
   template <class E>
   static constexpr bool has = (std::same_as<E, Es> || ...);
+  /// The place of an element type among the mesh's.
+  template <class E>
+  static constexpr std::size_t type_of = [] {
+    std::size_t at = 0, found = 0;
+    ((std::same_as<E, Es> ? found = at++ : at++), ...);
+    return found;
+  }();
   template <class F>
   static constexpr bool acts = has<typename F::element>;
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");

@@ -36,10 +36,9 @@ struct AddValue {
 
 template <class Parts>
 double acceleration_term_of(Parts& parts, typename Parts::ConstField f) {
-  return parts.backend.sum(
-      parts.layout.nodes,
-      AccelerationTerm<typename Parts::T, Parts::dim>{
-          f, parts.layout.mass.data(), parts.layout.held.data(), external_forces(parts)});
+  return parts.backend.sum(parts.layout.nodes,
+                           AccelerationTerm<typename Parts::T, Parts::dim>{
+                               f, parts.layout.mass.data(), parts.still(), external_forces(parts)});
 }
 
 }  // namespace detail
@@ -67,6 +66,15 @@ WatchedEnergy leapfrog_energy(Parts& parts) {
   return {total_energy_of(parts), step * step * acceleration_term(parts)};
 }
 
+/// Adds to what is booked, J. What is not finite is not; see unbooked_changes.
+template <class Parts>
+void book(Parts& parts, Work what, double added) {
+  bool const booked = std::isfinite(added);
+  parts.backend.for_each(1, detail::AddValue{parts.state.work.data() +
+                                                 static_cast<int>(booked ? what : Work::unbooked),
+                                             booked ? added : 1.0});
+}
+
 /// Calls move(), which moves elements between groups, and books what it adds to the energy that leapfrog keeps
 /// beyond what the elements tell, where velocities are those of the present time: −Δt² times the change
 /// of Σ m a²/8. While a half-kick is pending, the elements tell all, and nothing waits.
@@ -76,13 +84,7 @@ void book_switching(Parts& parts, Move const& move) {
   double const before = step > 0 ? acceleration_term(parts) : 0;
   move();
   if (step == 0) return;
-  double const added = -step * step * (acceleration_term(parts) - before);
-  // What is not finite is not booked; see unbooked_changes.
-  bool const booked = std::isfinite(added);
-  parts.backend.for_each(
-      1, detail::AddValue{
-             parts.state.work.data() + static_cast<int>(booked ? Work::switching : Work::unbooked),
-             booked ? added : 1.0});
+  book(parts, Work::switching, -step * step * (acceleration_term(parts) - before));
 }
 
 }  // namespace pliant

@@ -91,10 +91,12 @@ std::vector<int> switch_counts(TheBody const& body) {
   return counts;
 }
 
-/// What switching and refining have added to the strain and kinetic energy so far, J.
+/// What switching, refining and sleep have added to the strain and kinetic energy so far, J.
 template <class Parts>
 double adaptation_energy_of(Parts const& parts) {
-  double sum = download<double>(parts.state.work)[static_cast<std::size_t>(Work::switching)];
+  auto const work = download<double>(parts.state.work);
+  double sum =
+      work[static_cast<std::size_t>(Work::switching)] + work[static_cast<std::size_t>(Work::sleep)];
   for (auto const& entry : parts.state.record.refinements)
     sum += entry.strain_energy + entry.kinetic_energy;
   detail::for_each_numbered_type(
@@ -160,8 +162,8 @@ double booked_energy(Parts const& parts) {
 }
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved
-/// between, summed over time, one of what elements that moved together added beyond that, and one per
-/// refinement. A refinement has the time at which it was made; sums over time have the body's present time.
+/// between, summed over time, one of what elements that moved together added beyond that, one of what
+/// falling asleep took and waking gave, and one per refinement. A refinement has the time at which it was made; sums over time have the body's present time.
 template <DeformableBody TheBody>
 auto ledger(TheBody const& body) {
   auto entries = body.state().record.refinements;
@@ -183,9 +185,11 @@ auto ledger(TheBody const& body) {
                    {}});
           }
       });
-  double const together =
-      download<double>(body.state().work)[static_cast<std::size_t>(Work::switching)];
+  auto const work = download<double>(body.state().work);
+  double const together = work[static_cast<std::size_t>(Work::switching)];
+  double const sleep = work[static_cast<std::size_t>(Work::sleep)];
   if (together != 0) entries.push_back({body.time(), "groups together", 0, 0, together, {}});
+  if (sleep != 0) entries.push_back({body.time(), "sleep", 0, 0, sleep, {}});
   return entries;
 }
 

@@ -8,8 +8,8 @@ namespace pliant {
 
 namespace detail {
 /// Sets one row of the loads; what that adds to the energy that is watched is summed where it is: −Δload·u, and
-/// −Δt² m (a'² − a²)/8 of what leapfrog keeps, with the node's acceleration before and after. (Of the loads
-/// of slaves, the second part is left out.)
+/// −Δt² m (a'² − a²)/8 of what leapfrog keeps, with the node's acceleration before and after. For nodes that are
+/// no slaves.
 template <class T, int Dim>
 struct SetLoad {
   NodeField<T, Dim> load;
@@ -86,12 +86,18 @@ double potential_energy_of(Parts& parts) {
           std::as_const(parts).u(), parts.layout.mass.data(), external_forces(parts)});
 }
 
-/// The loads of all nodes, N, in the user's order; empty where none was set.
+/// The loads of all nodes, N, in the user's order; zero where none was set.
+template <class Parts>
+std::vector<Point<Parts::dim>> nodal_loads_of(Parts const& parts) {
+  if (parts.state.load.size() > 0) return parts.layout.in_user_order(parts.state.load);
+  return std::vector<Point<Parts::dim>>(static_cast<std::size_t>(parts.layout.nodes));
+}
+/// The same, of a body; empty where none was set.
 template <DeformableBody TheBody>
 auto nodal_loads(TheBody const& body) {
   auto const& parts = body.parts();
   std::vector<Point<TheBody::dim>> loads;
-  if (parts.state.load.size() > 0) loads = parts.layout.in_user_order(parts.state.load);
+  if (parts.state.load.size() > 0) loads = nodal_loads_of(parts);
   return loads;
 }
 

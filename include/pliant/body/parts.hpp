@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include <pliant/backend/patch_list.hpp>
+#include <pliant/body/awake_set.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/body/looker.hpp>
 #include <pliant/body/state.hpp>
@@ -63,9 +65,10 @@ struct Parts {
   std::vector<Point<dim>> before_drives{};       // see place_before_drives
   std::vector<std::function<void(TopologyChange<M> const&)>> listeners{};
 
-  bool forces_current = false;  // while they are not, the nodes' rows of layout.f are zero
-  bool loads_current = false;   // whether layout.load has state.load, those of slaves handed on
-  long revision = 0;            // changes whenever recorded kernels would no longer be right
+  bool forces_current = false;   // while they are not, the nodes' rows of layout.f are zero
+  bool forces_complete = false;  // whether these are the forces of sleeping patches too
+  bool loads_current = false;    // whether layout.load has state.load, those of slaves handed on
+  long revision = 0;             // changes whenever recorded kernels would no longer be right
   std::optional<state_type> checkpoint{};
   bool has_checkpoint = false;  // of the present mesh, with no change by hand since
   /// The energies that an integrator watches; set by it.
@@ -85,6 +88,8 @@ struct Parts {
   std::optional<Recorded> recorded_stretch{};    // several
   std::optional<Recorded> recorded_with_look{};  // and a look of an adaptation behind them
   std::optional<StepSchedule<B>> schedule{};     // of local time steps; see solver/local_steps.hpp
+  std::optional<PatchNodes<B>> patch_nodes{};    // made when something first looks for rest
+  std::optional<AwakeSet<B>> awake{};            // while patches sleep; see body/sleep.hpp
   struct Scratch {
     Array<T> u, du, f;
   };
@@ -106,6 +111,19 @@ struct Parts {
   Placement<T, dim> at(ConstField displacements) const { return {rest(), displacements}; }
   Placement<T, dim> here() const { return at(u()); }
   ElementGroups<layout_type> elements() const { return ElementGroups<layout_type>(layout); }
+  /// Those of patches that are awake.
+  ElementGroups<layout_type> awake_elements() const {
+    return ElementGroups<layout_type>(layout, awake ? &awake->patches : nullptr);
+  }
+
+  /// The elements of a table's patches that are awake, for verbs.
+  template <class Table>
+  auto awake_in(Table const& table) const {
+    constexpr std::size_t type = layout_type::template type_of<typename Table::element>;
+    return awake ? over(table.elements, awake->patches[type]) : detail::active(table.elements);
+  }
+  /// (nodes): the directions in which nodes do not move, held or asleep.
+  DirectionMask const* still() const { return awake ? awake->still.data() : layout.held.data(); }
 
   /// visit(table, element state) for each element type.
   template <class Visit>

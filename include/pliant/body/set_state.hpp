@@ -64,6 +64,7 @@ void change_loads(Parts& parts, Change const& change) {
 template <class Parts>
 void set_gravity(Parts& parts, Point<Parts::dim> const& g) {
   for (double x : g) detail::check_number<typename Parts::T>("body.set_gravity", x);
+  if (g != parts.state.gravity) wake_all(parts);
   change_loads(parts, [&] { parts.state.gravity = g; });
 }
 
@@ -78,6 +79,24 @@ void set_damping(Parts& parts, double per_mass) {
 }
 
 template <class Parts>
+void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
+  detail::check_field<typename Parts::T>("body.set_loads", forces, parts.layout.nodes);
+  if (parts.awake) {  // nodes that are pulled otherwise wake
+    auto const before = nodal_loads_of(parts);
+    auto const same = [](double a, double b) {
+      return static_cast<typename Parts::T>(a) == static_cast<typename Parts::T>(b);
+    };
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (!std::ranges::equal(before[i], forces[i], same))
+        wake_node(parts, parts.layout.internal_of(static_cast<Index>(i)));
+  }
+  change_loads(parts, [&] {
+    make_loads(parts);
+    parts.state.load.upload(parts.layout.padded(forces));
+  });
+}
+
+template <class Parts>
 void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
   using T = typename Parts::T;
   if (node < 0 || node >= parts.layout.nodes)
@@ -87,6 +106,13 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
     if (!std::isfinite(static_cast<T>(x)))
       throw Error("body.set_load: the force at node ", node,
                   std::isfinite(x) ? " is too large for single precision" : " is not finite");
+  // The loads of slaves pull at several nodes.
+  if (parts.state.topology->interpolation.row_of(node) != nullptr) {
+    auto loads = nodal_loads_of(parts);
+    loads[static_cast<std::size_t>(node)] = force;
+    return set_loads(parts, loads);
+  }
+  wake_node(parts, parts.layout.internal_of(node));
   synchronize_velocities(parts);
   make_loads(parts);
   double const step = parts.watched_energy ? parts.state.integrator.step : 0;
@@ -96,22 +122,13 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
                                                            std::as_const(parts).u(),
                                                            {parts.layout.f.data()},
                                                            parts.layout.mass.data(),
-                                                           parts.layout.held.data(),
+                                                           parts.still(),
                                                            external,
                                                            step,
                                                            parts.layout.internal_of(node),
                                                            detail::vector_of<T>(force),
                                                            parts.state.work.data()});
   parts.loads_current = false;
-}
-
-template <class Parts>
-void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
-  detail::check_field<typename Parts::T>("body.set_loads", forces, parts.layout.nodes);
-  change_loads(parts, [&] {
-    make_loads(parts);
-    parts.state.load.upload(parts.layout.padded(forces));
-  });
 }
 
 /// Goes back to the last checkpoint with gravity, damping and loads as they are, since it is not the run that
@@ -126,6 +143,7 @@ void roll_back_motion(Parts& parts) {
   roll_back(parts);
   parts.state.damping = damping;
   if (gravity == parts.state.gravity && load.size() == 0) return;
+  wake_all(parts);
   change_loads(parts, [&] {
     parts.state.gravity = gravity;
     if (load.size() == 0) return;

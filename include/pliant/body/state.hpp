@@ -16,9 +16,19 @@
 namespace pliant {
 
 /// Work that is summed where loops run, J: of changes of loads, of mass damping, of driven nodes, of
-/// pressures; and of changes of group, what no element knows alone (see book_switching). `unbooked` counts the
+/// pressures; of changes of group, what no element knows alone (see book_switching); and of patches that fall asleep or
+/// wake. `unbooked` counts the
 /// changes of loads whose work is not finite, and so is in no sum.
-enum class Work : int { changed_loads, damping, motions, pressures, switching, unbooked, count };
+enum class Work : int {
+  changed_loads,
+  damping,
+  motions,
+  pressures,
+  switching,
+  sleep,
+  unbooked,
+  count
+};
 
 /// What a run changes of the elements of one type, in internal order.
 template <Backend B, int Groups>
@@ -72,6 +82,11 @@ struct State<B, Mesh<Es...>, Fs...> {
   double energy_of_steps = 0;    // J: what changes of the step added to what leapfrog keeps
   double energy_by_hand = 0;     // J: what a user's changes of the state added since a run began
   std::int64_t steps = 0;
+  /// (patches of all types): for how many steps each has been at rest; negative while it sleeps. Empty where
+  /// nothing looks for rest.
+  std::vector<std::int32_t> rest;
+  std::int64_t rest_seen = 0;  // at which step that was looked at
+  FrequencyBounds bounds;      // of all that was awake when the step was chosen last
   AdaptationRecord<dim> record;
   IntegratorState integrator;
 
@@ -102,6 +117,9 @@ struct State<B, Mesh<Es...>, Fs...> {
     visit("energy of changes of the step", s.energy_of_steps...);
     visit("energy added by hand", s.energy_by_hand...);
     visit("steps", s.steps...);
+    visit("steps at rest", s.rest...);
+    visit("step of the last look for rest", s.rest_seen...);
+    visit("bounds of frequencies", s.bounds...);
     AdaptationRecord<dim>::for_each_member(visit, s.record...);
     visit("integrator", s.integrator...);
   }

@@ -12,7 +12,22 @@ HalfKick<typename Parts::T> half_kick(Parts const& parts, double time) {
   return HalfKick<typename Parts::T>::over(time, parts.state.damping);
 }
 
+/// Whether added force terms pull: they may pull at nodes that sleep, without a part of their patches in it.
+template <class Parts>
+bool has_added_terms(Parts const& parts) {
+  return !parts.pressures.empty() || !parts.terms.empty();
+}
+
 namespace detail {
+
+/// loop(f) over the nodes, or over those that may move, where the forces of the others are zero.
+template <class Parts, class F, class Loop>
+void over_moving_nodes(Parts const& parts, F const& f, Loop const& loop) {
+  if (parts.awake && !has_added_terms(parts) && !parts.forces_complete)
+    loop(AtAwakeNodes<F>{parts.awake->nodes.data(), f});
+  else
+    loop(f);
+}
 
 /// Whether some terms have no energy; makes room for their forces, which a recorded step cannot.
 template <class Parts>
@@ -51,11 +66,14 @@ void book_work(Parts& parts, double lag, double kick, bool drifts) {
   for (bool first : {true, false}) {
     if ((first ? lag : kick) == 0) continue;
     if (parts.state.damping > 0)
-      parts.backend.add_sum(layout.nodes,
-                            DampingWork<T, dim>{v, f, layout.mass.data(), layout.held.data(),
-                                                external, half_kick(parts, lag),
-                                                half_kick(parts, kick), first ? lag : kick, first},
-                            work + static_cast<int>(Work::damping));
+      over_moving_nodes(parts,
+                        DampingWork<T, dim>{v, f, layout.mass.data(), parts.still(), external,
+                                            half_kick(parts, lag), half_kick(parts, kick),
+                                            first ? lag : kick, first},
+                        [&](auto const& of_node) {
+                          parts.backend.add_sum(layout.nodes, of_node,
+                                                work + static_cast<int>(Work::damping));
+                        });
     for (auto const& driven : parts.driven)
       driven.add_work(parts.backend, v, f, layout.mass.data(), external.gravity, external.load,
                       first ? lag : 0, first ? 0 : kick, drifts && !first,
@@ -82,16 +100,17 @@ void advance(Parts& parts, double lag, double kick, double drift) {
           parts.state.work.data() + static_cast<int>(Work::pressures));
   };
   book_hidden(lag);
-  parts.backend.for_each(
-      layout.nodes,
-      Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), layout.held.data(),
+  detail::over_moving_nodes(
+      parts,
+      Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), parts.still(),
                       external_forces(parts), half_kick(parts, lag), half_kick(parts, kick),
-                      static_cast<T>(drift)});
+                      static_cast<T>(drift)},
+      [&](auto const& of_node) { parts.backend.for_each(layout.nodes, of_node); });
   layout.interpolation.apply(parts.backend, parts.v());
   book_hidden(kick);
   if (drift != 0) {
     layout.interpolation.apply(parts.backend, parts.u());
-    parts.forces_current = false;
+    parts.forces_current = parts.forces_complete = false;
   }
 }
 

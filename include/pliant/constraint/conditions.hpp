@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include <pliant/body/velocities.hpp>
+#include <pliant/body/sleep.hpp>
 #include <pliant/mesh/sides.hpp>
 
 // What a body's conditions make of its nodes, in the backend's memory.
@@ -103,11 +103,12 @@ double watched_change(Parts& parts, WatchedEnergy const& before) {
 }
 
 /// Runs a change of the state by a user's hand: `change()`. Velocities are brought up to the present time
-/// first. Once an integrator watches the energy, what the change adds to it is booked; forces are
+/// first, and all that sleeps wakes. Once an integrator watches the energy, what the change adds to it is booked; forces are
 /// evaluated anew, the stable step is asked for again, and roll-back does not cross it.
 template <class Parts, class Change>
 void change_by_hand(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
+  wake_all(parts);
   auto const before = present_energy(parts);
   change();
   forget_forces(parts);

@@ -13,7 +13,7 @@ std::vector<Point<Parts::dim>> reactions(Parts& parts, Handle handle) {
   auto const found = std::ranges::find(conditions, handle, &Condition<Parts::dim>::handle);
   if (found == conditions.end())
     throw Error("body.reactions: handle ", handle.id, " names no condition of this body");
-  evaluate_forces(parts);
+  evaluate_all_forces(parts);
   parts.layout.interpolation.clear(parts.backend, parts.f());  // the masters have it
   auto const external = external_forces(parts);
   auto const f = parts.layout.in_user_order(parts.layout.f);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/backend/patch_list.hpp>
 #include <pliant/force/element_kernels.hpp>
 #include <pliant/force/force_term.hpp>
 
@@ -12,9 +13,12 @@ class ElementGroups {
   using At = Placement<T, Layout::dim>;
   using Field = NodeField<T, Layout::dim>;
   using ConstField = NodeField<T const, Layout::dim>;
+  using PatchList = typename Layout::template Array<Index>;
 
  public:
-  explicit ElementGroups(Layout const& layout) : layout_(layout) {}
+  /// `lists`: of each table, the patches whose forces and rows are added; null: all.
+  explicit ElementGroups(Layout const& layout, std::vector<PatchList> const* lists = nullptr)
+      : layout_(layout), lists_(lists) {}
 
   Index scratch_nodes() const {
     Index rows = 0;
@@ -39,12 +43,12 @@ class ElementGroups {
   }
   template <class B>
   void add_force(B const& backend, At const& at, Field f) const {
-    for_each_table([&](auto const& table) {
+    for_each_active([&](auto const& table, auto const& elements) {
       using Table = std::remove_cvref_t<decltype(table)>;
       table.with_geometry([&](auto geometry) {
         backend.template accumulate<Table::groups>(
-            table.elements, ForceKernel<typename Table::Laws, geometry.value>{table.laws}, f,
-            at.rest, at.u);
+            elements, ForceKernel<typename Table::Laws, geometry.value>{table.laws}, f, at.rest,
+            at.u);
       });
     });
   }
@@ -71,10 +75,10 @@ class ElementGroups {
   }
   template <class B>
   void add_row_sums(B const& backend, At const& at, Field rows) const {
-    for_each_table([&](auto const& table) {
+    for_each_active([&](auto const& table, auto const& elements) {
       using Table = std::remove_cvref_t<decltype(table)>;
       backend.template accumulate<Table::groups>(
-          table.elements, RowSumKernel<typename Table::Laws>{table.laws}, rows, at.rest, at.u);
+          elements, RowSumKernel<typename Table::Laws>{table.laws}, rows, at.rest, at.u);
     });
   }
 
@@ -83,7 +87,17 @@ class ElementGroups {
   void for_each_table(Visit const& visit) const {
     std::apply([&](auto const&... table) { (visit(table), ...); }, layout_.tables);
   }
+  /// visit(table, its elements that pull).
+  template <class Visit>
+  void for_each_active(Visit const& visit) const {
+    std::size_t type = 0;
+    for_each_table([&](auto const& table) {
+      visit(table, lists_ ? over(table.elements, (*lists_)[type]) : detail::active(table.elements));
+      ++type;
+    });
+  }
   Layout const& layout_;
+  std::vector<PatchList> const* lists_;
 };
 
 }  // namespace pliant

@@ -47,15 +47,33 @@ template <class Parts>
 void forget_forces(Parts& parts) {
   if (!parts.forces_current) return;
   clear_rows(parts, parts.f());
-  parts.forces_current = false;
+  parts.forces_current = parts.forces_complete = false;
 }
 
-/// Brings layout.f up to the present displacements.
+/// f += what pulls at nodes that may move, at the present displacements: sleeping patches are passed over.
+template <class Parts>
+void accumulate_awake_forces(Parts const& parts, typename Parts::Field f) {
+  parts.awake_elements().add_force(parts.backend, parts.here(), f);
+  for_each_added_term(parts,
+                      [&](auto const& term) { term.add_force(parts.backend, parts.here(), f); });
+  parts.layout.interpolation.add_transpose(parts.backend, f);
+}
+
+/// Brings layout.f up to the present displacements, at nodes that may move.
 template <class Parts>
 void evaluate_forces(Parts& parts) {
   if (parts.forces_current) return;
-  accumulate_forces(parts, std::as_const(parts).u(), parts.f());
+  accumulate_awake_forces(std::as_const(parts), parts.f());
   parts.forces_current = true;
+  parts.forces_complete = !parts.awake;
+}
+/// The same, at all nodes.
+template <class Parts>
+void evaluate_all_forces(Parts& parts) {
+  if (parts.forces_current && parts.forces_complete) return;
+  forget_forces(parts);
+  accumulate_forces(parts, std::as_const(parts).u(), parts.f());
+  parts.forces_current = parts.forces_complete = true;
 }
 
 /// Makes layout.f long enough for the scratch rows of all terms. The forces in it are lost.
@@ -69,7 +87,7 @@ void make_room_for_forces(Parts& parts) {
     parts.layout.f = zeros<typename Parts::T>(parts.backend, node_stride * rows);
   else
     clear_rows(parts, parts.f());
-  parts.forces_current = false;
+  parts.forces_current = parts.forces_complete = false;
   parts.scratch.reset();
   parts.schedule.reset();
   ++parts.revision;

@@ -40,19 +40,20 @@ struct DistortionVisitor {
 }  // namespace detail
 
 namespace detail {
-/// Leaves the distortion of each element in its table's scratch.
+/// Leaves the distortion of each element in its table's scratch; 0 of those that sleep.
 template <class Parts, class Table>
 void evaluate_distortion(Parts& parts, Table& table) {
   using T = typename Parts::T;
   if (table.scratch.size() == 0)
     table.scratch = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
+  if (parts.awake) parts.backend.for_each(table.count(), FillValue<T>{table.scratch.data(), T(0)});
   parts.backend.template visit<Table::groups>(
-      table.elements, DistortionVisitor<T, typename Table::Laws>{table.scratch.data()},
+      parts.awake_in(table), DistortionVisitor<T, typename Table::Laws>{table.scratch.data()},
       parts.no_counters, parts.rest(), std::as_const(parts).u());
 }
 }  // namespace detail
 
-/// The largest distortion of an element, ‖F‖² + ‖F⁻¹‖² − 2 d in its middle.
+/// The largest distortion of an element that is awake, ‖F‖² + ‖F⁻¹‖² − 2 d in its middle.
 template <class Parts>
 double largest_distortion(Parts& parts) {
   double largest = 0;

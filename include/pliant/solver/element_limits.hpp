@@ -37,13 +37,6 @@ struct AddLargestOfNodes {
   }
 };
 
-template <class T>
-struct FillValue {
-  T* values;
-  T value;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { values[i] = value; }
-};
-
 /// A field of one value per node, in the memory that is there for row sums.
 template <class Parts>
 NodeField<typename Parts::T, 1> node_scratch(Parts& parts) {

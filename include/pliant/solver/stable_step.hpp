@@ -89,9 +89,12 @@ struct RowOverMass {
   }
 };
 
-/// An upper bound of ω², 1/s².
+/// Which elements a bound is asked of.
+enum class Among { all, awake };
+
+/// Two upper bounds of ω², 1/s².
 template <class Parts>
-double squared_frequency_bound(Parts& parts) {
+FrequencyBounds frequency_bounds(Parts& parts, Among among) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
@@ -101,10 +104,11 @@ double squared_frequency_bound(Parts& parts) {
   NodeField<T, dim> const rows{parts.row_sums.data()};
   clear_rows(parts, rows);
   auto const largest_row = [&] {
-    return backend.maximum(
-        parts.layout.nodes,
-        detail::RowOverMass<T, dim>{
-            {parts.row_sums.data()}, parts.layout.mass.data(), parts.layout.held.data()});
+    return backend.maximum(parts.layout.nodes,
+                           detail::RowOverMass<T, dim>{
+                               {parts.row_sums.data()},
+                               parts.layout.mass.data(),
+                               among == Among::awake ? parts.still() : parts.layout.held.data()});
   };
   // Terms beside the elements have no mass of their own: only their rows bound them.
   double by_terms = 0;
@@ -113,7 +117,8 @@ double squared_frequency_bound(Parts& parts) {
     parts.layout.interpolation.apply_transpose(backend, rows);
     by_terms = largest_row();
   }
-  parts.elements().add_row_sums(backend, at, rows);
+  (among == Among::awake ? parts.awake_elements() : parts.elements())
+      .add_row_sums(backend, at, rows);
   double by_elements = 0;
   parts.for_each_type([&](auto& table, auto&) {
     using Table = std::remove_cvref_t<decltype(table)>;
@@ -121,8 +126,12 @@ double squared_frequency_bound(Parts& parts) {
     using Laws = typename Table::Laws;
     if (table.scratch.size() == 0)
       table.scratch = zeros<T>(backend, static_cast<std::size_t>(table.count()));
+    bool const awake = among == Among::awake && parts.awake;
+    if (awake) backend.for_each(table.count(), FillValue<T>{table.scratch.data(), T(0)});
+    auto const& const_table = std::as_const(table);
+    auto const elements = awake ? parts.awake_in(const_table) : active(const_table.elements);
     backend.template visit<Table::groups>(
-        table.elements,
+        elements,
         detail::ElementSpectra<T, Laws>{table.laws, static_cast<T>(parts.material.density),
                                         table.scratch.data()},
         parts.no_counters, at.rest, at.u);
@@ -130,12 +139,22 @@ double squared_frequency_bound(Parts& parts) {
         by_elements, backend.maximum(table.count(), detail::ValueAt<T>{table.scratch.data()}));
   });
   parts.layout.interpolation.add_transpose(backend, rows);
-  double const eigenvalue = std::min(by_elements + by_terms, largest_row());
+  return {by_elements + by_terms, largest_row()};
+}
+
+/// The better one, 1/s². Throws Error when there is none.
+template <class Parts>
+double squared_frequency(Parts const& parts, FrequencyBounds const& bounds) {
+  double const eigenvalue = std::min(bounds.elements, bounds.rows);
   if (!std::isfinite(eigenvalue) || !(eigenvalue > 0))
     throw Error("stable_step: the stiffness of the body is ",
                 eigenvalue > 0 ? "not finite" : "zero", " at time ", parts.state.time,
                 " s; an element has collapsed, or every node is held");
   return eigenvalue;
+}
+template <class Parts>
+double squared_frequency_bound(Parts& parts) {
+  return squared_frequency(parts, frequency_bounds(parts, Among::all));
 }
 
 }  // namespace detail
@@ -167,6 +186,23 @@ double stable_step_of(Parts& parts) {
       step /= excess;
     }
     return step;
+  }
+}
+
+/// The same for an integrator, which looks at sleeping patches no more: of them it knows the bounds from before, and so
+/// takes no longer a step while something sleeps. These bounds are part of the state.
+template <class Parts>
+double awake_stable_step_of(Parts& parts) {
+  if constexpr (Parts::has_internal_variables) {
+    return stable_step_of(parts);
+  } else {
+    auto bounds = detail::frequency_bounds(parts, detail::Among::awake);
+    if (parts.awake) {
+      bounds.elements = std::max(bounds.elements, parts.state.bounds.elements);
+      bounds.rows = std::max(bounds.rows, parts.state.bounds.rows);
+    }
+    parts.state.bounds = bounds;
+    return 2 / std::sqrt(detail::squared_frequency(parts, bounds));
   }
 }
 

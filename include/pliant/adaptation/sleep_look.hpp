@@ -1,0 +1,175 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <pliant/adaptation/rule.hpp>
+#include <pliant/body/sleep.hpp>
+
+// Looks for patches that come to rest, and for sleeping ones that something pulls at.
+namespace pliant {
+
+namespace detail {
+
+/// Marks the patches of nodes that are not at rest: faster than a speed, or pulled so that they would be within a
+/// time.
+template <class T, int Dim>
+struct MarkStirred {
+  NodeField<T const, Dim> v, f, kept;  // kept: of sleeping patches; may have no data
+  T const* mass;
+  DirectionMask const* held;
+  ExternalForces<T, Dim> external;
+  T below, time;  // m/s, s
+  Index const *first, *patches;
+  std::uint8_t* stirred;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    T const m = mass[i];
+    if (!(m > T(0))) return;  // masters of a slave tell
+    auto pull = f.at(i);
+    if (kept.data) pull = pull + kept.at(i);
+    auto const velocity = v.at(i);
+    T speed = T(0), gain = T(0);
+    for (int k = 0; k < Dim; ++k) {
+      if (held[i] >> k & 1) continue;
+      T force = pull[k];
+      if (external.load) force += NodeField<T const, Dim>{external.load}(i, k);
+      T const a = acceleration_in(force, T(1) / m, external.gravity[k]);
+      speed += velocity[k] * velocity[k];
+      gain += a * a;
+    }
+    // NaN stirs.
+    if (speed <= below * below && time * time * gain <= below * below) return;
+    for (Index k = first[i]; k < first[i + 1]; ++k) stirred[patches[k]] = 1;
+  }
+};
+
+/// The force on a node that sleeps, N.
+template <class T, int Dim>
+struct HiddenForce {
+  NodeField<T const, Dim> f;
+  T const* mass;
+  DirectionMask const* held;
+  NodeWatch const* watch;
+  ExternalForces<T, Dim> external;
+
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    T const m = mass[i];
+    if (!(m > T(0)) || !(watch[i] & beside_asleep)) return 0;
+    auto const a = acceleration_of(i, f, m, held[i], external);
+    return infinite_if_not_finite(static_cast<double>(m * sqrt(dot(a, a))));
+  }
+};
+
+/// Patches with driven nodes do not sleep.
+template <class Parts>
+void mark_driven(Parts const& parts, std::vector<std::uint8_t>& stirred) {
+  auto const& rows = *parts.patch_nodes;
+  for (auto const& condition : parts.state.prescribed->conditions) {
+    if (!condition.motion) continue;
+    for (Index node : condition.nodes) {
+      auto const i = static_cast<std::size_t>(parts.layout.internal_of(node));
+      for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k)
+        stirred[static_cast<std::size_t>(rows.patches_of_node[static_cast<std::size_t>(k)])] = 1;
+    }
+  }
+}
+
+/// Which patches are not at rest, 1 or 0.
+template <class Parts>
+std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule) {
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& backend = parts.backend;
+  auto& rows = *parts.patch_nodes;
+  evaluate_forces(parts);
+  backend.for_each(rows.count(), FillValue<std::uint8_t>{rows.stirred.data(), 0});
+  NodeField<T const, dim> const kept{
+      parts.awake && !parts.forces_complete ? parts.awake->kept.data() : nullptr};
+  over_moving_nodes(parts,
+                    MarkStirred<T, dim>{std::as_const(parts).v(),
+                                        {parts.layout.f.data()},
+                                        kept,
+                                        parts.layout.mass.data(),
+                                        parts.layout.held.data(),
+                                        external_forces(parts),
+                                        static_cast<T>(rule.below),
+                                        static_cast<T>(parts.state.integrator.step *
+                                                       static_cast<double>(rule.for_steps)),
+                                        rows.first.data(),
+                                        rows.patches.data(),
+                                        rows.stirred.data()},
+                    [&](auto const& of_node) { backend.for_each(parts.layout.nodes, of_node); });
+  auto stirred = download<std::uint8_t>(rows.stirred);
+  mark_driven(parts, stirred);
+  return stirred;
+}
+
+}  // namespace detail
+
+/// Wakes patches that something would move, and puts those to sleep that have been at rest for long enough. Before
+/// an integrator with a step has taken the body, nothing sleeps.
+template <class Parts>
+void look_for_rest(Parts& parts, SleepRule const& rule) {
+  auto& state = parts.state;
+  if (!(state.integrator.step > 0) || state.integrator.macro_step > 0) return;
+  if (parts.awake && parts.awake->awake == 0 && !has_added_terms(parts)) {
+    state.rest_seen = state.steps;  // what could stir would have woken it
+    return;
+  }
+  if (!parts.patch_nodes) parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
+  auto const count = static_cast<std::size_t>(parts.patch_nodes->count());
+  if (state.rest.size() != count) {
+    state.rest.assign(count, 0);
+    state.rest_seen = state.steps;
+  }
+  auto const passed = static_cast<std::int32_t>(
+      std::min<std::int64_t>(state.steps - state.rest_seen, rule.for_steps));
+  state.rest_seen = state.steps;
+  auto const stirred = detail::find_stirred(parts, rule);
+  auto rest = state.rest;
+  bool changed = false;
+  for (std::size_t p = 0; p < count; ++p) {
+    bool const slept = rest[p] < 0;
+    if (stirred[p])
+      rest[p] = 0;
+    else if (!slept && (rest[p] += passed) >= rule.for_steps)
+      rest[p] = -1;
+    changed = changed || slept != (rest[p] < 0);
+  }
+  if (changed)
+    change_rest(parts, [&] { state.rest = std::move(rest); });
+  else
+    state.rest = std::move(rest);
+}
+
+/// What sleeps in a body.
+struct Asleep {
+  Index patches = 0, of_patches = 0;
+  double residual = 0;  // N: the largest force on a node that is kept where it is
+  double energy =
+      0;  // J: what falling asleep took and waking gave, all in all; at most 0, steps aside
+};
+
+/// Evaluates the forces of all elements.
+template <DeformableBody TheBody>
+Asleep asleep(TheBody& body) {
+  auto& parts = body.parts();
+  using T = typename TheBody::scalar;
+  Asleep found;
+  found.energy = download<double>(parts.state.work)[static_cast<std::size_t>(Work::sleep)];
+  if (!parts.awake) return found;
+  found.of_patches = parts.patch_nodes->count();
+  found.patches = found.of_patches - parts.awake->awake;
+  evaluate_all_forces(parts);
+  found.residual = parts.backend.maximum(
+      parts.layout.nodes, detail::HiddenForce<T, TheBody::dim>{{parts.layout.f.data()},
+                                                               parts.layout.mass.data(),
+                                                               parts.layout.held.data(),
+                                                               parts.awake->nodes.data(),
+                                                               external_forces(parts)});
+  return found;
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/constraint/condition.hpp>
+
+namespace pliant {
+
+/// What a node has to do with patches that sleep, bit by bit.
+using NodeWatch = std::uint8_t;
+inline constexpr NodeWatch beside_awake = 1, beside_asleep = 2;
+
+/// Which nodes belong to which patches. Patches of all element types are numbered through, in the order of the
+/// types; the masters of a slave belong to its patches too. Numbers are internal.
+template <Backend B>
+struct PatchNodes {
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+  std::vector<Index> first_of_type;                   // (types + 1): patches
+  std::vector<Index> first_of_node, patches_of_node;  // compressed rows
+  std::vector<std::vector<Index>> neighbours;         // (patches): that share a node
+  Array<Index> first, patches;                        // the rows in the backend's memory
+  Array<std::uint8_t> stirred;                        // (patches): scratch of looks
+
+  Index count() const { return first_of_type.back(); }
+};
+
+/// What follows from State::rest while patches sleep. A sleeping patch does not move: its nodes are held where they
+/// are, so that the forces of its elements stay what they were.
+template <Backend B>
+struct AwakeSet {
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+  std::vector<Array<Index>> patches;  // (types): the lists of those awake, for over()
+  Array<std::uint8_t> asleep;         // (patches)
+  Array<NodeWatch> nodes;             // (nodes)
+  Array<DirectionMask> still;         // (nodes): held by conditions, or asleep
+  Array<typename B::scalar> kept;     // (nodes, 4) and scratch rows, N: of sleeping patches
+  Index awake = 0;                    // patches
+};
+
+namespace detail {
+
+/// f(i), or its number, where something is awake beside a node.
+template <class F>
+struct AtAwakeNodes {
+  NodeWatch const* nodes;
+  F f;
+  PLIANT_HOST_DEVICE auto operator()(Index i) const {
+    using Result = decltype(f(i));
+    if (!(nodes[i] & beside_awake)) return Result();
+    return f(i);
+  }
+};
+
+}  // namespace detail
+
+}  // namespace pliant

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include <pliant/body/leapfrog_energy.hpp>
+
+// Patches that sleep. State::rest says which do; all else here follows from it.
+namespace pliant {
+
+namespace detail {
+
+/// Tells each node what sleeps and what is awake around it.
+struct WatchNodes {
+  Index const *first, *patches;
+  std::uint8_t const* asleep;
+  DirectionMask const* held;
+  NodeWatch* nodes;
+  DirectionMask* still;
+  DirectionMask all;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    NodeWatch watch = 0;
+    for (Index k = first[i]; k < first[i + 1]; ++k)
+      watch |= asleep[patches[k]] ? beside_asleep : beside_awake;
+    nodes[i] = watch;
+    still[i] = watch & beside_asleep ? all : held[i];
+  }
+};
+
+/// The patches of a type's elements, by internal numbers.
+template <class Parts>
+PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
+  PatchNodes<typename Parts::backend_type> made;
+  auto const& layout = parts.layout;
+  auto const& interpolation = parts.state.topology->interpolation;
+  auto const nodes = static_cast<std::size_t>(layout.nodes);
+  std::vector<std::pair<Index, Index>> pairs;  // node, patch
+  made.first_of_type = {0};
+  parts.for_each_type([&](auto& table, auto&) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    auto const& elements = parts.state.topology->mesh.template elements<E>();
+    Index const before = made.first_of_type.back();
+    for (Index p = 0; p < table.elements.patch_count(); ++p) {
+      Index const first = p * table.elements.patch_size();
+      Index const last = std::min(table.count(), first + table.elements.patch_size());
+      std::vector<Index> own;
+      for (Index e = first; e < last; ++e)
+        for (Index node :
+             elements[static_cast<std::size_t>(table.user_element[static_cast<std::size_t>(e)])]) {
+          own.push_back(layout.internal_of(node));
+          if (auto const* slave = interpolation.row_of(node))
+            for (auto const& [master, weight] : slave->masters)
+              own.push_back(layout.internal_of(master));
+        }
+      std::ranges::sort(own);
+      own.erase(std::unique(own.begin(), own.end()), own.end());
+      for (Index node : own) pairs.emplace_back(node, before + p);
+    }
+    made.first_of_type.push_back(before + table.elements.patch_count());
+  });
+  std::ranges::stable_sort(pairs, {}, &std::pair<Index, Index>::first);
+  made.first_of_node.assign(nodes + 1, 0);
+  for (auto const& [node, patch] : pairs) {
+    ++made.first_of_node[static_cast<std::size_t>(node) + 1];
+    made.patches_of_node.push_back(patch);
+  }
+  for (std::size_t i = 0; i < nodes; ++i) made.first_of_node[i + 1] += made.first_of_node[i];
+  made.neighbours.resize(static_cast<std::size_t>(made.count()));
+  for (std::size_t i = 0; i < nodes; ++i)
+    for (Index a = made.first_of_node[i]; a < made.first_of_node[i + 1]; ++a)
+      for (Index b = made.first_of_node[i]; b < made.first_of_node[i + 1]; ++b)
+        if (a != b)
+          made.neighbours[static_cast<std::size_t>(
+                              made.patches_of_node[static_cast<std::size_t>(a)])]
+              .push_back(made.patches_of_node[static_cast<std::size_t>(b)]);
+  for (auto& list : made.neighbours) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  made.first = upload(parts.backend, made.first_of_node);
+  made.patches = upload(parts.backend, made.patches_of_node);
+  made.stirred = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(made.count()));
+  return made;
+}
+
+template <class Parts>
+std::size_t patch_count(Parts& parts) {
+  std::size_t count = 0;
+  parts.for_each_type(
+      [&](auto& table, auto&) { count += static_cast<std::size_t>(table.elements.patch_count()); });
+  return count;
+}
+
+/// Brings lists for over() up to those patches of each type of which `chosen(patch)` holds.
+template <class Parts, class Chosen>
+void fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>& lists,
+                Chosen const& chosen) {
+  auto const& first = parts.patch_nodes->first_of_type;
+  lists.resize(first.size() - 1);
+  for (std::size_t type = 0; type < lists.size(); ++type) {
+    std::vector<Index> list(static_cast<std::size_t>(first[type + 1] - first[type]) + 1, 0);
+    Index count = 0;
+    for (Index p = first[type]; p < first[type + 1]; ++p)
+      if (chosen(static_cast<std::size_t>(p)))
+        list[static_cast<std::size_t>(++count)] = p - first[type];
+    list[0] = count;
+    if (lists[type].size() == list.size())
+      lists[type].upload(list);  // in place: recorded loops read it
+    else
+      lists[type] = upload(parts.backend, list);
+  }
+}
+
+}  // namespace detail
+
+/// Brings parts.awake up to state.rest. Forces are to be evaluated anew. A state that another backend saved, with
+/// other patches, has nothing that sleeps.
+template <class Parts>
+void follow_rest(Parts& parts) {
+  using T = typename Parts::T;
+  auto& rest = parts.state.rest;
+  if (!rest.empty() && rest.size() != detail::patch_count(parts)) rest.clear();
+  bool const slept = parts.awake.has_value();
+  if (std::ranges::none_of(rest, [](std::int32_t steps) { return steps < 0; })) {
+    if (!slept) return;
+    forget_forces(parts);
+    parts.awake.reset();
+    ++parts.revision;
+    return;
+  }
+  auto const& backend = parts.backend;
+  if (!parts.patch_nodes) parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
+  auto const& patch_nodes = *parts.patch_nodes;
+  auto const nodes = static_cast<std::size_t>(parts.layout.nodes);
+  if (!slept) {
+    auto& awake = parts.awake.emplace();
+    awake.asleep = zeros<std::uint8_t>(backend, rest.size());
+    awake.nodes = zeros<NodeWatch>(backend, nodes);
+    awake.still = zeros<DirectionMask>(backend, nodes);
+    awake.kept = zeros<T>(backend, parts.layout.f.size());
+    ++parts.revision;
+  }
+  auto& awake = *parts.awake;
+  std::vector<std::uint8_t> asleep(rest.size());
+  for (std::size_t p = 0; p < rest.size(); ++p) asleep[p] = rest[p] < 0;
+  awake.asleep.upload(asleep);
+  awake.awake = static_cast<Index>(std::ranges::count(asleep, 0));
+  backend.for_each(
+      parts.layout.nodes,
+      detail::WatchNodes{patch_nodes.first.data(), patch_nodes.patches.data(), awake.asleep.data(),
+                         parts.layout.held.data(), awake.nodes.data(), awake.still.data(),
+                         all_directions<Parts::dim>});
+  detail::fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; });
+
+  // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
+  std::vector<typename Parts::template Array<Index>> beside;
+  detail::fill_lists(parts, beside, [&](std::size_t p) {
+    return asleep[p] && (has_added_terms(parts) ||
+                         std::ranges::any_of(patch_nodes.neighbours[p], [&](Index other) {
+                           return !asleep[static_cast<std::size_t>(other)];
+                         }));
+  });
+  typename Parts::Field const kept{awake.kept.data()};
+  clear_rows(parts, kept);
+  ElementGroups<typename Parts::layout_type>(parts.layout, &beside)
+      .add_force(backend, std::as_const(parts).here(), kept);
+  parts.layout.interpolation.apply_transpose(backend, kept);
+  forget_forces(parts);
+}
+
+/// Changes state.rest by change(), to wake patches or to put them to sleep; those lose their velocity. What that
+/// changes of the energy that is watched is booked, J.
+template <class Parts, class Change>
+void change_rest(Parts& parts, Change const& change) {
+  using T = typename Parts::T;
+  synchronize_velocities(parts);
+  double const step = parts.watched_energy ? parts.state.integrator.step : 0;
+  auto const energies = [&] {
+    return std::pair{kinetic_energy_of(parts),
+                     step > 0 ? step * step * acceleration_term(parts) : 0.0};
+  };
+  auto const before = energies();
+  change();
+  follow_rest(parts);
+  if (parts.awake) {
+    parts.backend.for_each(parts.layout.nodes, StopHeld<T, Parts::dim>{parts.v(), parts.still()});
+    parts.layout.interpolation.apply(parts.backend, parts.v());
+  }
+  auto const after = energies();
+  parts.state.integrator.last_energy += after.second - before.second;
+  book(parts, Work::sleep, after.first - before.first - (after.second - before.second));
+}
+
+/// Wakes all patches.
+template <class Parts>
+void wake_all(Parts& parts) {
+  if (parts.awake)
+    change_rest(parts, [&] { std::ranges::fill(parts.state.rest, 0); });
+  else
+    std::ranges::fill(parts.state.rest, 0);
+}
+/// Wakes the patches around a node.
+template <class Parts>
+void wake_node(Parts& parts, Index internal) {
+  if (!parts.awake) return;
+  auto const& rows = *parts.patch_nodes;
+  auto const i = static_cast<std::size_t>(internal);
+  auto const around =
+      std::span(rows.patches_of_node)
+          .subspan(static_cast<std::size_t>(rows.first_of_node[i]),
+                   static_cast<std::size_t>(rows.first_of_node[i + 1] - rows.first_of_node[i]));
+  auto& rest = parts.state.rest;
+  if (std::ranges::none_of(around, [&](Index p) { return rest[static_cast<std::size_t>(p)] < 0; }))
+    return;
+  change_rest(parts, [&] {
+    for (Index p : around) rest[static_cast<std::size_t>(p)] = 0;
+  });
+}
+
+}  // namespace pliant

@@ -1,0 +1,273 @@
+#pragma once
+
+#include <sstream>
+
+#include <pliant/body/compare.hpp>
+
+#include "support/formulations.hpp"
+
+namespace pliant::test {
+
+using Tri = Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>;
+using Soft = Formulation<Tri3, Gauss<1>, Hooke>;
+
+constexpr double slow = 1e-4;  // m/s
+
+/// A long bar, of as many elements as make several patches; a hit at its left end has not gone far after some steps.
+template <Backend B>
+auto bar_on(B const& backend) {
+  int const rows = B::orders_by_group ? 6 : 3;  // patches of OpenMP are larger
+  auto const mesh = mesh::rectangle<Tri3>({.size = {20, 0.05 * rows}, .cells = {400, rows}});
+  Body body{backend, mesh, soft, Group<Tri>{}, Group<Soft>{}};
+  return body;
+}
+template <class TheBody>
+void hit_left_end(TheBody& body) {
+  auto v = body.velocities();
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (body.mesh().nodes[i][0] < 0.3) v[i] = {0.05, 0.02};
+  body.set_velocities(v);
+}
+inline auto quick_sleep() { return sleep({.below = slow, .for_steps = 16}); }
+
+/// Steps until something sleeps.
+template <class TheBody, class Step, class Adapt>
+void settle(TheBody& body, Step& step, Adapt& adapt) {
+  for (int k = 0; k < 40; ++k) {
+    step(body);
+    adapt(body);
+  }
+  REQUIRE(asleep(body).patches > 0);
+  REQUIRE(asleep(body).patches < asleep(body).of_patches);
+}
+template <class TheBody>
+double furthest_apart(TheBody const& a, TheBody const& b) {
+  auto const u = a.displacements(), w = b.displacements();
+  double apart = 0;
+  for (std::size_t i = 0; i < u.size(); ++i)
+    for (std::size_t k = 0; k < u[i].size(); ++k)
+      apart = std::max(apart, std::abs(u[i][k] - w[i][k]));
+  return apart;
+}
+/// A force that comes after a while, at no patch's notice.
+template <class T>
+struct LatePull {
+  static constexpr int dim = 2, nodes = 1;
+  template <class U>
+  using rebind = LatePull<U>;
+  T strength;
+  template <class V>
+  PLIANT_HOST_DEVICE auto force(V const&, V const& u) const {
+    auto f = u;
+    f(0, 0) = strength;
+    f(0, 1) = T(0);
+    return f;
+  }
+};
+
+TEST_CASE("what sleeps does not differ from what is awake by more than its threshold allows",
+          "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto plain = bar_on(backend), body = bar_on(backend);
+    hit_left_end(plain);
+    hit_left_end(body);
+    CentralDifference step, same_step;
+    Adaptation adapt{quick_sleep()};
+    Index fewest = 1000, most = 0;
+    for (int k = 0; k < 500; ++k) {
+      same_step(plain);
+      step(body);
+      adapt(body);
+      if (k < 64) continue;
+      fewest = std::min(fewest, asleep(body).patches);
+      most = std::max(most, asleep(body).patches);
+    }
+    CHECK(most > 0);
+    CHECK(fewest < most);  // the wave went on
+    // Nodes that are kept where they are miss at most `slow` for as long as a look comes late.
+    CHECK(furthest_apart(plain, body) < 0.01 * largest(plain.displacements()));
+    CHECK(furthest_apart(plain, body) > 0);
+  });
+}
+
+TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adaptation]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend);
+    CentralDifference step;
+    Adaptation adapt{quick_sleep()};
+    step(body, 40, adapt);
+    auto const found = asleep(body);
+    CHECK(found.patches == found.of_patches);
+    double const time = body.time();
+    step(body, 100, adapt);
+    CHECK(body.steps() == 140);
+    CHECK(body.time() > time);
+    CHECK(largest(body.displacements()) == 0);
+  });
+}
+
+TEST_CASE("what something pulls at wakes, whatever it is", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const wakes = [&](char const* what, auto const& cause, bool at_once = true) {
+      INFO(what);
+      auto plain = bar_on(backend), body = bar_on(backend);
+      hit_left_end(plain);
+      hit_left_end(body);
+      CentralDifference step, same_step;
+      Adaptation adapt{quick_sleep()};
+      settle(body, step, adapt);
+      same_step(plain, 40);
+      auto const before = asleep(body).patches;
+      cause(plain);
+      cause(body);
+      if (at_once) CHECK(asleep(body).patches < before);
+      for (int k = 0; k < 60; ++k) {
+        same_step(plain);
+        step(body);
+        adapt(body);
+      }
+      CHECK(furthest_apart(plain, body) < 0.02 * largest(plain.displacements()));
+    };
+    auto const right = [](auto const& body) { return body.mesh().boundary("right"); };
+    auto const last = [](auto const& body) { return nodes_of(body.mesh().boundary("right"))[0]; };
+    wakes("a load on a node", [&](auto& body) { body.set_load(last(body), {0.3, 0}); });
+    wakes("loads on nodes", [&](auto& body) {
+      std::vector<Point<2>> loads(static_cast<std::size_t>(body.nodes()));
+      loads[static_cast<std::size_t>(last(body))] = {0.3, 0};
+      body.set_loads(loads);
+    });
+    wakes("gravity", [](auto& body) { body.set_gravity({0, -0.05}); });
+    wakes("a pressure", [&](auto& body) { body.press(right(body), 0.02); });
+    wakes("a motion", [&](auto& body) {
+      double const start = body.time();
+      body.drive(right(body), Motion<2>([start](double t) {
+                   return Point<2>{0.02 * (t - start), 0};
+                 }));
+    });
+    wakes("velocities", [](auto& body) {
+      auto v = body.velocities();
+      for (std::size_t i = 0; i < v.size(); ++i)
+        if (body.mesh().nodes[i][0] > 19) v[i] = {-0.05, 0};
+      body.set_velocities(v);
+    });
+    wakes("displacements", [](auto& body) {
+      auto u = body.displacements();
+      for (std::size_t i = 0; i < u.size(); ++i)
+        if (body.mesh().nodes[i][0] > 19) u[i][0] += 0.01 * (body.mesh().nodes[i][0] - 19);
+      body.set_displacements(u);
+    });
+    wakes("groups", [](auto& body) { body.template assign<Soft>({2300, 2301}); });
+    wakes("a finer mesh", [](auto& body) { refine(body, {{2300, 2301}}); });
+    wakes("a force term", [&](auto& body) {
+      body.add(std::vector<std::array<Index, 1>>{{last(body)}}, LatePull<double>{0.3});
+    });
+  });
+}
+
+TEST_CASE("a pressure beside sleeping patches is felt, and the neighbours of what moves wake",
+          "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend), plain = bar_on(backend);
+    for (auto* b : {&body, &plain}) {
+      b->press(b->mesh().boundary("right"), 1e-7);
+      hit_left_end(*b);
+    }
+    CentralDifference step, same_step;
+    Adaptation adapt{quick_sleep()};
+    settle(body, step, adapt);
+    for (int k = 0; k < 500; ++k) {
+      step(body);
+      adapt(body);
+    }
+    same_step(plain, 540);
+    CHECK(furthest_apart(plain, body) < 0.01 * largest(plain.displacements()));
+  });
+}
+
+TEST_CASE("what sleep takes is booked, and its residual told", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend);
+    hit_left_end(body);
+    body.set_damping(2);
+    CentralDifference step{{.safety = 0.3}};
+    Adaptation adapt{sleep({.below = 5e-3, .for_steps = 16})};
+    double const begin = total_energy(body);
+    int sleepers = 0;
+    for (int k = 0; k < 700; ++k) {
+      step(body);
+      adapt(body);
+      sleepers = std::max(sleepers, int{asleep(body).patches});
+    }
+    REQUIRE(sleepers > 0);
+    auto const found = asleep(body);
+    CHECK(found.energy < 0);
+    double const kept = leapfrog_energy(body.parts()).kept() - booked_energy(body.parts());
+    CHECK(std::abs(kept - begin) < 1e-3 * begin);
+    CHECK(std::abs(kept - found.energy - begin) > 1e-3 * std::abs(found.energy));
+    bool told = false;
+    for (auto const& entry : ledger(body))
+      told = told || (entry.action == "sleep" && entry.kinetic_energy == found.energy);
+    CHECK(told);
+    // A node would not gain the threshold within for_steps, up to the next look.
+    auto const& mass = body.parts().layout.mass_list;
+    CHECK(found.residual <= 2 * 5e-3 * *std::ranges::max_element(mass) / (16 * step.step()));
+  });
+}
+
+TEST_CASE("a body with sleeping patches is saved and rolled back", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend), again = bar_on(backend);
+    hit_left_end(body);
+    CentralDifference step{{.check_interval = 24}};
+    Adaptation adapt{quick_sleep()}, same{quick_sleep()};
+    settle(body, step, adapt);
+    std::stringstream stream;
+    body.save(stream);
+    again.load(stream);
+    CHECK(asleep(again).patches == asleep(body).patches);
+    CentralDifference other{{.check_interval = 24}};
+    for (int k = 0; k < 100; ++k) {
+      step(body);
+      adapt(body);
+      other(again);
+      same(again);
+    }
+    CHECK(first_difference(body.state(), again.state()) == "");
+
+    // Four times the stable step: rolled back to where patches slept.
+    auto const rest = body.state().rest;
+    CentralDifference large{{.step = 4 * step.step(), .check_interval = 24}};
+    Advanced advanced;
+    for (int k = 0; k < 3 && large.retries() == 0; ++k) advanced = large(body, 24);
+    CHECK(large.retries() > 0);
+    CHECK(std::isfinite(largest(body.displacements())));
+  });
+}
+
+TEST_CASE("reading forces of a body with sleeping patches gives those of all", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend), read = bar_on(backend), plain = bar_on(backend);
+    for (auto* b : {&body, &read}) hit_left_end(*b);
+    CentralDifference step, same_step;
+    Adaptation adapt{quick_sleep()}, same{quick_sleep()};
+    for (int k = 0; k < 200; ++k) {
+      step(body);
+      adapt(body);
+      same_step(read);
+      same(read);
+      if (k % 7 == 0) {
+        plain.set_displacements(read.displacements());
+        CHECK(read.forces() == plain.forces());
+      }
+    }
+    (void)body.forces();
+    CHECK(furthest_apart(body, read) < 1e-12 * largest(body.displacements()));
+  });
+}
+
+TEST_CASE("sleep refuses what it cannot take", "[adaptation]") {
+  CHECK_THROWS_WITH(sleep({.below = 0}), says("below is 0 m/s"));
+  CHECK_THROWS_WITH(sleep({.below = 1, .for_steps = 0}), says("for_steps is 0"));
+}
+
+}  // namespace pliant::test
