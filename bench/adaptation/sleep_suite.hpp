@@ -4,12 +4,12 @@
 #include "support/measure.hpp"
 #include "support/registration.hpp"
 
-// Steps of a body of which a share is awake: two boxes apart in one mesh, of which the smaller one tumbles.
+// Steps of a body of which a share is awake: two boxes apart in one mesh, of which the smaller one swings.
 namespace pliant::bench {
 
-using Tumbling = Usual<Tet4, SaintVenantKirchhoff>;
+using Swinging = Usual<Tet4, SaintVenantKirchhoff>;
 
-/// Boxes of n³ cells and of n² times as many as make the share that tumbles.
+/// Boxes of n³ cells and of n² times as many as make the share that swings.
 template <class B>
 auto two_boxes(B const& backend, int n, double share) {
   auto const layers = std::max(1, static_cast<int>(std::lround(n * share)));
@@ -22,10 +22,10 @@ auto two_boxes(B const& backend, int n, double share) {
     for (Index& node : element) node += first;
     mesh.template elements<Tet4>().push_back(element);
   }
-  Body body{backend, mesh, soft, Group<Tumbling>{}};
+  Body body{backend, mesh, soft, Group<Swinging>{}};
   auto v = body.velocities();
   for (auto i = static_cast<std::size_t>(first); i < v.size(); ++i)
-    v[i] = {0.3 * mesh.nodes[i][1], 0.1, 0.05};
+    v[i] = {0.05 * std::cos(3.14159265 * mesh.nodes[i][1]), 0.02 * (mesh.nodes[i][0] - 0.5), 0};
   body.set_velocities(v);
   return body;
 }
@@ -78,7 +78,7 @@ inline void add_sleep() {
     if (role == Role::scalar) return;
     auto const of_size = [&](int cells) {
       auto const add_one = [&](char const* what, auto run) {
-        add<Tumbling, T>(what, name, cells,
+        add<Swinging, T>(what, name, cells,
                          [backend, cells, run](benchmark::State& s) { run(s, backend, cells); });
       };
       add_one("steps, all awake",

@@ -26,12 +26,21 @@ struct Failure : std::runtime_error {
 
 struct Report {
   std::int64_t steps = 0, restarts = 0, retries = 0, refused = 0, epochs = 0, driven = 0,
-               pressed = 0;
+               pressed = 0, slept = 0;   // slept: epochs in which patches did
   std::int64_t largest_mesh = 0;         // nodes
   double switched = 0;                   // elements that changed their group
   std::map<std::string, double> missed;  // by the ledger, of each kind of event, over the same
   double worst_ledger_error = 0;         // over the largest energy
 };
+
+/// Lets patches of a body sleep that move less than a storm's bodies do most of the time.
+template <class TheBody>
+void let_rest(TheBody& body) {
+  if constexpr (!TheBody::has_internal_variables) {
+    static Adaptation rest = Adaptation{sleep({.below = 0.01, .for_steps = 4})}.every(2);
+    rest(body);
+  }
+}
 
 /// Random events on two bodies: one runs on, the other is again and again made anew from what the first
 /// one saved. Both must be the same to the bit whenever they are compared.
@@ -59,6 +68,7 @@ class Storm {
       }
       compare();
       report_.switched += switches();
+      report_.slept += slept_;
     }
     return report_;
   }
@@ -74,6 +84,8 @@ class Storm {
   void begin_epoch() {
     ++report_.epochs;
     event_ = "begin";
+    rests_ = random_.below(3) == 0;
+    slept_ = false;
     motions_.clear();
     kept_.reset();
     missed_ = largest_energy_ = 0;
@@ -165,11 +177,14 @@ class Storm {
       booked([&] { went = both([&](auto& body) { step_(body, steps); }); });
       if (!went) throw Failure("an ordinary step fails: " + last_error_);
       report_.steps += std::max<std::int64_t>(one_->steps() - before, 1);
+      event_ = "sleep";
+      if (rests_) booked([&] { both([&](auto& body) { let_rest(body); }); });
       event_ = "switching";
       booked([&] { both([&](auto& body) { scene_.switch_groups(body); }); });
       event_ = "refining";
       booked([&] { both([&](auto& body) { scene_.make_finer(body); }); });
     }
+    slept_ = slept_ || one_->parts().awake;
     report_.largest_mesh = std::max(report_.largest_mesh, std::int64_t{one_->nodes()});
     if (!std::isfinite(test::largest(one_->displacements()))) throw Failure("not finite");
     auto const what = random_.below(14);
@@ -372,6 +387,7 @@ class Storm {
                            .energy_growth = options_.ledger ? 0.1 : 1e9}};
   std::map<std::string, Motion<dim>> motions_;
   std::optional<std::string> kept_;
+  bool rests_ = false, slept_ = false;  // in this epoch: whether patches may sleep, and did
   std::string event_, last_error_;
   // J: missed by the ledger in this epoch; of each event, without sign; the largest energy so far
   double missed_ = 0, missed_of_kept_ = 0;

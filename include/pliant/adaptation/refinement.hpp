@@ -185,6 +185,7 @@ auto plan_refinement(Parts const& parts, std::vector<std::vector<Index>> const& 
 /// fields are not finite, a force term cannot be made anew or memory runs out.
 template <class Parts>
 RefinementReport commit(Parts& parts, RefinementPlan<typename Parts::mesh_type> const& plan) {
+  wake_all(parts);
   double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
   double const kinetic = kinetic_energy_of(parts);
   auto const before = present_energy(parts);

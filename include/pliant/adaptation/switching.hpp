@@ -79,10 +79,12 @@ struct ActVisitor {
     auto const new_law = groups.template law<To>(own);
     auto const [rest, u, v] = again();
     T const before = energy<Old>(old_law, rest, u);
-    auto const pull_before = force<Old>(old_law, rest, u);
+    bool const pending = target.pending_half_kick != T(0);
+    auto change = decltype(force<Old>(old_law, rest, u))::zero();  // of the element's forces
+    if (pending) change = force<Old>(old_law, rest, u);
     carry_internal_variables<From, To>(groups, e, rest, u);
     T const after = energy<New>(new_law, rest, u);
-    auto const difference = force<New>(new_law, rest, u) - pull_before;
+    if (pending) change = force<New>(new_law, rest, u) - change;
     if constexpr (refines) {
       // What refining looks at next.
       auto const now = rules.template evaluate<To>(new_law, rest, u, groups, around, own);
@@ -90,7 +92,7 @@ struct ActVisitor {
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];
     }
     double const strain = static_cast<double>(after - before);
-    double const kinetic = static_cast<double>(target.pending_half_kick * dot(difference, v));
+    double const kinetic = static_cast<double>(target.pending_half_kick * dot(change, v));
     bool const booked = is_finite(strain) && is_finite(kinetic);
     tally(Counters::steps_of(From), static_cast<double>(*target.step - target.since[e]));
     tally(Counters::moves(From, To), 1.0);

@@ -157,8 +157,8 @@ struct ChangedTopology {
 };
 
 /// Takes all fields over to another topology, for put_in_force. give_back(layout, held, v) may change the velocities
-/// that the transfer gives (the user's order), and returns the impulse that held nodes took, N s. Throws
-/// Error where fields are not finite; the body itself is left as it is.
+/// that the transfer gives (the user's order), and returns the impulse that held nodes took, N s. The body
+/// is awake. Throws Error where fields are not finite; the body itself is left as it is.
 template <class Parts, class GiveBack>
 ChangedTopology<Parts> change_topology(
     Parts& parts, std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
@@ -166,7 +166,6 @@ ChangedTopology<Parts> change_topology(
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   synchronize_velocities(parts);
-  wake_all(parts);
   auto const& old = parts.layout;
   auto u = old.in_user_order(parts.state.u), v = old.in_user_order(parts.state.v);
   detail::check_field("refine (displacements)", u, old.nodes);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include <pliant/body/leapfrog_energy.hpp>
@@ -91,24 +92,36 @@ std::size_t patch_count(Parts& parts) {
   return count;
 }
 
-/// Brings lists for over() up to those patches of each type of which `chosen(patch)` holds.
+/// Room for a list of so many patches, a little more, so that it seldom changes: a GPU starts a block for each place
+/// of a list, whatever is in it.
+inline Index room_for(Index count, Index most) {
+  Index const step = std::max<Index>(
+      16, static_cast<Index>(std::bit_floor(static_cast<std::uint32_t>(count))) / 8);
+  return std::min(most, (count / step + 1) * step);
+}
+
+/// Brings lists for over() up to those patches of each type of which `chosen(patch)` holds. Returns whether they
+/// lie elsewhere now; otherwise recorded loops read them as they are.
 template <class Parts, class Chosen>
-void fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>& lists,
+bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>& lists,
                 Chosen const& chosen) {
   auto const& first = parts.patch_nodes->first_of_type;
   lists.resize(first.size() - 1);
+  bool moved = false;
   for (std::size_t type = 0; type < lists.size(); ++type) {
-    std::vector<Index> list(static_cast<std::size_t>(first[type + 1] - first[type]) + 1, 0);
-    Index count = 0;
+    std::vector<Index> list{0};
     for (Index p = first[type]; p < first[type + 1]; ++p)
-      if (chosen(static_cast<std::size_t>(p)))
-        list[static_cast<std::size_t>(++count)] = p - first[type];
-    list[0] = count;
-    if (lists[type].size() == list.size())
-      lists[type].upload(list);  // in place: recorded loops read it
-    else
+      if (chosen(static_cast<std::size_t>(p))) list.push_back(p - first[type]);
+    list[0] = static_cast<Index>(list.size()) - 1;
+    list.resize(static_cast<std::size_t>(room_for(list[0], first[type + 1] - first[type])) + 1);
+    if (lists[type].size() == list.size()) {
+      lists[type].upload(list);
+    } else {
       lists[type] = upload(parts.backend, list);
+      moved = true;
+    }
   }
+  return moved;
 }
 
 }  // namespace detail
@@ -150,11 +163,12 @@ void follow_rest(Parts& parts) {
       detail::WatchNodes{patch_nodes.first.data(), patch_nodes.patches.data(), awake.asleep.data(),
                          parts.layout.held.data(), awake.nodes.data(), awake.still.data(),
                          all_directions<Parts::dim>});
-  detail::fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; });
+  if (detail::fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; }))
+    ++parts.revision;
 
   // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
   std::vector<typename Parts::template Array<Index>> beside;
-  detail::fill_lists(parts, beside, [&](std::size_t p) {
+  (void)detail::fill_lists(parts, beside, [&](std::size_t p) {
     return asleep[p] && (has_added_terms(parts) ||
                          std::ranges::any_of(patch_nodes.neighbours[p], [&](Index other) {
                            return !asleep[static_cast<std::size_t>(other)];

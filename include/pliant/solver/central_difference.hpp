@@ -155,7 +155,8 @@ class CentralDifference {
     auto& own = parts.state.integrator;
     double const distortion = largest_distortion(parts);
     double const step =
-        (options_.step > 0 ? options_.step : options_.safety * awake_stable_step_of(parts)) / own.slower;
+        (options_.step > 0 ? options_.step : options_.safety * awake_stable_step_of(parts)) /
+        own.slower;
     // Nothing throws from here on: a step that could not be chosen is asked for again.
     own.next_refresh = parts.state.steps + options_.refresh_interval;
     own.distortion = distortion;
