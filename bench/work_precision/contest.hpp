@@ -22,6 +22,7 @@ struct Answer {
   double error = std::numeric_limits<double>::quiet_NaN();     // relative
   double seconds = 0;                                          // all of it, from the mesh on
   double making = 0, solving = 0, deciding = 0, refining = 0;  // shares of `seconds`
+  double share = std::numeric_limits<double>::quiet_NaN();     // of evaluations that were dear ones
   std::string failed{};
 };
 
@@ -108,13 +109,13 @@ inline void hold_contest(std::string const& problem, std::vector<Contestant> con
           "\"elements\": %ld, \"iterations\": %ld, \"error\": %s, \"seconds\": %s, "
           "\"lower_quartile\": %s, "
           "\"upper_quartile\": %s, \"making\": %s, \"solving\": %s, \"deciding\": %s, "
-          "\"refining\": %s, \"rounds\": %zu, \"failed\": %s}\n",
+          "\"refining\": %s, \"share\": %s, \"rounds\": %zu, \"failed\": %s}\n",
           quoted(problem).c_str(), quoted(first.name).c_str(), quoted(contestants[c].kind).c_str(),
           first.n, first.unknowns, first.elements, first.iterations, number(first.error).c_str(),
           median(&Answer::seconds).c_str(), median(&Answer::seconds, 0.25).c_str(),
           median(&Answer::seconds, 0.75).c_str(), median(&Answer::making).c_str(),
           median(&Answer::solving).c_str(), median(&Answer::deciding).c_str(),
-          median(&Answer::refining).c_str(), answers[c].size(),
+          median(&Answer::refining).c_str(), number(first.share).c_str(), answers[c].size(),
           first.failed.empty() ? "null" : quoted(first.failed).c_str());
     }
   std::fflush(stdout);

@@ -48,5 +48,11 @@ struct Smooth {
 }  // namespace pliant::bench
 
 int main(int argc, char** argv) {
-  pliant::bench::compare_meshes<pliant::bench::Smooth>({argc, argv});
+  using namespace pliant;
+  using namespace pliant::bench;
+  Options const options(argc, argv);
+  std::vector<Contestant> one_point;
+  add_uniform<Smooth, Formulation<Quad4, OnePoint, SaintVenantKirchhoff>>(
+      one_point, options, "Quad4, uniform, OnePoint");
+  compare_meshes<Smooth>(options, one_point);
 }

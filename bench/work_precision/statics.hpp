@@ -167,8 +167,7 @@ void add_rules(std::vector<Contestant>& contestants, Options const& options) {
 }
 
 template <class Problem>
-void compare_meshes(Options const& options) {
-  std::vector<Contestant> contestants;
+void compare_meshes(Options const& options, std::vector<Contestant> contestants = {}) {
   auto const uniform = [&]<Element E>(E) {
     using F = Formulation<E, Full<E>, Problem::template law>;
     add_uniform<Problem, F>(contestants, options, std::string(E::name()) + ", uniform");
