@@ -153,8 +153,8 @@ class Arm {
       auto both = body<double, G, F>(plan);
       auto const take = [&](auto& step, auto& body, int n) { step(body, n, adapt); };
       auto const history = swing(both, plan, 1, take, answer.seconds);
-      double const costly = element_steps<E>(both)[1], cheap = element_steps<E>(both)[0];
-      answer.share = costly / (costly + cheap);
+      auto const steps = element_steps<E>(both);
+      answer.share = static_cast<double>(steps[1]) / static_cast<double>(steps[0] + steps[1]);
       return history;
     });
   }
