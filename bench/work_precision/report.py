@@ -200,10 +200,10 @@ def report(data):
             ""]
     text += [f"- {key}: {value}" for key, value in data["context"].items()]
     runs = {}
-    for row in data["rows"]:
-        key = (row.get("command", ""), row.get("commit", ""), row.get("date", ""))
-        runs.setdefault(key, {})[row["problem"]] = None
-    text += [f"- {', '.join(names)}: `{command}` at {commit}, {date}" for (command, commit, date), names in runs.items()]
+    for problem in problems:
+        how = data["measured"][problem.name]
+        runs.setdefault((how["command"], how["commit"], how["date"]), []).append(problem.name)
+    text += [f"- `{command}` at {commit}, {date}: {'; '.join(names)}" for (command, commit, date), names in runs.items()]
     text += ["", "![run time against error](work_precision.png)", ""]
     if static:
         text += ["## The default for meshes beside uniform meshes, at equal error", "",
@@ -298,13 +298,17 @@ def main():
     rows = [json.loads(line) for name in arguments.rows for line in name.read_text().splitlines()]
     new = {row["problem"] for row in rows}
     context = dict(pair.split("=", 1) for pair in arguments.context)
-    # Problems may have been measured one at a time: what differs from run to run stands with the rows.
+    # Problems may have been measured one at a time: what differs from run to run stands with each.
     each = {key: context.pop(key) for key in ("commit", "date", "command") if key in context}
-    rows = [row | each for row in rows]
-    data = {"context": old["context"] | context,
-            "rows": [row for row in old["rows"] if row["problem"] not in new] + rows}
+    measured = old.get("measured", {}) | {problem: each for problem in new}
+    rows = [row for row in old["rows"] if row["problem"] not in new] + rows
+    order = list(LEVELS)
+    rows.sort(key=lambda row: (order.index(row["problem"]) if row["problem"] in order else len(order), row["problem"]))
+    data = {"context": old["context"] | context, "measured": measured, "rows": rows}
     with path.open("w") as file:
-        file.write('{"context": ' + json.dumps(data["context"], ensure_ascii=False, indent=1) + ',\n"rows": [\n')
+        for part in ("context", "measured"):
+            file.write(("{" if part == "context" else "") + f'"{part}": ' + json.dumps(data[part], ensure_ascii=False, indent=1) + ",\n")
+        file.write('"rows": [\n')
         file.write(",\n".join(json.dumps(row, ensure_ascii=False) for row in data["rows"]) + "\n]}\n")
     (arguments.folder / "work_precision.md").write_text(report(data))
     draw(data, arguments.folder / "work_precision.png")
