@@ -1,0 +1,6 @@
+#include "work_precision/arm.hpp"
+
+int main(int argc, char** argv) {
+  using namespace pliant;
+  bench::swing_under_ogden<Tet4>("block with a thin arm, Tet4, Ogden", {argc, argv});
+}

@@ -1,0 +1,317 @@
+#!/usr/bin/env python3
+"""Gathers what the programs of bench/work_precision printed, and writes work_precision.json, .md and .png
+(needs matplotlib).
+
+    bench/work_precision/report.py FOLDER [ROWS.jsonl...] [--context KEY=VALUE...]
+
+Rows of programs that did not run this time are kept from FOLDER/work_precision.json.
+"""
+import argparse
+import json
+import math
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# The one rule for meshes, the same on all scenes and elements.
+DEFAULT = "RecoveredStress bulk(0.65)"
+# Errors at which static problems are compared, and the bars of the project for time over that of the best
+# uniform mesh. Cook's membrane and the plate with a square hole had no say in the choice of the default.
+LEVELS = {
+    "L-shape": (0.04, 0.3),
+    "slit plate": (0.06, 0.15),
+    "hanging beam": (0.014, 0.15),
+    "cantilever": (0.03, None),
+    "Cook's membrane": (0.05, None),
+    "plate with a square hole": (0.03, None),
+    "smooth field, finite strain": (0.02, None),
+}
+ELEMENTS = ["Tri3", "Quad4"]
+
+
+def interpolated(points, error):
+    """The time that a curve of (error, seconds) needs for an error: a power law between the two points
+    around it, or beyond the last two; and whether it lies beyond."""
+    points = sorted(points, reverse=True)
+    if len(points) < 2:
+        return math.nan, True
+    k = 1
+    while k + 1 < len(points) and points[k][0] > error:
+        k += 1
+    (e0, t0), (e1, t1) = points[k - 1], points[k]
+    slope = math.log(t1 / t0) / math.log(e1 / e0)
+    return t1 * (error / e1) ** slope, not (e1 <= error <= e0)
+
+
+class Problem:
+    """The rows of one problem."""
+
+    def __init__(self, name, rows):
+        self.name = name
+        self.rows = [row for row in rows if row["problem"] == name]
+        self.contestants = list(dict.fromkeys(row["contestant"] for row in self.rows))
+
+    def of(self, contestant):
+        return [r for r in self.rows if r["contestant"] == contestant and not r["failed"]]
+
+    def kind(self, contestant):
+        return next(r["kind"] for r in self.rows if r["contestant"] == contestant)
+
+    def points(self, contestant):
+        return [(r["error"], r["seconds"]) for r in self.of(contestant) if r["error"]]
+
+    def uniform(self, error, element=None):
+        """(seconds, whether extrapolated, contestant) of the fastest uniform meshes."""
+        names = [c for c in self.contestants if self.kind(c) == "uniform"]
+        if element:
+            names = [c for c in names if c.startswith(element + ",")]
+        return min((*interpolated(self.points(c), error), c) for c in names)
+
+    def first_within(self, contestant, error):
+        """The first round of an adaptive run that is within an error."""
+        return next((r for r in self.of(contestant) if r["error"] and r["error"] <= error), None)
+
+
+def time(seconds):
+    for size, unit in ((1, "s"), (1e-3, "ms"), (1e-6, "µs")):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds:.1e} s"
+
+
+def percent(error):
+    return f"{100 * error:.3g} %"
+
+
+def markdown(header, rows):
+    rows = [[str(cell) for cell in row] for row in [header, *rows]]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(header))]
+    rows.insert(1, ["-" * w for w in widths])
+    return "\n".join("| " + " | ".join(c.ljust(w) for c, w in zip(row, widths)) + " |" for row in rows)
+
+
+def level_of(problem):
+    return LEVELS[problem.name]
+
+
+def ratio(value, extrapolated):
+    return f"{value:.2g}" + (" †" if extrapolated else "")
+
+
+def pays_below(problem, contestant):
+    """The error from which on down an adaptive run is faster than all uniform meshes."""
+    points = problem.points(contestant)
+    error, crossing = min(points)[0], None
+    while error < max(points)[0] and interpolated(points, error)[0] < problem.uniform(error)[0]:
+        crossing = error
+        error *= 1.02
+    return f"{percent(crossing)[:-2][:4]} %" if crossing else f"nowhere down to {percent(min(points)[0])}"
+
+
+def held(bar, value):
+    if not bar:
+        return ""
+    return f" {'met' if value <= bar else '**missed**'}"
+
+
+def static_rows(problem):
+    error, bar = level_of(problem)
+    for element in ELEMENTS:
+        name = f"{element}, {DEFAULT}"
+        row = problem.first_within(name, error)
+        if not row:
+            yield [problem.name, percent(error), element, "not reached"] + [""] * 7
+            continue
+        seconds, _ = interpolated(problem.points(name), error)
+        own, beyond_own, _ = problem.uniform(error, element)
+        best, beyond, fastest = problem.uniform(error)
+        yield [problem.name, percent(error), element, time(seconds), f"≤ {bar}" if bar else "",
+               time(own), ratio(seconds / own, beyond_own) + held(bar, seconds / own),
+               f"{fastest.split(',')[0]}, {time(best)}", ratio(seconds / best, beyond) + held(bar, seconds / best),
+               f"{row['n']}: {percent(row['error'])}, {row['unknowns']} unknowns, {time(row['seconds'])}",
+               pays_below(problem, name)]
+
+
+def rules_of(problem):
+    return list(dict.fromkeys(c.split(", ", 1)[1] for c in problem.contestants if problem.kind(c) == "adaptive"))
+
+
+def rule_rows(problem, rules):
+    """At the same error on both sides, from power laws between rounds and between meshes."""
+    error, _ = level_of(problem)
+    for element in ELEMENTS:
+        cells = []
+        own, beyond_own, _ = problem.uniform(error, element)
+        for rule in rules:
+            points = problem.points(f"{element}, {rule}")
+            seconds, beyond = interpolated(points, error)
+            # Too far from the error to say.
+            far = not points or min(points)[0] > 1.5 * error
+            cells.append("not reached" if far else ratio(seconds / own, beyond or beyond_own))
+        yield [problem.name, percent(error), element, *cells]
+
+
+def share_rows(problem):
+    error, _ = level_of(problem)
+    for element in ELEMENTS:
+        row = problem.first_within(f"{element}, {DEFAULT}", error)
+        if row:
+            yield [problem.name, element, row["n"], time(row["seconds"])] + [
+                f"{100 * row[part] / row['seconds']:.0f} %" for part in ("making", "solving", "deciding", "refining")]
+
+
+def law_rows(problem):
+    """All elements under one law, and switching between two, beside all under the dear one."""
+    dear = problem.name.rsplit(", ", 1)[1]
+    seconds = {c: problem.of(c)[0]["seconds"] for c in problem.contestants if problem.of(c)}
+    for contestant in problem.contestants:
+        for row in problem.of(contestant):
+            cells = [problem.name.replace("block with a thin arm, ", ""), contestant, time(row["seconds"]),
+                     f"{row['seconds'] / seconds[dear]:.2f}", percent(row["error"])]
+            share = row.get("share")
+            if problem.kind(contestant) == "switching":
+                cheap = seconds[contestant.split(",")[0]]
+                expected = share * seconds[dear] + (1 - share) * cheap
+                cells += [percent(share), f"{row['seconds'] / expected:.2f}"]
+                within = row["error"] <= 0.001
+                cells.append("" if not within else "met" if row["seconds"] <= 0.5 * seconds[dear] else "slower than 0.5")
+            else:
+                cells += ["", "", ""]
+            yield cells
+
+
+def step_rows(problem):
+    reference = problem.of("CentralDifference, safety 0.9, double")[0]["seconds"]
+    for contestant in problem.contestants:
+        for row in problem.of(contestant):
+            yield [problem.name, contestant, time(row["seconds"]), f"{row['seconds'] / reference:.2f}", percent(row["error"])]
+
+
+def report(data):
+    problems = [Problem(name, data["rows"]) for name in dict.fromkeys(r["problem"] for r in data["rows"])]
+    static = [p for p in problems if any(p.kind(c) == "adaptive" for c in p.contestants)]
+    text = ["# Run time against error", "",
+            "Written by `bench/work_precision/run`; [bench/work_precision](../work_precision/README.md) says what is",
+            "measured and what to choose. Times are medians over rounds in which all contestants of a problem ran in",
+            "turns. Adaptive runs count from the coarse mesh on: every round's solve, estimate, refinement and transfer.",
+            ""]
+    text += [f"- {key}: {value}" for key, value in data["context"].items()]
+    runs = {}
+    for problem in problems:
+        how = data["measured"][problem.name]
+        runs.setdefault((how["command"], how["commit"], how["date"]), []).append(problem.name)
+    text += [f"- `{command}` at {commit}, {date}: {'; '.join(names)}" for (command, commit, date), names in runs.items()]
+    text += ["", "![run time against error](work_precision.png)", ""]
+    if static:
+        text += ["## The default for meshes beside uniform meshes, at equal error", "",
+                 f"The default is `when<F>(RecoveredStress{{}}).bulk(...).refine()` of *{DEFAULT}*, in rounds until the error",
+                 "is reached. Times at the same error lie on power laws between two rounds and between two meshes; † marks where",
+                 "they are extrapolated beyond the finest mesh measured. Errors are in the energy norm, over that of the solution.", "",
+                 markdown(["problem", "error", "element", "time", "bar", "uniform, same element", "over it",
+                           "best uniform of all elements", "over it", "first round within the error", "faster than all uniform below"],
+                          [row for p in static for row in static_rows(p)]), "",
+                 "## Rules, by their time over that of uniform meshes of the same element", "",
+                 "The default was chosen by the L-shape, the slit plate and the beams; the others had no say.", ""]
+        rules = list(dict.fromkeys(rule for p in static for rule in rules_of(p)))
+        text += [markdown(["problem", "error", "element", *rules], [row for p in static for row in rule_rows(p, rules)]),
+                 "", "## Where the time of the default goes", "",
+                 markdown(["problem", "element", "rounds", "time", "first mesh", "solving", "estimating", "refining"],
+                          [row for p in static for row in share_rows(p)]), ""]
+    laws = [p for p in problems if any(p.kind(c) == "switching" for c in p.contestants)]
+    if laws:
+        text += ["## Laws: a block with a thin arm that swings", "",
+                 "Explicit steps of one size; the error is that of the history of the arm's tip, beside the dear law in half",
+                 "the steps. *Expected* is share dear × its time + share cheap × its time; the bars of the project are 1.1 of it, and 0.5",
+                 "of all dear, within 0.1 %.", "",
+                 markdown(["scene", "elements' laws", "time", "over all dear", "error", "share dear", "over expected", "≤ 0.5 of all dear"],
+                          [row for p in laws for row in law_rows(p)]), ""]
+    steps = [p for p in problems if any(p.kind(c) == "local steps" for c in p.contestants)]
+    if steps:
+        text += ["## Time steps: a hundredth of the elements ten times smaller", "",
+                 "The error is that of the history of a corner, beside global steps a quarter as long.", "",
+                 markdown(["problem", "integrator", "time", "over global at 0.9", "error"],
+                          [row for p in steps for row in step_rows(p)]), ""]
+    failed = [[r["problem"], r["contestant"], r["n"], r["failed"]] for r in data["rows"] if r["failed"]]
+    if failed:
+        text += ["## Failed", "", markdown(["problem", "contestant", "n", "why"], failed), ""]
+    return "\n".join(text)
+
+
+def draw(data, path):
+    problems = [Problem(name, data["rows"]) for name in dict.fromkeys(r["problem"] for r in data["rows"])]
+    columns = min(4, len(problems))
+    lines = len(problems) // columns + 1
+    figure, axes = plt.subplots(lines, columns, figsize=(5.2 * columns, 5 * lines), layout="constrained", squeeze=False)
+    *panels, corner = [axis for line in axes for axis in line]
+    for axis in panels[len(problems):]:
+        axis.remove()
+    corner.axis("off")  # for the legend of all static problems
+    marks = "ov^sDPX*<>"
+    colours = dict(zip(["Tri3", "Quad4", "Tri6", "Quad8", "Quad9"], matplotlib.colormaps["tab10"].colors))
+    for axis, problem in zip(panels, problems):
+        static = any(problem.kind(c) == "uniform" for c in problem.contestants)
+        rules = rules_of(problem) if static else []
+        for k, contestant in enumerate(problem.contestants):
+            points = sorted((t, e) for e, t in problem.points(contestant))
+            if not points:
+                continue
+            style = {}
+            if static:
+                element, how = contestant.split(", ", 1)
+                style["color"] = colours[element]
+                if how.startswith("uniform"):
+                    axis.loglog(*zip(*points), "-" if how == "uniform" else "--", linewidth=1.2, label=contestant, **style)
+                    continue
+                default = how == DEFAULT
+                style |= {"marker": marks[rules.index(how)], "markersize": 5 if default else 3, "alpha": 1 if default else 0.5}
+            else:
+                style["marker"] = marks[k % len(marks)]
+            axis.loglog(*zip(*points), linestyle="none", label=contestant, **style)
+        if problem.name in LEVELS:
+            axis.axhline(LEVELS[problem.name][0], color="black", linewidth=0.6)
+        axis.set_title(problem.name, fontsize=10)
+        axis.set_xlabel("run time / s")
+        axis.set_ylabel("relative error")
+        axis.grid(True, which="major", alpha=0.3)
+        if not static:
+            axis.legend(fontsize=6)
+    shared = {}
+    for axis, problem in zip(panels, problems):
+        if any(problem.kind(c) == "uniform" for c in problem.contestants):
+            shared |= {label: line for line, label in zip(*axis.get_legend_handles_labels())}
+    if shared:
+        corner.legend(shared.values(), shared.keys(), loc="center", fontsize=8)
+    figure.savefig(path, dpi=90)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("rows", nargs="*", type=Path)
+    parser.add_argument("--context", nargs="*", default=[])
+    arguments = parser.parse_args()
+    path = arguments.folder / "work_precision.json"
+    old = json.loads(path.read_text()) if path.exists() else {"context": {}, "rows": []}
+    rows = [json.loads(line) for name in arguments.rows for line in name.read_text().splitlines()]
+    new = {row["problem"] for row in rows}
+    context = dict(pair.split("=", 1) for pair in arguments.context)
+    # Problems may have been measured one at a time: what differs from run to run stands with each.
+    each = {key: context.pop(key) for key in ("commit", "date", "command") if key in context}
+    measured = old.get("measured", {}) | {problem: each for problem in new}
+    rows = [row for row in old["rows"] if row["problem"] not in new] + rows
+    order = list(LEVELS)
+    rows.sort(key=lambda row: (order.index(row["problem"]) if row["problem"] in order else len(order), row["problem"]))
+    data = {"context": old["context"] | context, "measured": measured, "rows": rows}
+    with path.open("w") as file:
+        for part in ("context", "measured"):
+            file.write(("{" if part == "context" else "") + f'"{part}": ' + json.dumps(data[part], ensure_ascii=False, indent=1) + ",\n")
+        file.write('"rows": [\n')
+        file.write(",\n".join(json.dumps(row, ensure_ascii=False) for row in data["rows"]) + "\n]}\n")
+    (arguments.folder / "work_precision.md").write_text(report(data))
+    draw(data, arguments.folder / "work_precision.png")
+
+
+main()
