@@ -28,6 +28,15 @@ void hit_left_end(TheBody& body) {
     if (body.mesh().nodes[i][0] < 0.3) v[i] = {0.05, 0.02};
   body.set_velocities(v);
 }
+/// Stretched between its ends, at rest.
+template <class TheBody>
+void stretch(TheBody& body) {
+  auto u = body.mesh().nodes;
+  for (auto& p : u) p = {0.05 * p[0], 0};
+  body.set_displacements(u);
+  for (char const* end : {"left", "right"}) body.clamp(body.mesh().boundary(end));
+  for (char const* edge : {"bottom", "top"}) body.hold(body.mesh().boundary(edge), 2);
+}
 inline auto quick_sleep() { return sleep({.below = slow, .for_steps = 16}); }
 
 /// Steps until something sleeps.
@@ -49,12 +58,12 @@ double furthest_apart(TheBody const& a, TheBody const& b) {
       apart = std::max(apart, std::abs(u[i][k] - w[i][k]));
   return apart;
 }
-/// A force that comes after a while, at no patch's notice.
+/// A constant force on each of some nodes.
 template <class T>
-struct LatePull {
+struct Pull {
   static constexpr int dim = 2, nodes = 1;
   template <class U>
-  using rebind = LatePull<U>;
+  using rebind = Pull<U>;
   T strength;
   template <class V>
   PLIANT_HOST_DEVICE auto force(V const&, V const& u) const {
@@ -63,6 +72,21 @@ struct LatePull {
     f(0, 1) = T(0);
     return f;
   }
+};
+/// The same, from when its owner says.
+template <Backend B>
+class LatePull : public ConnectedTerm<B, Pull> {
+ public:
+  LatePull(B const& backend, Index node, Index nodes, std::shared_ptr<bool const> pulls)
+      : ConnectedTerm<B, Pull>(backend, {{node}}, Pull<double>{0.3}, nodes),
+        pulls_(std::move(pulls)) {}
+  void add_force(B const& backend, typename LatePull::At const& at,
+                 typename LatePull::Field f) const override {
+    if (*pulls_) ConnectedTerm<B, Pull>::add_force(backend, at, f);
+  }
+
+ private:
+  std::shared_ptr<bool const> pulls_;
 };
 
 TEST_CASE("what sleeps does not differ from what is awake by more than its threshold allows",
@@ -95,7 +119,9 @@ TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adapta
     auto body = bar_on(backend);
     CentralDifference step;
     Adaptation adapt{quick_sleep()};
-    step(body, 40, adapt);
+    step(body, 8, adapt);
+    CHECK(asleep(body).patches == 0);
+    step(body, 32, adapt);
     auto const found = asleep(body);
     CHECK(found.patches == found.of_patches);
     double const time = body.time();
@@ -159,8 +185,89 @@ TEST_CASE("what something pulls at wakes, whatever it is", "[adaptation]") {
     wakes("groups", [](auto& body) { body.template assign<Soft>({2300, 2301}); });
     wakes("a finer mesh", [](auto& body) { refine(body, {{2300, 2301}}); });
     wakes("a force term", [&](auto& body) {
-      body.add(std::vector<std::array<Index, 1>>{{last(body)}}, LatePull<double>{0.3});
+      body.add(std::vector<std::array<Index, 1>>{{last(body)}}, Pull<double>{0.3});
     });
+  });
+}
+
+TEST_CASE("what carries load sleeps until it is pulled at", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend), plain = bar_on(backend);
+    CentralDifference step, same_step;
+    Adaptation adapt{quick_sleep()};
+    for (auto* b : {&body, &plain}) {
+      stretch(*b);
+      hit_left_end(*b);
+    }
+    settle(body, step, adapt);
+    same_step(plain, 40);
+    CHECK(asleep(body).residual < 1e-3);  // N; the bar carries 0.01 and more
+    auto const forces = body.forces(), awake = plain.forces();
+    double apart = 0;
+    for (std::size_t i = 0; i < forces.size(); ++i)
+      for (std::size_t k = 0; k < 2; ++k)
+        apart = std::max(apart, std::abs(forces[i][k] - awake[i][k]));
+    CHECK(apart < 1e-2 * largest(awake));
+    for (int k = 0; k < 60; ++k) {
+      (void)body.forces();  // reading changes nothing
+      same_step(plain);
+      step(body);
+      adapt(body);
+    }
+    auto const v = plain.velocities(), w = body.velocities();
+    apart = 0;
+    for (std::size_t i = 0; i < v.size(); ++i)
+      for (std::size_t k = 0; k < 2; ++k) apart = std::max(apart, std::abs(v[i][k] - w[i][k]));
+    CHECK(apart < 0.02 * largest(v));
+  });
+}
+
+TEST_CASE("a term of the user's own that begins to pull wakes what sleeps", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    // A recording of a GPU has what pulled when it was made.
+    if constexpr (std::same_as<typename B::Recording, HostRecording>) {
+      auto const pulls = std::make_shared<bool>(false);
+      auto body = bar_on(backend), plain = bar_on(backend);
+      CentralDifference step, same_step;
+      Adaptation adapt = Adaptation{quick_sleep()}.every(1);  // a look that comes late matters here
+      Index const last = nodes_of(body.mesh().boundary("right"))[0];
+      for (auto* b : {&body, &plain}) {
+        b->add([last, pulls](B const& on, std::vector<Index> const& internal) {
+          return std::make_unique<LatePull<B>>(on, internal[static_cast<std::size_t>(last)],
+                                               static_cast<Index>(internal.size()), pulls);
+        });
+        hit_left_end(*b);
+      }
+      settle(body, step, adapt);
+      same_step(plain, 40);
+      *pulls = true;
+      for (int k = 0; k < 60; ++k) {
+        same_step(plain);
+        step(body);
+        adapt(body);
+      }
+      CHECK(furthest_apart(plain, body) < 0.05 * largest(plain.displacements()));
+    }
+  });
+}
+
+TEST_CASE("nodes that are driven later on do not sleep", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto body = bar_on(backend), plain = bar_on(backend);
+    CentralDifference step, same_step;
+    Adaptation adapt{quick_sleep()};
+    for (auto* b : {&body, &plain})
+      b->drive(b->mesh().boundary("right"), Motion<2>([](double t) {
+                 return Point<2>{t < 1 ? 0 : 0.05 * (t - 1), 0};
+               }));
+    while (plain.time() < 2) {
+      same_step(plain);
+      step(body);
+      adapt(body);
+    }
+    CHECK(asleep(body).patches > 0);
+    CHECK(asleep(body).patches < asleep(body).of_patches);
+    CHECK(furthest_apart(plain, body) < 0.01 * largest(plain.displacements()));
   });
 }
 
@@ -192,13 +299,19 @@ TEST_CASE("what sleep takes is booked, and its residual told", "[adaptation]") {
     CentralDifference step{{.safety = 0.3}};
     Adaptation adapt{sleep({.below = 5e-3, .for_steps = 16})};
     double const begin = total_energy(body);
-    int sleepers = 0;
-    for (int k = 0; k < 700; ++k) {
-      step(body);
-      adapt(body);
-      sleepers = std::max(sleepers, int{asleep(body).patches});
+    auto const kept_less_booked = [&] {
+      return leapfrog_energy(body.parts()).kept() - booked_energy(body.parts());
+    };
+    int changes = 0;
+    for (int k = 0; k < 90; ++k) {
+      step(body, 8);
+      double const before = kept_less_booked();
+      auto const slept = asleep(body).patches;
+      adapt.now(body);
+      changes += asleep(body).patches != slept;
+      CHECK(std::abs(kept_less_booked() - before) < 1e-13 * begin);
     }
-    REQUIRE(sleepers > 0);
+    REQUIRE(changes > 1);
     auto const found = asleep(body);
     CHECK(found.energy < 0);
     double const kept = leapfrog_energy(body.parts()).kept() - booked_energy(body.parts());
@@ -234,8 +347,15 @@ TEST_CASE("a body with sleeping patches is saved and rolled back", "[adaptation]
     }
     CHECK(first_difference(body.state(), again.state()) == "");
 
+    // A roll-back to where patches slept that are awake now.
+    keep_checkpoint(body.parts());
+    auto const slept = asleep(body).patches;
+    wake_all(body.parts());
+    REQUIRE(asleep(body).patches == 0);
+    roll_back(body.parts());
+    CHECK(asleep(body).patches == slept);
+
     // Four times the stable step: rolled back to where patches slept.
-    auto const rest = body.state().rest;
     CentralDifference large{{.step = 4 * step.step(), .check_interval = 24}};
     Advanced advanced;
     for (int k = 0; k < 3 && large.retries() == 0; ++k) advanced = large(body, 24);

@@ -129,8 +129,9 @@ class Cuda {
     if (active.most <= 0) return;
     void (*const visit_kernel)(detail::ElementView<nodes>, Visitor, double*, Fields...) =
         detail::visit_elements<Groups, nodes, Visitor, Fields...>;
-    launch("visit", {blocks(element_count(active), detail::visit_threads), detail::visit_threads},
-           visit_kernel, active.elements.view({active.list}), visitor, counters.data(), fields...);
+    constexpr int in_block = detail::visit_threads * detail::visits_per_thread<Visitor>;
+    launch("visit", {blocks(element_count(active), in_block), detail::visit_threads}, visit_kernel,
+           active.elements.view({active.list}), visitor, counters.data(), fields...);
   }
   template <class F>
   void histogram(Index n, F const& f, std::int64_t* bins) const {

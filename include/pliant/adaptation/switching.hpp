@@ -36,6 +36,7 @@ struct ActVisitor {
   Index elements;
   SwitchTarget<T> target;
 
+  PLIANT_HOST_DEVICE bool selects(Index e, Tag group) const { return next[e] != group; }
   template <int G, class V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&, V const&) const {
     return Vector<std::remove_cvref_t<decltype(rest(0, 0))>, 1>{};

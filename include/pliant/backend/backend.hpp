@@ -59,7 +59,7 @@
 //                              then visitor.finish(GroupNumber<g>{}, element, values of that
 //                              element, again, tally), where again() gathers its v... as plain
 //                              numbers and tally(k, x) adds x to counters[k] of the array counters,
-//                              k < Visitor::counters
+//                              k < Visitor::counters; see Selects in backend/kernel.hpp
 // `over(elements, list)` in place of `elements` passes over the patches that are not in a list
 // (backend/patch_list.hpp). What kernels and visitors have to offer is in backend/kernel.hpp.
 namespace pliant {

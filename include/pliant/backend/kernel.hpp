@@ -67,6 +67,13 @@ concept Visitor = requires {
   { F::counters } -> std::convertible_to<int>;
 } && detail::visits_each<F, T, Own, Again, V...>(std::make_integer_sequence<int, Groups>());
 
+/// A visitor that tells which elements it has nothing to do with: bool selects(Index element, Tag group) const. A
+/// backend may pass those over.
+template <class F>
+concept Selects = requires(F const& f, Index element, Tag group) {
+  { f.selects(element, group) } -> std::same_as<bool>;
+};
+
 /// Verbs call these first, so that a functor which lacks a part is told by a sentence.
 template <class F, class Result, int Groups, class Own, class... V>
 constexpr void require_kernel() {

@@ -9,7 +9,11 @@
 
 namespace pliant::detail {
 
-/// One thread per element. Tallies are collected per block, so that few reach global memory.
+/// Elements that one thread looks at: several where most are passed over, so that loads overlap.
+template <class Visitor>
+inline constexpr int visits_per_thread = Selects<Visitor> ? 8 : 1;
+
+/// Tallies are collected per block, so that few reach global memory.
 template <int Groups, int Nodes, class Visitor, class... Fields>
 __global__ void __launch_bounds__(visit_threads)
     visit_elements(ElementView<Nodes> const elements, __grid_constant__ Visitor const visitor,
@@ -21,17 +25,39 @@ __global__ void __launch_bounds__(visit_threads)
   __syncthreads();
   begin_after_previous_kernel();
 
-  Index const e = elements.element(static_cast<Index>(blockIdx.x) * visit_threads + thread);
-  if (e >= 0) {
+  auto const visit = [&](Index e, Tag tag) {
     Index const* const row =
         elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
-    dispatch<Groups>(elements.tags[e], [&](auto group) {
+    dispatch<Groups>(tag, [&](auto group) {
       auto const again = [&] { return std::tuple{gather_nodes<Nodes>(fields, row)...}; };
       auto const tally = [&](int k, double x) { atomicAdd(tallies + k, x); };
       auto const values =
           evaluate_at(visitor, group, OneElement{e}, gather_nodes<Nodes>(fields, row)...);
       visitor.finish(group, e, values, again, tally);
     });
+  };
+  constexpr int each = visits_per_thread<Visitor>;
+  Index const first = static_cast<Index>(blockIdx.x) * visit_threads * each + thread;
+  if constexpr (each == 1) {
+    if (Index const e = elements.element(first); e >= 0) visit(e, elements.tags[e]);
+  } else {
+    Index numbers[each];
+    Tag tags[each];
+    unsigned selected = 0;
+#pragma unroll
+    for (int k = 0; k < each; ++k) {
+      numbers[k] = elements.element(first + k * visit_threads);
+      tags[k] = numbers[k] >= 0 ? elements.tags[numbers[k]] : no_group;
+    }
+#pragma unroll
+    for (int k = 0; k < each; ++k)
+      if (numbers[k] >= 0 && visitor.selects(numbers[k], tags[k])) selected |= 1u << k;
+#pragma unroll 1
+    for (; selected != 0; selected &= selected - 1) {
+      Index const e =
+          elements.element(first + (__ffs(static_cast<int>(selected)) - 1) * visit_threads);
+      visit(e, elements.tags[e]);
+    }
   }
   __syncthreads();
   for (int k = thread; k < count; k += visit_threads)
