@@ -164,20 +164,20 @@ def share_rows(problem):
 
 
 def law_rows(problem):
-    """All elements under one law, and switching between two, beside all under the dear one."""
-    dear = problem.name.rsplit(", ", 1)[1]
+    """All elements under one law, and switching between two, beside all under the costly one."""
+    costly = problem.name.rsplit(", ", 1)[1]
     seconds = {c: problem.of(c)[0]["seconds"] for c in problem.contestants if problem.of(c)}
     for contestant in problem.contestants:
         for row in problem.of(contestant):
             cells = [problem.name.replace("block with a thin arm, ", ""), contestant, time(row["seconds"]),
-                     f"{row['seconds'] / seconds[dear]:.2f}", percent(row["error"])]
+                     f"{row['seconds'] / seconds[costly]:.2f}", percent(row["error"])]
             share = row.get("share")
             if problem.kind(contestant) == "switching":
                 cheap = seconds[contestant.split(",")[0]]
-                expected = share * seconds[dear] + (1 - share) * cheap
+                expected = share * seconds[costly] + (1 - share) * cheap
                 cells += [percent(share), f"{row['seconds'] / expected:.2f}"]
                 within = row["error"] <= 0.001
-                cells.append("" if not within else "met" if row["seconds"] <= 0.5 * seconds[dear] else "slower than 0.5")
+                cells.append("" if not within else "met" if row["seconds"] <= 0.5 * seconds[costly] else "slower than 0.5")
             else:
                 cells += ["", "", ""]
             yield cells
@@ -223,10 +223,10 @@ def report(data):
     laws = [p for p in problems if any(p.kind(c) == "switching" for c in p.contestants)]
     if laws:
         text += ["## Laws: a block with a thin arm that swings", "",
-                 "Explicit steps of one size; the error is that of the history of the arm's tip, beside the dear law in half",
-                 "the steps. *Expected* is share dear × its time + share cheap × its time; the bars of the project are 1.1 of it, and 0.5",
-                 "of all dear, within 0.1 %.", "",
-                 markdown(["scene", "elements' laws", "time", "over all dear", "error", "share dear", "over expected", "≤ 0.5 of all dear"],
+                 "Explicit steps of one size; the error is that of the history of the arm's tip, beside the costly law in half",
+                 "the steps. *Expected* is share costly × its time + share cheap × its time; the bars of the project are 1.1 of it, and 0.5",
+                 "of all costly, within 0.1 %.", "",
+                 markdown(["scene", "elements' laws", "time", "over all costly", "error", "share costly", "over expected", "≤ 0.5 of all costly"],
                           [row for p in laws for row in law_rows(p)]), ""]
     steps = [p for p in problems if any(p.kind(c) == "local steps" for c in p.contestants)]
     if steps:
@@ -240,9 +240,18 @@ def report(data):
     return "\n".join(text)
 
 
-def draw(data, path):
-    problems = [Problem(name, data["rows"]) for name in dict.fromkeys(r["problem"] for r in data["rows"])]
+# What the plot of the README shows.
+OVERVIEW = ["L-shape", "slit plate", "hanging beam", "block with a thin arm, Tet4, Ogden"]
+
+
+def draw(data, path, overview=False):
+    """All problems and contestants; for an overview, some problems and the default rule alone."""
+    names = dict.fromkeys(r["problem"] for r in data["rows"] if not overview or r["problem"] in OVERVIEW)
+    problems = [Problem(name, data["rows"]) for name in names]
+    if not problems:
+        return
     columns = min(4, len(problems))
+    columns += overview  # for the legend
     lines = len(problems) // columns + 1
     figure, axes = plt.subplots(lines, columns, figsize=(5.2 * columns, 5 * lines), layout="constrained", squeeze=False)
     *panels, corner = [axis for line in axes for axis in line]
@@ -266,6 +275,8 @@ def draw(data, path):
                     axis.loglog(*zip(*points), "-" if how == "uniform" else "--", linewidth=1.2, label=contestant, **style)
                     continue
                 default = how == DEFAULT
+                if overview and not default:
+                    continue
                 style |= {"marker": marks[rules.index(how)], "markersize": 5 if default else 3, "alpha": 1 if default else 0.5}
             else:
                 style["marker"] = marks[k % len(marks)]
@@ -284,7 +295,7 @@ def draw(data, path):
             shared |= {label: line for line, label in zip(*axis.get_legend_handles_labels())}
     if shared:
         corner.legend(shared.values(), shared.keys(), loc="center", fontsize=8)
-    figure.savefig(path, dpi=90)
+    figure.savefig(path, dpi=60 if overview else 90)
 
 
 def main():
@@ -312,6 +323,7 @@ def main():
         file.write(",\n".join(json.dumps(row, ensure_ascii=False) for row in data["rows"]) + "\n]}\n")
     (arguments.folder / "work_precision.md").write_text(report(data))
     draw(data, arguments.folder / "work_precision.png")
+    draw(data, arguments.folder / "work_precision_overview.png", overview=True)
 
 
 main()
