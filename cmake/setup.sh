@@ -56,6 +56,15 @@ install_packages() {
     apt-get -qq install --yes --no-install-recommends "$@" >/dev/null
 }
 
+# Sets `python` to one that has matplotlib. The python3 on the PATH may be another than the one that apt-get serves.
+find_python_with_matplotlib() {
+  for python in python3 /usr/bin/python3; do
+    ! "$python" -c 'import matplotlib' 2>/dev/null || return 0
+  done
+  [[ ${PLIANT_NO_INSTALL:-0} != 1 ]] || fail "missing: python3-matplotlib"
+  install_packages python3-matplotlib
+}
+
 # Installs what a build needs. With PLIANT_NO_INSTALL=1, or without apt-get, says what that is.
 ensure_packages() {
   local missing

@@ -40,6 +40,7 @@ lines = {}
 for axis in axes[0]:
     lines |= {label: line for line, label in zip(*axis.get_legend_handles_labels())}
 lines = dict(sorted(lines.items()))
-figure.legend(lines.values(), lines.keys(), loc="outside lower center", ncols=5, fontsize=8)
+figure.get_layout_engine().set(rect=(0, 0.08, 1, 0.92))  # room for the legend
+figure.legend(lines.values(), lines.keys(), loc="lower center", ncols=5, fontsize=8)
 figure.suptitle("float against Reference<double>; the black line is half a unit in the last place of 1")
 figure.savefig(output, dpi=110)

@@ -57,6 +57,23 @@ TEST_CASE("a node that hangs between quadrilaterals is listed or refused", "[mes
   CHECK_NOTHROW(check(mesh));
 }
 
+TEST_CASE("a slit between quadratic elements is no hanging node", "[mesh]") {
+  auto mesh = mesh::rectangle<Quad8>({.size = {1, 2}, .cells = {1, 2}});
+  auto& upper = mesh.elements<Quad8>()[1];
+  int parted = 0;
+  for (Index& node : upper) {  // all between the elements but the tip
+    auto const place = mesh.nodes[static_cast<std::size_t>(node)];
+    if (place[1] != 1 || place[0] == 0) continue;
+    node = static_cast<Index>(mesh.nodes.size());
+    mesh.nodes.push_back(place);
+    ++parted;
+  }
+  REQUIRE(parted == 2);
+  CHECK_NOTHROW(check(mesh));
+  mesh.nodes.back()[0] -= 0.1;  // no longer where the other lip has one
+  CHECK_THROWS_AS(check(mesh), Error);
+}
+
 TEST_CASE("a node that hangs between triangles is refused", "[mesh][errors]") {
   Mesh<Tri3> mesh;
   mesh.nodes = {{0, 0}, {1, 0.25}, {0.25, 1}, {0.625, 0.625}, {1.25, 1.5}};

@@ -154,6 +154,8 @@ void check_hanging(M const& mesh) {
       Index const a = side[c], b = side[(c + 1) % n], d = side[(c + n - 1) % n];
       auto const i = static_cast<std::size_t>(a);
       auto const first = from(a, b), second = from(a, d);
+      double reach = 0;
+      for (double x : first) reach = std::max(reach, std::abs(x));
       for (Index k = at_node.first[i]; k < at_node.first[i + 1]; ++k) {
         auto const& other = sides[static_cast<std::size_t>(
             side_of_corner[static_cast<std::size_t>(at_node.order[static_cast<std::size_t>(k)])])];
@@ -161,6 +163,13 @@ void check_hanging(M const& mesh) {
         for (Index node : other) {
           if (known[static_cast<std::size_t>(node)]) continue;
           if (std::find(side.begin(), side.end(), node) != side.end()) continue;
+          // Where both sides have a node at one place, they are the lips of a slit.
+          if (std::any_of(side.begin(), side.end(), [&](Index own) {
+                auto const x = from(own, node);
+                return std::ranges::all_of(
+                    x, [&](double apart) { return std::abs(apart) <= 1e-9 * reach; });
+              }))
+            continue;
           auto const lies = where_on_side(from(a, node), first, second, n == 3);
           if (lies == Lies::elsewhere) continue;
           std::string on = message({"edge from node ", a, " to node "});
