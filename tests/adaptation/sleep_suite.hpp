@@ -394,6 +394,29 @@ TEST_CASE("reading forces of a body with sleeping patches gives those of all", "
   });
 }
 
+TEST_CASE("where nobody looks any more, and under another integrator, all wakes", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    for (bool other_integrator : {false, true}) {
+      auto body = bar_on(backend), plain = bar_on(backend);
+      for (auto* b : {&body, &plain}) hit_left_end(*b);
+      CentralDifference step, same_step;
+      Adaptation adapt{quick_sleep()};
+      settle(body, step, adapt);
+      same_step(plain, 40);
+      if (other_integrator) {
+        LocalSteps local, same_local;
+        local(body, 20);
+        same_local(plain, 20);
+      } else {
+        step(body, 200);
+        same_step(plain, 200);
+      }
+      CHECK(asleep(body).patches == 0);
+      CHECK(furthest_apart(plain, body) < 0.02 * largest(plain.displacements()));
+    }
+  });
+}
+
 TEST_CASE("sleep refuses what it cannot take", "[adaptation]") {
   CHECK_THROWS_WITH(sleep({.below = 0}), says("below is 0 m/s"));
   CHECK_THROWS_WITH(sleep({.below = 1, .for_steps = 0}), says("for_steps is 0"));

@@ -34,7 +34,7 @@ struct SleepOptions {
 };
 
 /// Patches whose nodes have been slower than `below` for so many steps, and which nothing pulls at that would give
-/// them that speed in as many, sleep until something would.
+/// them that speed in as many, sleep until something would, or until nobody has looked for as many.
 struct SleepRule {
   double below;
   std::int64_t for_steps;

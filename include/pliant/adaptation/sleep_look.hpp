@@ -109,11 +109,13 @@ std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule) {
 }  // namespace detail
 
 /// Wakes patches that something would move, and puts those to sleep that have been at rest for long enough. Before
-/// an integrator with a step has taken the body, nothing sleeps.
+/// an integrator with a step has taken the body, nothing sleeps. A look holds for `for_steps` steps: without another
+/// one, all wakes then.
 template <class Parts>
 void look_for_rest(Parts& parts, SleepRule const& rule) {
   auto& state = parts.state;
   if (!(state.integrator.step > 0) || state.integrator.macro_step > 0) return;
+  state.rest_until = state.steps + rule.for_steps;
   if (parts.awake && parts.awake->awake == 0 && !has_added_terms(parts)) {
     state.rest_seen = state.steps;  // what could stir would have woken it
     return;

@@ -86,9 +86,11 @@ void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
     auto const same = [](double a, double b) {
       return static_cast<typename Parts::T>(a) == static_cast<typename Parts::T>(b);
     };
+    std::vector<Index> changed;
     for (std::size_t i = 0; i < before.size(); ++i)
       if (!std::ranges::equal(before[i], forces[i], same))
-        wake_node(parts, parts.layout.internal_of(static_cast<Index>(i)));
+        changed.push_back(parts.layout.internal_of(static_cast<Index>(i)));
+    wake_nodes(parts, changed);
   }
   change_loads(parts, [&] {
     make_loads(parts);
@@ -112,7 +114,7 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
     loads[static_cast<std::size_t>(node)] = force;
     return set_loads(parts, loads);
   }
-  wake_node(parts, parts.layout.internal_of(node));
+  wake_nodes(parts, std::array{parts.layout.internal_of(node)});
   synchronize_velocities(parts);
   make_loads(parts);
   double const step = parts.watched_energy ? parts.state.integrator.step : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include <pliant/body/leapfrog_energy.hpp>
@@ -213,22 +214,24 @@ void wake_all(Parts& parts) {
   else
     std::ranges::fill(parts.state.rest, 0);
 }
-/// Wakes the patches around a node.
+/// Wakes the patches around some nodes, given by internal numbers.
 template <class Parts>
-void wake_node(Parts& parts, Index internal) {
+void wake_nodes(Parts& parts, std::span<Index const> nodes) {
   if (!parts.awake) return;
   auto const& rows = *parts.patch_nodes;
-  auto const i = static_cast<std::size_t>(internal);
-  auto const around =
-      std::span(rows.patches_of_node)
-          .subspan(static_cast<std::size_t>(rows.first_of_node[i]),
-                   static_cast<std::size_t>(rows.first_of_node[i + 1] - rows.first_of_node[i]));
-  auto& rest = parts.state.rest;
-  if (std::ranges::none_of(around, [&](Index p) { return rest[static_cast<std::size_t>(p)] < 0; }))
-    return;
-  change_rest(parts, [&] {
-    for (Index p : around) rest[static_cast<std::size_t>(p)] = 0;
-  });
+  auto rest = parts.state.rest;
+  bool wakes = false;
+  for (Index node : nodes) {
+    auto const i = static_cast<std::size_t>(node);
+    for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k) {
+      auto& steps =
+          rest[static_cast<std::size_t>(rows.patches_of_node[static_cast<std::size_t>(k)])];
+      if (steps >= 0) continue;
+      steps = 0;
+      wakes = true;
+    }
+  }
+  if (wakes) change_rest(parts, [&] { parts.state.rest = std::move(rest); });
 }
 
 }  // namespace pliant

@@ -85,8 +85,9 @@ struct State<B, Mesh<Es...>, Fs...> {
   /// (patches of all types): for how many steps each has been at rest; negative while it sleeps. Empty where
   /// nothing looks for rest.
   std::vector<std::int32_t> rest;
-  std::int64_t rest_seen = 0;  // at which step that was looked at
-  FrequencyBounds bounds;      // of all that was awake when the step was chosen last
+  std::int64_t rest_seen = 0;   // at which step that was looked at
+  std::int64_t rest_until = 0;  // the step by which it has to be looked at again
+  FrequencyBounds bounds;       // of all that was awake when the step was chosen last
   AdaptationRecord<dim> record;
   IntegratorState integrator;
 
@@ -119,6 +120,7 @@ struct State<B, Mesh<Es...>, Fs...> {
     visit("steps", s.steps...);
     visit("steps at rest", s.rest...);
     visit("step of the last look for rest", s.rest_seen...);
+    visit("step of the next look for rest", s.rest_until...);
     visit("bounds of frequencies", s.bounds...);
     AdaptationRecord<dim>::for_each_member(visit, s.record...);
     visit("integrator", s.integrator...);

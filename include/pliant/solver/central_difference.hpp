@@ -100,6 +100,7 @@ class CentralDifference {
     auto& own = state.integrator;
     std::int64_t checked = -1;  // at which step
     while (state.steps < goal) {
+      if (parts.awake && state.steps >= state.rest_until) wake_all(parts);  // nobody looks any more
       if (state.steps >= own.next_watch) watch(parts);
       bool const due =
           !parts.has_checkpoint || state.steps >= std::min(own.next_check, own.next_refresh);
@@ -112,7 +113,8 @@ class CentralDifference {
       if (state.steps >= own.next_refresh) refresh(parts);
       step_ = own.step;
       take(parts, own.step,
-           static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch}) -
+           static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch,
+                                      parts.awake ? state.rest_until : goal}) -
                             state.steps));
     }
     return {state.steps - begun, state.time, own.step, false};

@@ -100,6 +100,7 @@ class LocalSteps {
   template <class Parts>
   void begin(Parts& parts) {
     synchronize_velocities(parts);
+    wake_all(parts);
     parts.watched_energy = leapfrog_energy<Parts>;  // without a step of its own: the total
     auto& own = parts.state.integrator;
     bool const resumed = own.active && own.macro_step > 0 && parts.integrator == nullptr;
