@@ -22,7 +22,7 @@ struct Answer {
   double error = std::numeric_limits<double>::quiet_NaN();     // relative
   double seconds = 0;                                          // all of it, from the mesh on
   double making = 0, solving = 0, deciding = 0, refining = 0;  // shares of `seconds`
-  double share = std::numeric_limits<double>::quiet_NaN();     // of evaluations that were costly ones
+  double share = std::numeric_limits<double>::quiet_NaN();  // of evaluations that were costly ones
   std::string failed{};
 };
 
