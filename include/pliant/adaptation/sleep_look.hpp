@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +12,15 @@
 namespace pliant {
 
 namespace detail {
+
+/// Sets a flag that other threads may set at the same time.
+PLIANT_HOST_DEVICE void set_flag(std::uint8_t& flag) {
+#if defined(__CUDA_ARCH__)
+  flag = 1;
+#else
+  std::atomic_ref(flag).store(1, std::memory_order_relaxed);
+#endif
+}
 
 /// Marks the patches of nodes that are not at rest: faster than a speed, or pulled so that they would be within a
 /// time.
@@ -41,7 +51,7 @@ struct MarkStirred {
     }
     // NaN stirs.
     if (speed <= below * below && time * time * gain <= below * below) return;
-    for (Index k = first[i]; k < first[i + 1]; ++k) stirred[patches[k]] = 1;
+    for (Index k = first[i]; k < first[i + 1]; ++k) set_flag(stirred[patches[k]]);
   }
 };
 

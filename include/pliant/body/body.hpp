@@ -122,7 +122,8 @@ class Body {
   void set_gravity(Point<dim> const& g) { pliant::set_gravity(*parts_, g); }
   /// A force −c m v at each node; c in 1/s, not negative.
   void set_damping(double per_mass) { pliant::set_damping(*parts_, per_mass); }
-  /// The force on one node, N, constant in direction. Does not wait; only the first call allocates.
+  /// The force on one node, N, constant in direction. Does not wait, and only the first call allocates, but for a
+  /// node that hangs between others or whose patch sleeps.
   void set_load(Index node, Point<dim> const& force) { pliant::set_load(*parts_, node, force); }
   /// The forces on all nodes, (nodes, dim), N; see mesh/loads.hpp.
   void set_loads(Points const& forces) { pliant::set_loads(*parts_, forces); }

@@ -163,7 +163,8 @@ double booked_energy(Parts const& parts) {
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved
 /// between, summed over time, one of what elements that moved together added beyond that, one of what
-/// falling asleep took and waking gave, and one per refinement. A refinement has the time at which it was made; sums over time have the body's present time.
+/// falling asleep took and waking gave, and one per refinement. A refinement has the time at which it was
+/// made; sums over time have the body's present time.
 template <DeformableBody TheBody>
 auto ledger(TheBody const& body) {
   auto entries = body.state().record.refinements;
