@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include <pliant/backend/dispatch.hpp>
+#include <pliant/backend/kernel.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/vector_memory.cuh>
