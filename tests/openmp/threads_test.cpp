@@ -1,3 +1,5 @@
+#include <pliant/solve.hpp>
+
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
@@ -55,6 +57,23 @@ TEST_CASE("a negative number of threads is refused", "[openmp]") {
   CHECK_THROWS_WITH(OpenMP<double>({.threads = -1}), says("-1 threads"));
   CHECK(OpenMP<double>({.threads = 3}).threads() == 3);
   CHECK(OpenMP<double>{}.threads() >= 1);
+}
+
+TEST_CASE("equilibria have the same bits for any number of threads", "[openmp]") {
+  using Solid = Formulation<Hex8, Gauss<2>, NeoHookean>;
+  auto const mesh = mesh::box<Hex8>({.size = {1, 1, 1}, .cells = {12, 12, 12}});
+  auto const solve = [&](int threads) {
+    Body body{OpenMP<double>{{.threads = threads}}, mesh, Elastic{1e6, 0.3, 1000}, Group<Solid>{}};
+    body.clamp(mesh.boundary("left"));
+    body.set_gravity({0, 0, -1});
+    auto const report = solve_static(body);
+    CHECK(report.linear.method == LinearMethod::multilevel);
+    return std::pair{report.energy, body.displacements()};
+  };
+  auto const one = solve(1);
+  CHECK(one.first > 0);
+  CHECK(solve(2) == one);
+  CHECK(solve(5) == one);
 }
 
 }  // namespace pliant::test

@@ -70,6 +70,11 @@ class OpenMP {
       for (Index i = first; i < last; ++i) own(i);
     });
   }
+  /// f(k) for each k < n on the host, in no order, each call worth a thread.
+  template <class F>
+  void for_each_task(Index n, F const& f) const {
+    threads_.for_each_block(n, f);
+  }
   template <class F>
   double sum(Index n, F const& f) const {
     std::vector<double> partial((static_cast<std::size_t>(n) + sum_block - 1) / sum_block);

@@ -8,6 +8,9 @@
 
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/body/body.hpp>
+#include <pliant/solver/assembler.hpp>
+#include <pliant/solver/linear/unknowns.hpp>
+#include <pliant/solver/stiffness_pattern.hpp>
 
 namespace pliant {
 
@@ -18,9 +21,6 @@ struct Assembled {
   Eigen::VectorXd force;  // −∂W/∂u, pressures and the user's terms included, N
   Eigen::SparseMatrix<double> stiffness;  // −∂force/∂u, N/m
 };
-
-/// What is assembled; the rest of an Assembled is left empty.
-enum class Assemble { energy_and_force, stiffness, stiffness_too };
 
 namespace detail {
 
@@ -45,58 +45,6 @@ Point<M::dim> middle_of(M const& mesh) {
   for (std::size_t k = 0; k < low.size(); ++k) low[k] = (low[k] + high[k]) / 2;
   return low;
 }
-
-/// Adds element by element to an Assembled; what belongs to slaves goes to their masters.
-template <int Dim>
-class Assembler {
- public:
-  Assembler(Interpolation const& interpolation, Assemble what, Eigen::Index size)
-      : interpolation_(interpolation),
-        with_force_(what != Assemble::stiffness),
-        with_stiffness_(what != Assemble::energy_and_force) {
-    if (with_force_) sum_.force = Eigen::VectorXd::Zero(size);
-    if (with_stiffness_) sum_.stiffness.resize(size, size);
-  }
-  bool with_force() const { return with_force_; }
-  bool with_stiffness() const { return with_stiffness_; }
-
-  void add_energy(double energy) { sum_.energy += energy; }
-  /// force(a, k) of the nodes of an element, by the user's numbers.
-  template <class Nodes, class Force>
-  void add_force(Nodes const& nodes, Force const& force) {
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      interpolation_.for_each_master(nodes[a], [&](Index i, double weight) {
-        for (int k = 0; k < Dim; ++k)
-          sum_.force[Eigen::Index{Dim} * i + k] += weight * force(static_cast<int>(a), k);
-      });
-  }
-  /// stiffness(row, column), which run over (a, direction).
-  template <class Nodes, class Stiffness>
-  void add_stiffness(Nodes const& nodes, Stiffness const& stiffness) {
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      interpolation_.for_each_master(nodes[a], [&](Index i, double wi) {
-        for (std::size_t b = 0; b < nodes.size(); ++b)
-          interpolation_.for_each_master(nodes[b], [&](Index j, double wj) {
-            for (int p = 0; p < Dim; ++p)
-              for (int q = 0; q < Dim; ++q)
-                entries_.emplace_back(
-                    Dim * i + p, Dim * j + q,
-                    wi * wj *
-                        stiffness(static_cast<int>(a) * Dim + p, static_cast<int>(b) * Dim + q));
-          });
-      });
-  }
-  Assembled finish() {
-    if (with_stiffness_) sum_.stiffness.setFromTriplets(entries_.begin(), entries_.end());
-    return std::move(sum_);
-  }
-
- private:
-  Interpolation const& interpolation_;
-  bool with_force_, with_stiffness_;
-  Assembled sum_;
-  std::vector<Eigen::Triplet<double>> entries_;
-};
 
 /// The laws of a table on the host, a time dt after internal variables were committed, over numbers per
 /// element in the user's order.
@@ -127,24 +75,34 @@ struct LawsOnHost {
   }
 };
 
-/// Calls visit(GroupNumber, e, law) for each element of a table, by the user's number.
+/// Calls visit(GroupNumber, law) for an element of a table, by the user's number.
 template <class Table, class Visit>
-void for_each_law(Table const&, LawsOnHost<Table> const& host, std::vector<Tag> const& tags,
-                  Visit const& visit) {
-  for (std::size_t e = 0; e < tags.size(); ++e)
-    dispatch<Table::groups>(tags[e], [&]<int G>(GroupNumber<G> group) {
-      visit(group, e, host.laws.template law<G>(OneElement{static_cast<Index>(e)}));
-    });
+void with_law(Table const&, LawsOnHost<Table> const& host, Tag tag, Index element,
+              Visit const& visit) {
+  dispatch<Table::groups>(tag, [&]<int G>(GroupNumber<G> group) {
+    visit(group, host.laws.template law<G>(OneElement{element}));
+  });
 }
 
+/// Nodes that pull at each other as elements of the body's mesh, and lists besides.
 template <class Parts>
-Assembled assembled_at(Parts const& parts, Eigen::VectorXd const& u, Assemble what, double dt,
-                       double pressure_share) {
+auto stiffness_blocks(Parts const& parts, std::vector<std::vector<Index>> const& besides) {
+  auto const& mesh = parts.state.topology->mesh;
+  CoupledNodes coupled(parts.state.topology->interpolation, static_cast<Index>(mesh.nodes.size()));
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    for (auto const& nodes : mesh.template elements<E>()) coupled.add(nodes);
+  });
+  for (auto const& nodes : besides) coupled.add(nodes);
+  return coupled.template blocks<Parts::dim>();
+}
+
+/// Adds the elements of a body's groups.
+template <class Parts>
+void add_groups(Parts const& parts, Eigen::VectorXd const& u, double dt,
+                Assembler<Parts::dim>& sum) {
   constexpr int dim = Parts::dim;
   auto const& mesh = parts.state.topology->mesh;
-  auto const at = [&](Index node, int k) { return u[Eigen::Index{dim} * node + k]; };
-  Assembler<dim> sum(parts.state.topology->interpolation, what, u.size());
-
   std::size_t type = 0;
   parts.for_each_type([&](auto const& table, auto const& state) {
     using Table = std::remove_cvref_t<decltype(table)>;
@@ -152,23 +110,47 @@ Assembled assembled_at(Parts const& parts, Eigen::VectorXd const& u, Assemble wh
     LawsOnHost<Table> const host(parts, table, state, parts.state.topology->element_values[type++],
                                  dt);
     auto const& elements = mesh.template elements<E>();
-    for_each_law(table, host, user_groups<E>(parts),
-                 [&]<int G>(GroupNumber<G>, std::size_t e, auto const& law) {
-                   using F = typename Table::template formulation<G>;
-                   auto const& nodes = elements[e];
-                   auto const rest = nodal(mesh, nodes);
-                   Nodal<E, double> own;
-                   for (int a = 0; a < E::nodes; ++a)
-                     for (int k = 0; k < dim; ++k)
-                       own(a, k) = at(nodes[static_cast<std::size_t>(a)], k);
-                   if (sum.with_force()) {
-                     sum.add_energy(energy<F>(law, rest, own));
-                     sum.add_force(nodes, force<F>(law, rest, own));
-                   }
-                   if (sum.with_stiffness()) sum.add_stiffness(nodes, stiffness<F>(law, rest, own));
-                 });
+    auto const tags = user_groups<E>(parts);
+    auto const nodes_of = [&](Index e) -> auto const& {
+      return elements[static_cast<std::size_t>(e)];
+    };
+    sum.add_elements(static_cast<Index>(elements.size()), nodes_of,
+                     [&](Index e, double* force_out, double* stiffness_out) {
+                       auto const& nodes = nodes_of(e);
+                       auto const rest = nodal(mesh, nodes);
+                       Nodal<E, double> own;
+                       for (int a = 0; a < E::nodes; ++a)
+                         for (int k = 0; k < dim; ++k)
+                           own(a, k) =
+                               u[Eigen::Index{dim} * nodes[static_cast<std::size_t>(a)] + k];
+                       double energy_of_element = 0;
+                       with_law(table, host, tags[static_cast<std::size_t>(e)], e,
+                                [&]<int G>(GroupNumber<G>, auto const& law) {
+                                  using F = typename Table::template formulation<G>;
+                                  if (force_out != nullptr) {
+                                    energy_of_element = energy<F>(law, rest, own);
+                                    auto const f = force<F>(law, rest, own);
+                                    for (int a = 0; a < E::nodes; ++a)
+                                      for (int k = 0; k < dim; ++k) *force_out++ = f(a, k);
+                                  }
+                                  if (stiffness_out != nullptr) {
+                                    auto const k = stiffness<F>(law, rest, own);
+                                    for (int row = 0; row < dim * E::nodes; ++row)
+                                      for (int column = 0; column < dim * E::nodes; ++column)
+                                        *stiffness_out++ = k(row, column);
+                                  }
+                                });
+                       return energy_of_element;
+                     });
   });
+}
 
+/// Adds pressures, times a factor, and the user's force terms.
+template <class Parts>
+void add_terms(Parts const& parts, Eigen::VectorXd const& u, double pressure_share,
+               Assembler<Parts::dim>& sum) {
+  constexpr int dim = Parts::dim;
+  auto const& mesh = parts.state.topology->mesh;
   auto const middle = middle_of(mesh);
   auto const user = [&](Index node) {
     return parts.layout.user_node[static_cast<std::size_t>(node)];
@@ -180,33 +162,66 @@ Assembled assembled_at(Parts const& parts, Eigen::VectorXd const& u, Assemble wh
   };
   auto const displacement = [&](Index node) {
     Point<dim> value;
-    for (int k = 0; k < dim; ++k) value[static_cast<std::size_t>(k)] = at(user(node), k);
+    for (int k = 0; k < dim; ++k)
+      value[static_cast<std::size_t>(k)] = u[Eigen::Index{dim} * user(node) + k];
     return value;
   };
+  std::vector<Index> nodes;
+  std::vector<double> force, stiffness;
   auto const add = [&](auto const& terms, double share) {
-    std::vector<Index> nodes;
+    auto const scaled = [&](std::span<double const> values, std::vector<double>& to) {
+      to.assign(values.begin(), values.end());
+      for (double& x : to) x *= share;
+      return to.data();
+    };
     for (auto const& term : terms)
       term->for_each_element(
           rest, displacement, sum.with_stiffness(), [&](ElementMatrix const& element) {
             nodes.clear();
             for (Index node : element.nodes) nodes.push_back(user(node));
-            std::size_t const width = dim * nodes.size();
-            if (sum.with_force()) {
-              sum.add_energy(share * element.energy);
-              sum.add_force(nodes, [&](int a, int k) {
-                return share * element.force[static_cast<std::size_t>(dim * a + k)];
-              });
-            }
-            if (sum.with_stiffness())
-              sum.add_stiffness(nodes, [&](int row, int column) {
-                return share * element.stiffness[width * static_cast<std::size_t>(row) +
-                                                 static_cast<std::size_t>(column)];
-              });
+            sum.add_element(nodes, share * element.energy, scaled(element.force, force),
+                            scaled(element.stiffness, stiffness));
           });
   };
   add(parts.pressures, pressure_share);
   add(parts.terms, 1);
-  return sum.finish();
+}
+
+/// Assembles into `sum`, whose stiffness keeps the pattern that it has, and gets one where it has none.
+template <class Parts>
+void assemble_into(AssembledBlocks<Parts::dim>& sum, Parts const& parts, Eigen::VectorXd const& u,
+                   Assemble what, double dt, double pressure_share) {
+  HostTasks const tasks(parts.backend);
+  auto const nodes = static_cast<Index>(parts.layout.user_node.size());
+  if (what != Assemble::energy_and_force && sum.stiffness.rows() == 0)
+    sum.stiffness = stiffness_blocks(parts, {});
+  std::vector<std::vector<Index>> besides;
+  for (;;) {
+    Assembler<Parts::dim> assembler(tasks, parts.state.topology->interpolation, what, nodes, sum);
+    add_groups(parts, u, dt, assembler);
+    add_terms(parts, u, pressure_share, assembler);
+    auto const& lacking = assembler.lacking();
+    if (lacking.empty()) break;
+    besides.insert(besides.end(), lacking.begin(), lacking.end());
+    sum.stiffness = stiffness_blocks(parts, besides);
+  }
+}
+
+/// By (node, direction).
+template <int N>
+Eigen::SparseMatrix<double> by_scalars(BlockMatrix<N, N> const& blocks) {
+  return Unknowns(std::vector<bool>(N * static_cast<std::size_t>(blocks.rows()), false))
+      .restrict(blocks);
+}
+
+template <class Parts>
+Assembled assembled_at(Parts const& parts, Eigen::VectorXd const& u, Assemble what, double dt,
+                       double pressure_share) {
+  AssembledBlocks<Parts::dim> sum;
+  assemble_into(sum, parts, u, what, dt, pressure_share);
+  Assembled all{sum.energy, std::move(sum.force), {}};
+  if (what != Assemble::energy_and_force) all.stiffness = by_scalars(sum.stiffness);
+  return all;
 }
 
 }  // namespace detail

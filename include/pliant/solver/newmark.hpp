@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <pliant/solver/assemble_mass.hpp>
+#include <pliant/solver/linear/direct_solver.hpp>
 #include <pliant/solver/newton.hpp>
 
 namespace pliant {
@@ -112,10 +113,11 @@ class Newmark {
     Eigen::VectorXd const pull =
         force + system.problem.external - system.body.state().damping * (system.mass * s.v);
     Eigen::VectorXd a = Eigen::VectorXd::Zero(s.u.size());
-    system.problem.add(
-        a,
-        by_mass_.solve(system.problem.restrict(system.mass), system.problem.restrict(pull), true),
-        1);
+    auto const& unknowns = system.problem.unknowns;
+    system.problem.add(a,
+                       unknowns.expand(by_mass_.solve(unknowns.restrict(system.mass),
+                                                      unknowns.restrict(pull), true)),
+                       1);
     return a;
   }
 
@@ -128,13 +130,13 @@ class Newmark {
     auto const& external = system.problem.external;
     Eigen::VectorXd const coast = now.u + dt * now.v + dt * dt * (0.5 - beta) * now.a;
     Eigen::VectorXd const coasting = now.v + dt * (1 - gamma) * now.a;
+    auto const& unknowns = system.problem.unknowns;
     Eigen::SparseMatrix<double> const inertia =
-        system.problem.restrict(system.mass) * (a_by_u + damping * v_by_u);
+        unknowns.restrict(system.mass) * (a_by_u + damping * v_by_u);
 
     State then;
     then.u = now.u;  // held where it is
-    system.problem.add(
-        then.u, system.problem.restrict(Eigen::VectorXd(dt * now.v + dt * dt / 2 * now.a)), 1);
+    system.problem.add(then.u, dt * now.v + dt * dt / 2 * now.a, 1);
     system.problem.prescribe(then.u, time);
     double last_change = std::numeric_limits<double>::infinity();
     for (int iteration = 0;; ++iteration) {
@@ -143,7 +145,7 @@ class Newmark {
       auto const state = assemble(system.body, then.u);
       Eigen::VectorXd const pull = state.force + external;
       Eigen::VectorXd const inert = system.mass * (then.a + damping * then.v);
-      Eigen::VectorXd const residual = system.problem.restrict(Eigen::VectorXd(pull - inert));
+      Eigen::VectorXd const residual = unknowns.restrict(Eigen::VectorXd(pull - inert));
       double const scale = std::max({external.norm(), state.force.norm(), inert.norm()});
       double const size = residual.norm();
       // Where forces cancel to rounding, the displacement tells.
@@ -153,9 +155,9 @@ class Newmark {
         throw Error("Newmark: no convergence in the step to time ", time, " s after ", iteration,
                     " iterations, residual ", size,
                     " N; take smaller steps, or a law that does not soften");
-      Eigen::SparseMatrix<double> const matrix = system.problem.restrict(state.stiffness) + inertia;
+      Eigen::SparseMatrix<double> const matrix = unknowns.restrict(state.stiffness) + inertia;
       Eigen::VectorXd const du = direct_.solve(matrix, residual, system.conservative);
-      system.problem.add(then.u, du, 1);
+      system.problem.add(then.u, unknowns.expand(du), 1);
       last_change = du.norm();
     }
   }

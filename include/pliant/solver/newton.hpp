@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <pliant/solver/direct_solver.hpp>
 #include <pliant/solver/least_jacobian.hpp>
+#include <pliant/solver/linear/linear_solver.hpp>
 #include <pliant/solver/static_problem.hpp>
 
 namespace pliant {
@@ -18,6 +18,7 @@ struct NewtonOptions {
   /// On which masses gravity acts. Consistent, ∫ ρ N g, is as accurate as the elements are; lumped is the
   /// gravity of explicit dynamics, whose rest it finds.
   MassMatrix gravity = MassMatrix::consistent;
+  LinearMethod linear = LinearMethod::automatic;  // for the linear systems
   bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
 
@@ -26,6 +27,7 @@ struct NewtonReport {
   Index unknowns = 0;
   int iterations = 0;                           // in all
   int factorisations = 0;                       // of the stiffness
+  LinearReport linear;                          // what the linear systems took
   int assemblies = 0;                           // of the stiffness
   double residual = 0;                          // N, the last
   double energy = 0;                            // strain energy, J
@@ -53,10 +55,12 @@ class StaticNewton {
   StaticNewton(TheBody const& body, NewtonOptions const& options)
       : body_(body),
         options_(options),
+        tasks_(body.parts().backend),
         problem_(body, options.gravity),
         conservative_(is_conservative(body)),
+        linear_("solve_static", options.linear),
         u_(StaticProblem<TheBody>::flat(place_before_drives(body.parts()))) {
-    report_.unknowns = problem_.unknowns();
+    report_.unknowns = problem_.unknowns.count();
     report_.gravity = options.gravity;
   }
 
@@ -70,7 +74,7 @@ class StaticNewton {
     if (options_.load_steps > 1) {
       share_ = 0;
       balance = evaluate(u_).force;
-      problem_.keep_unknowns(balance);
+      problem_.unknowns.keep(balance);
     }
     for (int step = 1; step <= options_.load_steps; ++step) {
       step_ = step;
@@ -80,7 +84,8 @@ class StaticNewton {
       if (step == options_.load_steps) target_ = to;
       iterate();
     }
-    report_.factorisations = direct_.factorisations();
+    report_.linear = linear_.report();
+    report_.factorisations = report_.linear.factorisations;
     report_.least_J = least_jacobian_at(body_.parts(), u_, true);
     auto const folded = least_jacobian_at(body_.parts(), u_, false);
     if (!options_.accept_folded && !(folded.value > 0))
@@ -93,9 +98,22 @@ class StaticNewton {
   NewtonReport const& report() const { return report_; }
 
  private:
-  Assembled evaluate(Vector const& u) const {
-    return assembled_at(body_.parts(), u, Assemble::energy_and_force,
-                        std::numeric_limits<double>::infinity(), share_);
+  struct Evaluated {
+    double energy;  // J
+    Vector force;   // N
+  };
+  void assemble_at(Vector const& u, Assemble what) {
+    assemble_into(sum_, body_.parts(), u, what, std::numeric_limits<double>::infinity(), share_);
+  }
+  Evaluated evaluate(Vector const& u) {
+    assemble_at(u, Assemble::energy_and_force);
+    return {sum_.energy, sum_.force};
+  }
+  /// Over the unknowns.
+  Vector out_of_balance(Evaluated const& now) const {
+    Vector r = now.force + load_;
+    problem_.unknowns.keep(r);
+    return r;
   }
   bool is_unfolded(Vector const& u) const {
     return least_jacobian_at(body_.parts(), u, false).value > 0;
@@ -104,10 +122,11 @@ class StaticNewton {
   void iterate() {
     auto now = evaluate(u_);
     bool settled = false;
+    double forcing = first_forcing;
     for (int iteration = 0;; ++iteration) {
       Vector const increment = target_ - u_;  // of driven nodes, with their slaves
       bool const driving = is_driven_by(increment);
-      Vector const residual = problem_.restrict(Vector(now.force + load_));
+      Vector const residual = out_of_balance(now);
       double const scale = std::max(load_.norm(), now.force.norm());
       report_.residual = residual.norm();
       report_.energy = now.energy;
@@ -121,19 +140,26 @@ class StaticNewton {
         throw Error("solve_static: no convergence in load step ", step_, " of ",
                     options_.load_steps, " after ", iteration, " iterations, residual ",
                     report_.residual, " N; use more load_steps, or a law that does not soften");
-      auto const k = assembled_at(body_.parts(), u_, Assemble::stiffness,
-                                  std::numeric_limits<double>::infinity(), share_)
-                         .stiffness;
+      assemble_at(u_, Assemble::stiffness);
       ++report_.assemblies;
-      Vector pull = residual;
-      Vector prescribed = Vector::Zero(problem_.size());
+      Vector pull = residual, prescribed = Vector::Zero(problem_.size());
       if (driving) {
         problem_.copy_prescribed(increment, prescribed);
-        pull -= problem_.restrict(Vector(k * prescribed));
+        Vector pushed;
+        multiply(tasks_, sum_.stiffness, prescribed, pushed);
+        pull -= pushed;
+        problem_.unknowns.keep(pull);
       }
-      Vector const du = direct_.solve(problem_.restrict(k), pull, conservative_);
+      // Nothing but folds bounds a step that moves driven nodes: it has to be right.
+      double const enough = std::max(driving ? driving_forcing : forcing,
+                                     0.1 * options_.tolerance * scale / pull.norm());
+      Vector const du = linear_.solve(
+          tasks_, {sum_.stiffness, problem_.unknowns, body_.mesh().nodes, conservative_}, pull,
+          std::min(enough, 0.1));
       double const factor = search(now, residual, du, prescribed, driving);
       settled = factor == 1 && !driving && du.norm() <= 1e-14 * u_.norm();
+      double const shrunk = out_of_balance(now).norm() / pull.norm();
+      forcing = std::clamp(std::abs(shrunk - linear_.reached()), 0.0, first_forcing);
       ++report_.iterations;
     }
   }
@@ -145,7 +171,7 @@ class StaticNewton {
   /// Goes along a step as far as it leads down: on the potential energy, or on the work of the residual
   /// along the step where there is none. A step that moves driven nodes has neither to compare with: it
   /// goes as far as nothing folds. Returns the share of it taken; `now` is then of the new u.
-  double search(Assembled& now, Vector const& residual, Vector const& du, Vector const& prescribed,
+  double search(Evaluated& now, Vector const& residual, Vector const& du, Vector const& prescribed,
                 bool driving) {
     double const potential = now.energy - load_.dot(u_);
     bool const unfolded = driving && is_unfolded(u_);
@@ -155,7 +181,7 @@ class StaticNewton {
       if (factor == 1) problem_.copy_prescribed(target_, trial);
       problem_.add(trial, du, factor);
       auto next = evaluate(trial);
-      Vector const left = problem_.restrict(Vector(next.force + load_));
+      Vector const left = out_of_balance(next);
       bool const finite = left.allFinite() && std::isfinite(next.energy);
       bool better = false;
       if (driving)
@@ -173,10 +199,15 @@ class StaticNewton {
   }
 
   TheBody const& body_;
+  /// Of the residual, for linear systems as long as Newton's method is far from the answer.
+  static constexpr double first_forcing = 1e-3, driving_forcing = 1e-6;
+
   NewtonOptions options_;
+  HostTasks tasks_;
   StaticProblem<TheBody> problem_;
   bool conservative_;
-  DirectSolver direct_{"solve_static"};
+  LinearSolver<TheBody::dim> linear_;
+  AssembledBlocks<TheBody::dim> sum_;
   Vector u_, load_, target_;
   double share_ = 1;
   int step_ = 1;

@@ -7,11 +7,11 @@
 #include <pliant/body/loads.hpp>
 #include <pliant/mesh/loads.hpp>
 #include <pliant/solver/assemble_mass.hpp>
+#include <pliant/solver/linear/unknowns.hpp>
 
 namespace pliant::detail {
 
-/// A body's unknowns, loads and prescribed displacements as vectors over (node, direction) in the user's
-/// order; the unknowns among them are those that nothing holds, drives or interpolates.
+/// A body's unknowns, loads and prescribed displacements as vectors over (node, direction) in the user's order.
 template <DeformableBody TheBody>
 class StaticProblem {
  public:
@@ -19,24 +19,14 @@ class StaticProblem {
 
   /// `gravity`: on which masses it acts.
   explicit StaticProblem(TheBody const& body, MassMatrix gravity = MassMatrix::consistent)
-      : body_(body), unknown_(static_cast<std::size_t>(dim * body.nodes()), -1) {
-    std::vector<bool> fixed(unknown_.size(), false);
-    for (auto const& condition : body.state().prescribed->conditions)
-      for (Index node : condition.nodes)
-        for (int k = 0; k < dim; ++k)
-          if (condition.directions >> k & 1) fixed[at(dim * node + k)] = true;
-    for (Index i = 0; i < body.nodes(); ++i)
-      if (!(body.parts().layout.mass_list[at(i)] > 0))  // slaves, and nodes of no element
-        for (int k = 0; k < dim; ++k) fixed[at(dim * i + k)] = true;
-    for (std::size_t i = 0; i < fixed.size(); ++i)
-      if (!fixed[i]) unknown_[i] = unknowns_++;
+      : unknowns(fixed_entries(body)), body_(body) {
     external = weight(gravity) + nodal_load();
   }
 
+  Unknowns const unknowns;   // what nothing holds, drives or interpolates
   Eigen::VectorXd external;  // gravity and loads, N; those of slaves with their masters
 
-  Index unknowns() const { return unknowns_; }
-  Eigen::Index size() const { return static_cast<Eigen::Index>(unknown_.size()); }
+  Eigen::Index size() const { return unknowns.size(); }
 
   /// The present displacement.
   Eigen::VectorXd start() const { return flat(body_.displacements()); }
@@ -63,30 +53,9 @@ class StaticProblem {
     }
     interpolate_slaves(body_, to);
   }
-  Eigen::VectorXd restrict(Eigen::VectorXd const& full) const {
-    Eigen::VectorXd reduced(unknowns_);
-    for (std::size_t i = 0; i < unknown_.size(); ++i)
-      if (unknown_[i] >= 0) reduced[unknown_[i]] = full[static_cast<Eigen::Index>(i)];
-    return reduced;
-  }
-  Eigen::SparseMatrix<double> restrict(Eigen::SparseMatrix<double> const& full) const {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int column = 0; column < full.outerSize(); ++column)
-      for (Eigen::SparseMatrix<double>::InnerIterator it(full, column); it; ++it)
-        if (unknown_[at(it.row())] >= 0 && unknown_[at(column)] >= 0)
-          entries.emplace_back(unknown_[at(it.row())], unknown_[at(column)], it.value());
-    Eigen::SparseMatrix<double> reduced(unknowns_, unknowns_);
-    reduced.setFromTriplets(entries.begin(), entries.end());
-    return reduced;
-  }
-  /// Sets all but the unknowns to zero.
-  void keep_unknowns(Eigen::VectorXd& full) const {
-    for (std::size_t i = 0; i < unknown_.size(); ++i)
-      if (unknown_[i] < 0) full[static_cast<Eigen::Index>(i)] = 0;
-  }
-  void add(Eigen::VectorXd& u, Eigen::VectorXd const& reduced, double factor) const {
-    for (std::size_t i = 0; i < unknown_.size(); ++i)
-      if (unknown_[i] >= 0) u[static_cast<Eigen::Index>(i)] += factor * reduced[unknown_[i]];
+  void add(Eigen::VectorXd& u, Eigen::VectorXd const& change, double factor) const {
+    for (Eigen::Index i = 0; i < u.size(); ++i)
+      if (!unknowns.fixed()[at(i)]) u[i] += factor * change[i];
     interpolate_slaves(body_, u);
   }
 
@@ -110,6 +79,17 @@ class StaticProblem {
   template <class I>
   static std::size_t at(I i) {
     return static_cast<std::size_t>(i);
+  }
+  static std::vector<bool> fixed_entries(TheBody const& body) {
+    std::vector<bool> fixed(static_cast<std::size_t>(dim * body.nodes()), false);
+    for (auto const& condition : body.state().prescribed->conditions)
+      for (Index node : condition.nodes)
+        for (int k = 0; k < dim; ++k)
+          if (condition.directions >> k & 1) fixed[at(dim * node + k)] = true;
+    for (Index i = 0; i < body.nodes(); ++i)
+      if (!(body.parts().layout.mass_list[at(i)] > 0))  // slaves, and nodes of no element
+        for (int k = 0; k < dim; ++k) fixed[at(dim * i + k)] = true;
+    return fixed;
   }
   void hand_to_masters(Eigen::VectorXd& f) const {
     body_.state().topology->interpolation.apply_transpose(
@@ -139,8 +119,6 @@ class StaticProblem {
   }
 
   TheBody const& body_;
-  std::vector<Index> unknown_;
-  Index unknowns_ = 0;
 };
 
 /// Whether all forces have a potential: then the stiffness is symmetric.

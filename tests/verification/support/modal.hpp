@@ -16,9 +16,9 @@ namespace pliant::verification {
 template <class TheBody>
 std::vector<double> frequencies(TheBody const& body, int count, MassMatrix kind, double shift = 0) {
   detail::StaticProblem<TheBody> const problem(body);
-  Eigen::SparseMatrix<double> const m = problem.restrict(assemble_mass(body, kind));
+  Eigen::SparseMatrix<double> const m = problem.unknowns.restrict(assemble_mass(body, kind));
   Eigen::SparseMatrix<double> const k =
-      problem.restrict(assemble(body, problem.start()).stiffness) + shift * m;
+      problem.unknowns.restrict(assemble(body, problem.start()).stiffness) + shift * m;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> const factors(k);
   if (factors.info() != Eigen::Success) throw Error("frequencies: the stiffness is singular");
   int const size = std::min<int>(2 * count + 8, static_cast<int>(k.rows()));

@@ -22,6 +22,15 @@ class DirectSolver {
   int analyses() const { return analyses_; }
   int factorisations() const { return factorisations_; }
 
+  /// How many solves with the present factors of a symmetric matrix take as many operations as a factorisation; 0 where
+  /// there are none.
+  int solves_worth_a_factorisation() const {
+    return has_factors_ && by_symmetric_ ? solves_worth_ : 0;
+  }
+  bool fits(Eigen::Index rows) const { return has_factors_ && matrix_.rows() == rows; }
+  /// k⁻¹ r for the last k that was factorised.
+  Eigen::VectorXd apply(Eigen::VectorXd const& r) const { return symmetric_.solve(r); }
+
   /// k⁻¹ r, for a compressed k. Throws Error where k is singular.
   Eigen::VectorXd solve(Matrix const& k, Eigen::VectorXd const& r, bool is_symmetric) {
     if (!has_factors_ || is_symmetric != is_symmetric_ || !same_pattern(k) || !same_values(k))
@@ -57,10 +66,22 @@ class DirectSolver {
         // Rounding makes a pivot that should be zero some 1e-16 of the others.
         if (pivots.size() > 0 && pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) refuse();
         by_symmetric_ = has_factors_ = true;
+        count_operations();
         return;
       }
     }
     factorise_general(!general_analysed_);
+  }
+  void count_operations() {
+    auto const& factor = symmetric_.matrixL().nestedExpression();
+    double multiplications = 0;
+    for (Eigen::Index column = 0; column < factor.cols(); ++column) {
+      auto const below =
+          static_cast<double>(factor.outerIndexPtr()[column + 1] - factor.outerIndexPtr()[column]);
+      multiplications += below * below / 2;
+    }
+    solves_worth_ = static_cast<int>(
+        multiplications / (2.0 * static_cast<double>(factor.nonZeros() + matrix_.nonZeros()) + 1));
   }
   void factorise_general(bool analyse) {
     has_factors_ = by_symmetric_ = false;
@@ -96,7 +117,7 @@ class DirectSolver {
   Eigen::SparseLU<Matrix> general_;
   bool has_matrix_ = false, has_factors_ = false, by_symmetric_ = false, is_symmetric_ = false;
   bool symmetric_analysed_ = false, general_analysed_ = false;
-  int analyses_ = 0, factorisations_ = 0;
+  int analyses_ = 0, factorisations_ = 0, solves_worth_ = 0;
 };
 
 }  // namespace pliant::detail

@@ -1,0 +1,259 @@
+#include <Eigen/Dense>
+
+#include <pliant/reference.hpp>
+#include <pliant/solve.hpp>
+
+#include "support/formulations.hpp"
+#include "support/random.hpp"
+
+// Sparse matrices of blocks, conjugate gradients and the multilevel method, beside dense matrices and factors.
+namespace pliant::test::linear {
+
+using namespace pliant::detail;
+
+template <int R, int C>
+Eigen::MatrixXd dense(BlockMatrix<R, C> const& a) {
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(R * a.rows(), C * a.columns);
+  for (Index row = 0; row < a.rows(); ++row)
+    for (auto place = a.begin(row); place < a.end(row); ++place)
+      for (int r = 0; r < R; ++r)
+        for (int c = 0; c < C; ++c)
+          full(R * row + r, C * a.column_at(place) + c) += a.at(place)[C * r + c];
+  return full;
+}
+
+/// About a third of the blocks, with columns ascending.
+template <int R, int C>
+BlockMatrix<R, C> sparse(Index rows, Index columns, unsigned seed) {
+  Random random(seed);
+  BlockMatrix<R, C> a;
+  a.columns = columns;
+  for (Index row = 0; row < rows; ++row) {
+    for (Index column = 0; column < columns; ++column)
+      if (random() < -0.33) a.column.push_back(column);
+    a.first.push_back(std::ssize(a.column));
+  }
+  a.clear_values();
+  for (double& x : a.values) x = random();
+  return a;
+}
+
+TEST_CASE("matrices of blocks multiply and transpose as dense ones", "[solver]") {
+  HostTasks const tasks;
+  auto const a = sparse<2, 3>(7, 5, 1);
+  auto const b = sparse<3, 6>(5, 4, 2);
+  CHECK((dense(product(tasks, a, b)) - dense(a) * dense(b)).norm() < 1e-14);
+  CHECK(dense(transposed(a)) == Eigen::MatrixXd(dense(a).transpose()));
+  Eigen::VectorXd const x = Eigen::VectorXd::LinSpaced(15, -1, 2);
+  Eigen::VectorXd y;
+  multiply(tasks, a, x, y);
+  CHECK((y - dense(a) * x).norm() < 1e-14);
+  for (Index row = 0; row < a.rows(); ++row)
+    for (Index column = 0; column < a.columns; ++column) {
+      auto const place = a.find(row, column);
+      bool const there = dense(a).block<2, 3>(2 * row, 3 * column).norm() > 0;
+      REQUIRE((place >= 0) == there);
+    }
+}
+
+TEST_CASE("unknowns are taken out of vectors and matrices, and put back", "[solver]") {
+  auto const a = sparse<2, 2>(4, 4, 3);
+  Unknowns const unknowns({false, true, false, false, true, true, false, false});
+  REQUIRE(unknowns.count() == 5);
+  std::vector<Eigen::Index> const kept{0, 2, 3, 6, 7};
+  Eigen::VectorXd const v = Eigen::VectorXd::LinSpaced(8, 1, 8);
+  CHECK(unknowns.restrict(v) == Eigen::VectorXd(v(kept)));
+  Eigen::VectorXd const back = unknowns.expand(unknowns.restrict(v));
+  Eigen::VectorXd expected = v;
+  unknowns.keep(expected);
+  CHECK(back == expected);
+  CHECK(expected[1] == 0);
+  CHECK(expected[6] == 7);
+  Eigen::MatrixXd const reduced = dense(a)(kept, kept);
+  CHECK(Eigen::MatrixXd(unknowns.restrict(a)) == reduced);
+  CHECK(Eigen::MatrixXd(unknowns.restrict(detail::by_scalars(a))) == reduced);
+}
+
+TEST_CASE("conjugate gradients end at the tolerance that was asked", "[solver]") {
+  Eigen::MatrixXd const half = Eigen::MatrixXd(dense(sparse<3, 3>(10, 10, 4)));
+  Eigen::MatrixXd const a = half * half.transpose() + Eigen::MatrixXd::Identity(30, 30);
+  Eigen::VectorXd const b = Eigen::VectorXd::LinSpaced(30, -1, 1);
+  auto const by_diagonal = [&](auto const& r, auto& z) { z = r.cwiseQuotient(a.diagonal()); };
+  int before = 0;
+  for (double tolerance : {1e-2, 1e-6, 1e-11}) {
+    Eigen::VectorXd x;
+    auto const cg = conjugate_gradients([&](auto const& v, auto& out) { out = a * v; }, by_diagonal,
+                                        b, x, tolerance, 200);
+    CHECK(cg.converged);
+    CHECK((b - a * x).norm() <= 1.01 * tolerance * b.norm());
+    Eigen::VectorXd const error = x - a.llt().solve(b);
+    CHECK(std::sqrt(error.dot(a * error) / x.dot(a * x)) <= tolerance);
+    CHECK(cg.iterations > before);
+    before = cg.iterations;
+  }
+  Eigen::VectorXd x;
+  auto const minus = conjugate_gradients([&](auto const& v, auto& out) { out = -(a * v); },
+                                         by_diagonal, b, x, 1e-6, 200);
+  CHECK(minus.indefinite);
+  CHECK_FALSE(minus.converged);
+  auto const few = conjugate_gradients([&](auto const& v, auto& out) { out = a * v; }, by_diagonal,
+                                       b, x, 1e-11, 3);
+  CHECK(few.iterations == 3);
+  CHECK_FALSE(few.converged);
+}
+
+template <class F>
+auto block_of(Index n, double poisson = 0.3, double push = 0.2) {
+  constexpr std::size_t dim = F::dim;
+  auto const mesh = [&] {
+    if constexpr (dim == 3)
+      return mesh::box<typename F::element>({.size = {1, 1, 1}, .cells = {n, n, n}});
+    else
+      return mesh::rectangle<typename F::element>({.size = {1, 1}, .cells = {n, n}});
+  }();
+  Body body{Reference<double>{}, mesh, Elastic{1e6, poisson, 1000}, Group<F>{}};
+  body.clamp(mesh.boundary("left"));
+  Point<dim> to{};
+  to[0] = -push;
+  body.drive(mesh.boundary("right"), [to](double) { return to; });
+  return body;
+}
+
+/// Conjugate gradients for the stiffness at rest, with a multilevel preconditioner.
+template <class F>
+int iterations_of_multilevel(Index n) {
+  constexpr int dim = F::dim;
+  auto const body = block_of<F>(n);
+  StaticProblem<decltype(block_of<F>(n))> const problem(body);
+  AssembledBlocks<dim> sum;
+  assemble_into(sum, body.parts(), Eigen::VectorXd::Zero(problem.size()), Assemble::stiffness,
+                std::numeric_limits<double>::infinity(), 1);
+  auto a = sum.stiffness;
+  problem.unknowns.isolate_others(a);
+  HostTasks const tasks;
+  Multilevel<dim> m(tasks, a, body.mesh().nodes, problem.unknowns.fixed());
+  REQUIRE(m.is_definite());
+  CHECK(m.levels() >= 2);
+  CHECK(m.operator_complexity() < 1.6);
+
+  Eigen::VectorXd const r = Eigen::VectorXd::LinSpaced(problem.size(), -1, 1);
+  Eigen::VectorXd const s = r.array().sin();
+  Eigen::VectorXd mr, ms;
+  m.apply(tasks, r, mr);
+  m.apply(tasks, s, ms);
+  CHECK(std::abs(s.dot(mr) - r.dot(ms)) < 1e-10 * s.norm() * mr.norm());
+
+  Eigen::VectorXd x;
+  auto const cg = conjugate_gradients([&](auto const& v, auto& out) { multiply(tasks, a, v, out); },
+                                      [&](auto const& v, auto& out) { m.apply(tasks, v, out); }, r,
+                                      x, 1e-8, 100);
+  CHECK(cg.converged);
+  Eigen::VectorXd const direct = problem.unknowns.expand(DirectSolver("test").solve(
+      problem.unknowns.restrict(sum.stiffness), problem.unknowns.restrict(r), true));
+  problem.unknowns.keep(x);
+  CHECK((x - direct).norm() < 1e-6 * direct.norm());
+  return cg.iterations;
+}
+
+using Plane = Formulation<Quad4, Gauss<2>, NeoHookean>;
+using Solid = Formulation<Hex8, Gauss<2>, NeoHookean>;
+
+TEST_CASE("iterations of the multilevel method hardly grow with the mesh", "[solver]") {
+  int const coarse = iterations_of_multilevel<Plane>(16);
+  CHECK(coarse <= 20);
+  CHECK(iterations_of_multilevel<Plane>(48) <= coarse + 6);
+  int const solid = iterations_of_multilevel<Solid>(6);
+  CHECK(solid <= 16);
+  CHECK(iterations_of_multilevel<Solid>(12) <= solid + 6);
+}
+
+template <class F>
+void check_methods(Index n) {
+  auto by_factors = block_of<F>(n), by_levels = block_of<F>(n);
+  auto const direct = solve_static(by_factors, {.linear = LinearMethod::direct});
+  auto const levels = solve_static(by_levels, {.linear = LinearMethod::multilevel});
+  CHECK(direct.linear.method == LinearMethod::direct);
+  CHECK(direct.linear.hierarchies == 0);
+  CHECK(direct.factorisations > 0);
+  CHECK(levels.linear.method == LinearMethod::multilevel);
+  CHECK(levels.factorisations == 0);
+  CHECK(levels.linear.hierarchies >= 1);
+  CHECK(levels.linear.iterations > 0);
+  CHECK(levels.energy == Approx(direct.energy).epsilon(1e-10));
+  auto const u = by_factors.displacements();
+  CHECK(difference(by_levels.displacements(), u) < 1e-8 * largest(u));
+}
+
+TEST_CASE("factors and the multilevel method find the same equilibrium", "[solver]") {
+  check_methods<Plane>(16);
+  check_methods<Formulation<Tri3, Gauss<1>, NeoHookean>>(16);
+  check_methods<Solid>(6);
+}
+
+TEST_CASE("large bodies take the multilevel method unasked, and keep its hierarchy", "[solver]") {
+  auto body = block_of<Solid>(9);
+  auto const report = solve_static(body);
+  CHECK(report.linear.method == LinearMethod::multilevel);
+  CHECK(report.linear.hierarchies == 1);
+  CHECK(report.iterations > 2);
+  auto small = block_of<Solid>(3);
+  CHECK(solve_static(small).linear.method == LinearMethod::direct);
+}
+
+TEST_CASE("nearly incompressible bodies are factorised", "[solver]") {
+  auto body = block_of<Solid>(9, 0.4999, 0.1), exact = block_of<Solid>(9, 0.4999, 0.1);
+  auto const report = solve_static(body);
+  CHECK(report.linear.method == LinearMethod::direct);
+  auto const direct = solve_static(exact, {.linear = LinearMethod::direct});
+  CHECK(report.iterations <= direct.iterations + 1);
+  CHECK(report.energy == Approx(direct.energy).epsilon(1e-10));
+}
+
+TEST_CASE("factors serve later matrices too", "[solver]") {
+  auto body = block_of<Solid>(6);
+  auto const report = solve_static(body, {.linear = LinearMethod::direct});
+  CHECK(report.iterations >= 3);
+  CHECK(report.factorisations < report.iterations);
+  CHECK(report.linear.iterations > 0);
+}
+
+TEST_CASE("a large body that nothing holds is singular", "[solver]") {
+  auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {50, 50}});
+  Body body{Reference<double>{}, mesh, Elastic{1e6, 0.3, 1000}, Group<Plane>{}};
+  body.set_load(0, {1, 1});
+  body.set_load(static_cast<Index>(mesh.nodes.size()) - 1, {-1, -1});  // in balance
+  CHECK_THROWS_WITH(solve_static(body), says("solve_static: the matrix is singular"));
+  CHECK_THROWS_WITH(solve_static(body, {.linear = LinearMethod::multilevel}),
+                    says("solve_static: the matrix is singular"));
+}
+
+/// Pulls two nodes together.
+template <class T>
+struct Spring {
+  static constexpr int nodes = 2, dim = 2;
+  T stiffness;  // N/m
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(Matrix<S, 2, 2> const&, Matrix<S, 2, 2> const& u) const {
+    return stiffness / 2 * (square(u(0, 0) - u(1, 0)) + square(u(0, 1) - u(1, 1)));
+  }
+};
+
+TEST_CASE("force terms between nodes that share no element are assembled", "[solver]") {
+  auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {3, 3}});
+  Body body{Reference<double>{}, mesh, Elastic{1e6, 0.3, 1000}, Group<Plane>{}};
+  auto const u = Eigen::VectorXd::Zero(2 * body.nodes());
+  Eigen::MatrixXd const before = assemble(body, u).stiffness;
+  body.add(std::vector<std::array<Index, 2>>{{0, 15}}, Spring<double>{3});
+  body.add(std::vector<std::array<Index, 2>>{{3, 12}, {0, 1}}, Spring<double>{5});
+  Eigen::MatrixXd added = Eigen::MatrixXd(assemble(body, u).stiffness) - before;
+  for (auto const& [i, j, k] : {std::tuple{0, 15, 3.0}, {3, 12, 5.0}, {0, 1, 5.0}})
+    for (int d = 0; d < 2; ++d) {
+      added(2 * i + d, 2 * i + d) -= k;
+      added(2 * j + d, 2 * j + d) -= k;
+      added(2 * i + d, 2 * j + d) += k;
+      added(2 * j + d, 2 * i + d) += k;
+    }
+  CHECK(added.norm() < 1e-9);
+}
+
+}  // namespace pliant::test::linear
