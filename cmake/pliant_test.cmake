@@ -1,23 +1,23 @@
 # pliant_test(NAME <area>/<name> SOURCES <file>... [OPENMP | CUDA] [LINK <library>...]
-#             [DEFINE <definition>...])
-# One program and one test, labelled with its area. OPENMP and CUDA mark tests that need this
-# backend; they are left out where it is missing. The others get every CPU backend that this build
-# has: the serial one always, <pliant/openmp.hpp> where _OPENMP is defined. The target pliant_tests builds
-# all of them, and nothing else.
+#             [DEFINE <definition>...] [TESTS <file>...])
+# One program and one test, labelled with its area; or a test for each of the files TESTS, which the sources
+# include. OPENMP and CUDA mark tests that need this backend; they are left out where it is missing. The
+# others get every CPU backend that this build has: the serial one always, <pliant/openmp.hpp> where
+# _OPENMP is defined. The target pliant_tests builds all of them, and nothing else.
 add_custom_target(pliant_tests)
 function(pliant_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "OPENMP;CUDA" "NAME" "SOURCES;LINK;DEFINE")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "OPENMP;CUDA" "NAME" "SOURCES;LINK;DEFINE;TESTS")
   if((arg_OPENMP AND NOT pliant_has_openmp) OR (arg_CUDA AND NOT pliant_has_cuda))
     return()
   endif()
   string(MAKE_C_IDENTIFIER "test_${arg_NAME}" target)
-  string(REGEX REPLACE "/.*" "" labels "${arg_NAME}")
 
   if(arg_CUDA)
-    list(APPEND labels gpu)
     pliant_add_program(${target} CUDA SOURCES ${arg_SOURCES} LINK pliant_gpu_test_main ${arg_LINK})
+    set(label gpu)
   else()
     pliant_add_program(${target} SOURCES ${arg_SOURCES} LINK pliant_test_main ${arg_LINK})
+    set(label)
   endif()
 
   target_compile_definitions(${target} PRIVATE ${arg_DEFINE})
@@ -31,12 +31,27 @@ function(pliant_test)
   endif()
   target_compile_options(${target}
                          PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:${level}>)
-
-  set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")
   add_dependencies(pliant_tests ${target})
-  add_test(NAME ${arg_NAME} COMMAND ${target})
+
+  if(arg_TESTS)
+    foreach(file IN LISTS arg_TESTS)
+      string(REGEX REPLACE "_[a-z]+\\.[a-z]+$" "" name "${file}")
+      get_filename_component(tag "${file}" NAME_WE)
+      pliant_add_test(${name} "${label}" ${target} --filenames-as-tags "[#${tag}]")
+    endforeach()
+  else()
+    pliant_add_test(${arg_NAME} "${label}" ${target})
+  endif()
+endfunction()
+
+# pliant_add_test(<area>/<name> <label> <command>...)
+function(pliant_add_test name label)
+  add_test(NAME ${name} COMMAND ${ARGN})
+  get_filename_component(area "${name}" DIRECTORY)
+  set(leak_options "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp")
   # Tests run side by side: threads that wait must not keep the cores from those that work.
   set_tests_properties(
-    ${arg_NAME} PROPERTIES LABELS "${labels}" TIMEOUT 600 SKIP_RETURN_CODE 77
-                           ENVIRONMENT "OMP_WAIT_POLICY=PASSIVE;${leak_options}")
+    ${name} PROPERTIES LABELS "${area};${label}" TIMEOUT 600 SKIP_RETURN_CODE 77
+                       FAIL_REGULAR_EXPRESSION "No test cases matched"
+                       ENVIRONMENT "OMP_WAIT_POLICY=PASSIVE;${leak_options}")
 endfunction()

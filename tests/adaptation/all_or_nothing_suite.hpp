@@ -4,7 +4,7 @@
 
 #include "adaptation/plane_bodies.hpp"
 
-namespace pliant::test {
+namespace pliant::test::all_or_nothing_suite {
 
 /// The same for every element.
 struct Constant {
@@ -124,4 +124,4 @@ TEST_CASE("internal variables too are as before a check that throws", "[adaptati
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::all_or_nothing_suite

@@ -5,7 +5,7 @@
 #include "adaptation/criteria.hpp"
 
 // What a check leaves out because the displacement gradient is small is what could not act.
-namespace pliant::test {
+namespace pliant::test::bounded_criteria_suite {
 
 /// Linear displacements u = H X with H:H = norm², in random directions: shears, stretches, rotations.
 template <int Dim>
@@ -89,4 +89,4 @@ TEST_CASE("a check moves what its criterion says, however much it leaves out", "
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::bounded_criteria_suite

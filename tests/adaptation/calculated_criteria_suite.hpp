@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::calculated_criteria_suite {
 
 /// A user's region, of places at rest.
 struct LeftOf {
@@ -152,4 +152,4 @@ TEST_CASE("a rule with a region refines there alone, by its own bulk", "[adaptat
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::calculated_criteria_suite

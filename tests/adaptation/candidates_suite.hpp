@@ -3,7 +3,7 @@
 #include "adaptation/plane_bodies.hpp"
 
 // Elements that may not act take nothing of a rule's budget, share or bulk.
-namespace pliant::test {
+namespace pliant::test::candidates_suite {
 
 /// Where an element begins, along x; positive.
 struct BeginOfElement {
@@ -90,4 +90,4 @@ TEST_CASE("elements that two rules refine count for the first", "[adaptation]") 
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::candidates_suite

@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::combined_criteria_suite {
 
 TEST_CASE("largest and smallest combine criteria", "[adaptation]") {
   on_each_element<AllBackends>([]<class B, class E>(B const& backend, E) {
@@ -80,4 +80,4 @@ TEST_CASE("criteria of displacements that are NaN are NaN", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::combined_criteria_suite

@@ -4,7 +4,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::deformation_criteria_suite {
 
 TEST_CASE("R_L and R_A of a homogeneous state are those of its stretch", "[adaptation]") {
   on_each_element<AllBackends>([]<class B, class E>(B const& backend, E) {
@@ -139,4 +139,4 @@ TEST_CASE("a rotation has no R_L and no R_A", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::deformation_criteria_suite

@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::discrepancies_suite {
 
 using Small = Formulation<Hex8, Gauss<2>, Hooke>;
 using Large = Formulation<Hex8, Gauss<2>, SaintVenantKirchhoff>;
@@ -144,4 +144,4 @@ TEST_CASE("uniform deformation is the same to all rules", "[estimator]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::discrepancies_suite

@@ -2,7 +2,7 @@
 
 #include "adaptation/plane_bodies.hpp"
 
-namespace pliant::test {
+namespace pliant::test::endurance_suite {
 
 struct Tally {
   std::size_t refined = 0, switched = 0;
@@ -65,4 +65,4 @@ TEST_CASE("thousands of refinements and switches leave valid bodies", "[adaptati
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::endurance_suite

@@ -3,7 +3,7 @@
 #include "adaptation/criteria.hpp"
 #include "support/law_formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::estimators_of_laws_suite {
 
 template <class... Fs, class Visit>
 void on_laws(List<Fs...>, Visit const& visit) {
@@ -63,4 +63,4 @@ TEST_CASE("laws with values per element and with internal variables have discrep
   CHECK(estimate(body, RecoveredStress{}) < 1e-20);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::estimators_of_laws_suite

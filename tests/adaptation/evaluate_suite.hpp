@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::evaluate_suite {
 
 /// x of the first node at rest, as a user might write a criterion.
 struct FirstX {
@@ -69,4 +69,4 @@ TEST_CASE("a user's criterion rules", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::evaluate_suite

@@ -3,7 +3,7 @@
 #include "support/formulations.hpp"
 
 // Energies that are not finite: of laws that cannot invert, where an element is folded.
-namespace pliant::test {
+namespace pliant::test::folded_elements_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Turning = Formulation<Quad4, Gauss<2>, Corotated>;
@@ -113,4 +113,4 @@ TEST_CASE("refining a body with a folded element leaves the books finite", "[ada
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::folded_elements_suite

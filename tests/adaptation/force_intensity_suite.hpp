@@ -4,7 +4,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::force_intensity_suite {
 
 /// Σ_i w_i (det J_i) Σ_j N_j(ξ_i) |F_j| / A by direct summation, forces from the body.
 template <class F, class TheBody>
@@ -101,4 +101,4 @@ TEST_CASE("R_S asks each element's own law", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::force_intensity_suite

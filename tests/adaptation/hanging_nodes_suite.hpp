@@ -5,7 +5,7 @@
 #include "adaptation/plane_bodies.hpp"
 #include "support/assembly.hpp"
 
-namespace pliant::test {
+namespace pliant::test::hanging_nodes_suite {
 
 /// Irregular, with hanging nodes two and more levels deep.
 template <class B, class M>
@@ -157,4 +157,4 @@ TEST_CASE("the stable step is below the true limit with hanging nodes too", "[ad
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::hanging_nodes_suite

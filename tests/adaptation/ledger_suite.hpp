@@ -3,7 +3,7 @@
 #include "support/formulations.hpp"
 
 // What switching does to the energy of a swing is in the ledger.
-namespace pliant::test {
+namespace pliant::test::ledger_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -84,4 +84,4 @@ TEST_CASE("what leapfrog keeps changes by what is booked of a switch", "[adaptat
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::ledger_suite

@@ -4,7 +4,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::marking_suite {
 
 /// Which values act, by sorting them: the most extreme first, equal ones by number.
 template <class T>
@@ -282,4 +282,4 @@ TEST_CASE("thresholds that are no numbers, stays and levels below zero are refus
   CHECK_NOTHROW(rule.above(INFINITY).floor(-INFINITY).stay(0).refine({.max_level = 0}));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::marking_suite

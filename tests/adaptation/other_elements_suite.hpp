@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::other_elements_suite {
 
 /// Calls visit(F{}) for elements beyond those of plane refinement.
 template <class Visit>
@@ -54,4 +54,4 @@ TEST_CASE("the aspect ratio of other solids is that of their edges", "[adaptatio
   CHECK(evaluate<Hex20>(bricks, AspectRatio{})[0] == Approx(3));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::other_elements_suite

@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::own_actions_suite {
 
 /// How much larger an element is than those around it: its volume less the mean of the means at its nodes.
 struct LargerThanAround {
@@ -135,4 +135,4 @@ TEST_CASE("a strategy's own action is taken where it is needed, in the user's or
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::own_actions_suite

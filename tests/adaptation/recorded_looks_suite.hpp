@@ -6,7 +6,7 @@
 #include "support/repeatable.hpp"
 
 // Steps that an integrator takes together with the looks of an adaptation between them.
-namespace pliant::test {
+namespace pliant::test::recorded_looks_suite {
 
 inline constexpr double switch_at = 0.01;
 
@@ -98,4 +98,4 @@ TEST_CASE("an adaptation that refines looks between an integrator's steps too", 
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::recorded_looks_suite

@@ -3,7 +3,7 @@
 #include "adaptation/estimates.hpp"
 
 // Over the elements of the catalogue and their schemes.
-namespace pliant::test {
+namespace pliant::test::recovered_stress_of_elements_suite {
 
 static_assert(CriterionOfMeans<RecoveredStress, Formulation<Tet10, Gauss<2>, NeoHookean>>);
 
@@ -75,4 +75,4 @@ TEST_CASE("solids of quadratic elements see the part of the stress that is quadr
   check(Hex27{});
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::recovered_stress_of_elements_suite

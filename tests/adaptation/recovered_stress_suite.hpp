@@ -6,7 +6,7 @@
 #include "adaptation/plane_bodies.hpp"
 #include "support/fields.hpp"
 
-namespace pliant::test {
+namespace pliant::test::recovered_stress_suite {
 
 static_assert(Estimator<RecoveredStress, QuadLinear>);
 static_assert(!Estimator<Rotation, QuadLinear>);
@@ -327,4 +327,4 @@ TEST_CASE("rules act by estimates as by other criteria", "[estimator]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::recovered_stress_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::refined_boundary_suite {
 
 TEST_CASE("conditions, pressures and named boundaries go over to both halves of a facet",
           "[adaptation]") {
@@ -47,4 +47,4 @@ TEST_CASE("a family keeps the momentum of distorted parents", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::refined_boundary_suite

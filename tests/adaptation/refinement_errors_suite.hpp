@@ -3,7 +3,7 @@
 #include "adaptation/plane_bodies.hpp"
 #include "support/repeatable.hpp"
 
-namespace pliant::test {
+namespace pliant::test::refinement_errors_suite {
 
 /// All that a user can see of a body; alike to the bit, but for what is added in no fixed order.
 template <class TheBody>
@@ -156,4 +156,4 @@ TEST_CASE("a state that is not finite is not refined", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::refinement_errors_suite

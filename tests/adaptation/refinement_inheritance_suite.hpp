@@ -2,7 +2,7 @@
 
 #include "adaptation/plane_bodies.hpp"
 
-namespace pliant::test {
+namespace pliant::test::refinement_inheritance_suite {
 
 /// Whether a point lies in a convex, counter-clockwise element, its sides included.
 template <class M, std::size_t N>
@@ -200,4 +200,4 @@ TEST_CASE("element-steps go on counting over refinements", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::refinement_inheritance_suite

@@ -5,7 +5,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::refinement_internal_variables_suite {
 
 TEST_CASE("children have their parent's values, and its points' memory", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
@@ -50,4 +50,4 @@ TEST_CASE("children have their parent's values, and its points' memory", "[adapt
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::refinement_internal_variables_suite

@@ -2,7 +2,7 @@
 
 #include "adaptation/plane_bodies.hpp"
 
-namespace pliant::test {
+namespace pliant::test::refinement_rules_suite {
 
 /// The same for every element.
 struct Constant {
@@ -145,4 +145,4 @@ TEST_CASE("rules that would be ignored in part are refused", "[adaptation]") {
   CHECK_THROWS_AS(rule.below(1).floor(0.5), Error);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::refinement_rules_suite

@@ -2,7 +2,7 @@
 
 #include "adaptation/plane_bodies.hpp"
 
-namespace pliant::test {
+namespace pliant::test::refinement_transfer_suite {
 
 TEST_CASE("refinement keeps mass and linear momentum", "[adaptation]") {
   on_plane_meshes<AllBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
@@ -190,4 +190,4 @@ TEST_CASE("refining next to nodes that are held writes down their impulse", "[ad
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::refinement_transfer_suite

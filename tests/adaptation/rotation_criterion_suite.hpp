@@ -4,7 +4,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::rotation_criterion_suite {
 
 TEST_CASE("Rotation is the chord of the angle, whatever the stretch", "[adaptation]") {
   on_each_element<AllBackends>([]<class B, class E>(B const& backend, E) {
@@ -37,4 +37,4 @@ TEST_CASE("Rotation is the chord of the angle, whatever the stretch", "[adaptati
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::rotation_criterion_suite

@@ -5,7 +5,7 @@
 #include "support/formulations.hpp"
 
 // Several Adaptations of one body look each in their own time.
-namespace pliant::test {
+namespace pliant::test::several_adaptations_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -135,4 +135,4 @@ TEST_CASE("Adaptations of a run that is loaded look when those that were saved w
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::several_adaptations_suite

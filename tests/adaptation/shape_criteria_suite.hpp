@@ -2,7 +2,7 @@
 
 #include "adaptation/criteria.hpp"
 
-namespace pliant::test {
+namespace pliant::test::shape_criteria_suite {
 
 TEST_CASE("aspect ratios have Verdict's values", "[adaptation]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
@@ -97,4 +97,4 @@ TEST_CASE("shapes are those of the present positions", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::shape_criteria_suite

@@ -6,7 +6,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::sleep_suite {
 
 using Tri = Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>;
 using Soft = Formulation<Tri3, Gauss<1>, Hooke>;
@@ -422,4 +422,4 @@ TEST_CASE("sleep refuses what it cannot take", "[adaptation]") {
   CHECK_THROWS_WITH(sleep({.below = 1, .for_steps = 0}), says("for_steps is 0"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::sleep_suite

@@ -3,7 +3,7 @@
 #include "adaptation/criteria.hpp"
 
 // Values in closed form, and printed ones of REFERENCES, section 6.
-namespace pliant::test {
+namespace pliant::test::strain_and_stress_criteria_suite {
 
 /// A criterion of a body of one formulation in a uniform state, whose elements all have the same.
 template <class F, class B, class C>
@@ -97,4 +97,4 @@ TEST_CASE("von Mises's stress of an inverted element is NaN", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::strain_and_stress_criteria_suite

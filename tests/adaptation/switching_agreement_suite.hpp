@@ -3,7 +3,7 @@
 #include "support/seed_scene.hpp"
 
 // What another backend decides is what Reference decides.
-namespace pliant::test {
+namespace pliant::test::switching_agreement_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -97,4 +97,4 @@ TEST_CASE("replaying the decisions of Reference gives its trajectory", "[adaptat
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::switching_agreement_suite

@@ -4,7 +4,7 @@
 
 #include "support/seed_scene.hpp"
 
-namespace pliant::test {
+namespace pliant::test::switching_statistics_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -152,4 +152,4 @@ TEST_CASE("the energy of a body that switches is what its ledger says", "[adapta
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::switching_statistics_suite

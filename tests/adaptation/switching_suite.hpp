@@ -3,7 +3,7 @@
 #include "support/formulations.hpp"
 #include "support/repeatable.hpp"
 
-namespace pliant::test {
+namespace pliant::test::switching_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -433,4 +433,4 @@ TEST_CASE("rules that never hold leave the motion alone to the bit", "[adaptatio
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::switching_suite

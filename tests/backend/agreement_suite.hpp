@@ -4,7 +4,7 @@
 #include "support/formulations.hpp"
 
 // The serial backend in double precision is the oracle of the others.
-namespace pliant::test {
+namespace pliant::test::agreement_suite {
 
 /// The largest component of a force that any one element makes.
 template <class F, class TheBody>
@@ -91,4 +91,4 @@ TEST_CASE("steps are those of the serial backend", "[backend]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::agreement_suite

@@ -5,7 +5,7 @@
 #include "support/formulations.hpp"
 
 // The contract of backend/backend.hpp, verb by verb.
-namespace pliant::test {
+namespace pliant::test::verbs_suite {
 
 static_assert(!Backend<int>);
 
@@ -449,4 +449,4 @@ TEST_CASE("a table without elements does nothing", "[backend]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::verbs_suite

@@ -6,7 +6,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::archive_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
@@ -420,4 +420,4 @@ TEST_CASE("comparison names the first member that differs", "[body]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::archive_suite

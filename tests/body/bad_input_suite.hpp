@@ -6,7 +6,7 @@
 
 // What the compiler cannot see is one exception, whose message says what was wrong, where, and what to
 // do; the body stays as it was.
-namespace pliant::test {
+namespace pliant::test::bad_input_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Solid = Formulation<Tet4, Gauss<1>, NeoHookean>;
@@ -301,4 +301,4 @@ TEST_CASE("laws go on with their time step when there is no stable one", "[body]
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::bad_input_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::booked_energy_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
@@ -84,4 +84,4 @@ TEST_CASE("reading does not change what an integrator compares energies with", "
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::booked_energy_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::conditions_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 constexpr DirectionMask along_x = 1, along_y = 2;
@@ -185,4 +185,4 @@ TEST_CASE("free fall is exact", "[body]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::conditions_suite

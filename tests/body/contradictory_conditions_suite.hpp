@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::contradictory_conditions_suite {
 
 TEST_CASE("conditions that contradict each other are refused and change nothing", "[body]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
@@ -25,4 +25,4 @@ TEST_CASE("conditions that contradict each other are refused and change nothing"
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::contradictory_conditions_suite

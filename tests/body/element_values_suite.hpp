@@ -7,7 +7,7 @@
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::element_values_suite {
 
 TEST_CASE("a law whose parameters are those of each element is that law, element by element",
           "[body]") {
@@ -81,4 +81,4 @@ TEST_CASE("values per element that are missing or not finite are refused", "[bod
   CHECK_THROWS_WITH(with({{3, 2}, {3, 2}, {3, NAN}, {3, 2}}), says("value 1 of Tri3 element 2"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::element_values_suite

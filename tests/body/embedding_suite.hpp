@@ -6,7 +6,7 @@
 #include "support/formulations.hpp"
 
 // A simulator that owns its state hands in pointers to its own arrays, in its own order and stride.
-namespace pliant::test {
+namespace pliant::test::embedding_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 
@@ -179,4 +179,4 @@ TEST_CASE("a step that is missing is told from one that is negative", "[body][er
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::embedding_suite

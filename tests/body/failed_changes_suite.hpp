@@ -7,7 +7,7 @@
 #include "support/repeatable.hpp"
 
 // Changes that fail half way leave the body as it was.
-namespace pliant::test {
+namespace pliant::test::failed_changes_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
@@ -156,4 +156,4 @@ TEST_CASE("a check whose listener throws is done all the same", "[body]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::failed_changes_suite

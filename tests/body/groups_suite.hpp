@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::groups_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<3>, SaintVenantKirchhoff>;
@@ -98,4 +98,4 @@ TEST_CASE("a group keeps the law it was given", "[body]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::groups_suite

@@ -7,7 +7,7 @@
 
 // One element under a prescribed motion: what its quadrature points remember follows from the strain's
 // history in closed form.
-namespace pliant::test {
+namespace pliant::test::internal_variables_suite {
 
 template <template <class> class L>
 using OneSquare = Formulation<Quad4, Gauss<2>, L>;
@@ -262,4 +262,4 @@ TEST_CASE("viscosity takes energy from a vibration", "[body]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::internal_variables_suite

@@ -8,7 +8,7 @@
 #include "support/formulations.hpp"
 #include "support/repeatable.hpp"
 
-namespace pliant::test {
+namespace pliant::test::pressure_suite {
 
 /// Displacements that turn and stretch, and bend sides that can.
 template <class M>
@@ -183,4 +183,4 @@ TEST_CASE("pressing the facets of a refined mesh replaces what they inherited", 
   CHECK_THROWS_WITH(body.press(mesh.boundary("left"), 1), says("is not on the boundary"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::pressure_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::state_suite {
 
 using Rubber = Formulation<Tri3, Gauss<1>, NeoHookean>;
 
@@ -116,4 +116,4 @@ TEST_CASE("what changes after a step does not reach back into it", "[body]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::state_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::conditions_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Solid = Formulation<Hex8, Gauss<2>, NeoHookean>;
@@ -291,4 +291,4 @@ TEST_CASE("nodes that hang are not to be held or driven", "[constraint][errors]"
   CHECK_THROWS_WITH(body.drive(std::vector<Index>{hanging}, drawn_at(1)), says("hangs"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::conditions_suite

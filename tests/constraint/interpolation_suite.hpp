@@ -3,7 +3,7 @@
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::interpolation_suite {
 
 /// Slaves of two to four masters each, at random: nodes 3, 7, 11, ... of `nodes`.
 inline Interpolation random_interpolation(Index nodes, Random& random) {
@@ -134,4 +134,4 @@ TEST_CASE("a mesh without slaves is left alone", "[constraint]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::interpolation_suite

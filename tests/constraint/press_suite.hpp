@@ -4,7 +4,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::press_suite {
 
 using Quads = Formulation<Quad4, Gauss<2>, Hooke>;
 using Bricks = Formulation<Hex8, Gauss<2>, Hooke>;
@@ -57,4 +57,4 @@ TEST_CASE("pressing a refined boundary replaces, whichever way its facets ran", 
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::press_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::reactions_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Facets = std::vector<Facet<2>>;
@@ -135,4 +135,4 @@ TEST_CASE("nodes that hang on a held facet give their share to its ends once", "
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::reactions_suite

@@ -3,7 +3,7 @@
 #include "support/elements.hpp"
 #include "support/random.hpp"
 
-namespace pliant::test {
+namespace pliant::test::shape_functions_test {
 
 static_assert(Element<Tri3> && Element<Tri6> && Element<Quad4> && Element<Quad8> && Element<Quad9>);
 static_assert(Element<Tet4> && Element<Tet10> && Element<Hex8> && Element<Hex20> && Element<Hex27>);
@@ -121,4 +121,4 @@ TEMPLATE_TEST_CASE("a field is continuous: on a side only its nodes count", "[el
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::shape_functions_test

@@ -4,7 +4,7 @@
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::force_terms_suite {
 
 /// A spring between two nodes whose length at rest is their distance.
 template <class T>
@@ -398,4 +398,4 @@ TEST_CASE("terms that say nothing or name no node of the body are refused", "[fo
   CHECK(body.parts().term_makers.empty());
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::force_terms_suite

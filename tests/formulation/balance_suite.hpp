@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::balance_suite {
 
 TEST_CASE("inner forces and their moments add up to zero", "[formulation]") {
   on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
@@ -49,4 +49,4 @@ TEST_CASE("masses add up to density times volume, about the right centre", "[for
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::balance_suite

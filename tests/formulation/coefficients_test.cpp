@@ -5,7 +5,7 @@
 #include "support/elements.hpp"
 #include "support/random.hpp"
 
-namespace pliant::test {
+namespace pliant::test::coefficients_test {
 
 /// The bilinear quadrilateral without what marks it as one: the general basis.
 struct General : ElementOn<Quadrilateral, 4, 1> {
@@ -98,4 +98,4 @@ TEMPLATE_TEST_CASE("gradients in rest space are those of a linear field", "[form
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::coefficients_test

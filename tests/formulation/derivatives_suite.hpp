@@ -4,7 +4,7 @@
 #include "support/flat.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::derivatives_suite {
 
 /// Displacements with a strain of about 0.1 from element to element, about the stretch at which a law is
 /// smooth.
@@ -82,4 +82,4 @@ TEST_CASE("the tangent is symmetric", "[formulation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::derivatives_suite

@@ -6,7 +6,7 @@
 
 // The patch test (REFERENCES: any mesh with inner nodes moved at random): an element that passes
 // represents uniform states exactly, whatever its shape.
-namespace pliant::test {
+namespace pliant::test::patch_suite {
 
 /// The displacement gradients H = F − I of the test, by the dimension.
 template <int Dim>
@@ -95,4 +95,4 @@ TEST_CASE("a uniform state of mixed triangles and quadrilaterals leaves no force
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::patch_suite

@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::rigid_motion_suite {
 
 /// The rotation by an angle about an axis of length one (Rodrigues); in 2D about z.
 template <int Dim>
@@ -80,4 +80,4 @@ TEST_CASE("Hooke's law takes a rotation for a strain of cos(angle) - 1", "[formu
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::rigid_motion_suite

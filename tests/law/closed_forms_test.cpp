@@ -1,7 +1,7 @@
 #include "support/laws.hpp"
 
 // Homogeneous states with λ = 3, μ = 2 (REFERENCES, section 6: closed forms, 12 digits).
-namespace pliant::test {
+namespace pliant::test::closed_forms_test {
 
 static_assert(Law<Hooke<double>> && Law<Hooke<float>> && LawFromElastic<Hooke<double>>);
 static_assert(Law<SaintVenantKirchhoff<double>> && LawFromElastic<SaintVenantKirchhoff<double>>);
@@ -140,4 +140,4 @@ TEST_CASE("laws take their parameters from Young's modulus and Poisson's ratio",
   check(NeoHookean<double>::from(material));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::closed_forms_test

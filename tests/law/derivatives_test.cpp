@@ -1,7 +1,7 @@
 #include "support/difference_quotient.hpp"
 #include "support/laws.hpp"
 
-namespace pliant::test {
+namespace pliant::test::derivatives_test {
 
 TEST_CASE("stress is the derivative of the energy", "[law]") {
   on_each_law<Ask::energy_and_stress>([](auto law, auto dim) {
@@ -45,4 +45,4 @@ TEST_CASE("all laws are Hooke's at small strain", "[law]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::derivatives_test

@@ -3,7 +3,7 @@
 #include "support/laws.hpp"
 
 // Laws some of whose parameters are values of an element.
-namespace pliant::test {
+namespace pliant::test::fibres_test {
 
 static_assert(LawPerElement<Guccione<double>> && Law<Guccione<float>> &&
               !PointLaw<Guccione<double>>);
@@ -148,4 +148,4 @@ TEST_CASE("an energy in components of the strain is that in invariants of the fi
   check(std::integral_constant<int, 3>{});
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::fibres_test

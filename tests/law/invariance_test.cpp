@@ -1,6 +1,6 @@
 #include "support/laws.hpp"
 
-namespace pliant::test {
+namespace pliant::test::invariance_test {
 
 /// Calls check(F, R) for states F and rotations R.
 template <int Dim, class Check>
@@ -63,4 +63,4 @@ TEST_CASE("plane strain is the 3D law with F33 = 1", "[law]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::invariance_test

@@ -9,7 +9,7 @@
 #endif
 
 // What laws are where elements are flat or inverted, J ≤ 0.
-namespace pliant::test {
+namespace pliant::test::inversion_test {
 
 static_assert(takes_inversion<Hooke<double>> && takes_inversion<SaintVenantKirchhoff<double>>);
 static_assert(takes_inversion<StableNeoHookean<float>> && takes_inversion<Corotated<double>>);
@@ -161,4 +161,4 @@ TEST_CASE("packs refuse inverted elements lane by lane, as laws for J > 0 do", "
 }
 #endif
 
-}  // namespace pliant::test
+}  // namespace pliant::test::inversion_test

@@ -1,7 +1,7 @@
 #include "support/laws.hpp"
 
 // Where laws end.
-namespace pliant::test {
+namespace pliant::test::limits_test {
 
 TEST_CASE("Gent's energy goes to infinity at the limit of stretch", "[law]") {
   // Uniaxial and isochoric: Ī₁ − 3 = l² + 2/l − 3.
@@ -70,4 +70,4 @@ TEST_CASE("laws split into shape and volume keep volume changes free of shear", 
   CHECK(pressure(SimoNeoHookean<double>{2, 5}) == Approx(5 * (J - 1 / J) / 2 * J / l));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::limits_test

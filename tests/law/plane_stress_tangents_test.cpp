@@ -1,6 +1,6 @@
 #include "law/sheets.hpp"
 
-namespace pliant::test {
+namespace pliant::test::plane_stress_tangents_test {
 
 TEST_CASE("the tangent of a sheet is the derivative of its stress", "[law]") {
   on_each_sheet<Ask::stress_and_tangent>([](AnySheet const& sheet) {
@@ -15,4 +15,4 @@ TEST_CASE("the tangent of a sheet is the derivative of its stress", "[law]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::plane_stress_tangents_test

@@ -2,7 +2,7 @@
 
 #include "law/sheets.hpp"
 
-namespace pliant::test {
+namespace pliant::test::plane_stress_test {
 
 static_assert(LawFromElastic<PlaneStress<Hooke>::law<double>>);
 static_assert(LawFromElastic<PlaneStress<NeoHookean>::law<float>>);
@@ -74,4 +74,4 @@ TEST_CASE("a sheet takes the values of an element for its law", "[law]") {
         2.0f);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::plane_stress_test

@@ -2,7 +2,7 @@
 
 #include "support/laws.hpp"
 
-namespace pliant::test {
+namespace pliant::test::plane_stress_values_test {
 
 TEST_CASE("a sheet in uniaxial stress is a bar", "[law]") {
   // REFERENCES, section 6: l1, l2 and P11 of the solid with free lateral faces.
@@ -80,4 +80,4 @@ TEST_CASE("a sheet keeps its digits in single precision", "[law]") {
   check(Corotated<double>{});
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::plane_stress_values_test

@@ -1,6 +1,6 @@
 #include "support/laws.hpp"
 
-namespace pliant::test {
+namespace pliant::test::precision_test {
 
 template <int Dim>
 Tensor<double, Dim> in_double(Tensor<float, Dim> const& a) {
@@ -75,4 +75,4 @@ TEST_CASE("law_cast refuses parameters that the precision cannot hold", "[law]")
   CHECK(law_cast<float>(NeoHookean<double>{0, 3e38}).mu == 3e38f);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::precision_test

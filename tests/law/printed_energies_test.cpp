@@ -3,7 +3,7 @@
 #include "support/laws.hpp"
 
 // The energies as they are printed, of F and not of H, with nothing shifted: what the laws must be.
-namespace pliant::test {
+namespace pliant::test::printed_energies_test {
 
 /// The invariants of a state in their textbook form.
 struct Printed {
@@ -160,4 +160,4 @@ TEST_CASE("Ogden's law of two terms is Mooney and Rivlin's", "[law]") {
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::printed_energies_test

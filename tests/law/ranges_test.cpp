@@ -10,7 +10,7 @@
 #include "support/laws.hpp"
 
 // What laws find impossible among their parameters.
-namespace pliant::test {
+namespace pliant::test::ranges_test {
 
 /// A law whose parameters are possible, and its check with one of them replaced.
 struct Checked {
@@ -166,4 +166,4 @@ TEST_CASE("a body in single precision refuses moduli that only double holds", "[
   CHECK_NOTHROW(Body{Reference<double>{}, mesh, {1e300, 0.3, 1}, Group<F>{}});
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::ranges_test

@@ -2,7 +2,7 @@
 #include "support/laws.hpp"
 
 // Laws of the principal stretches where those are equal, or change sign.
-namespace pliant::test {
+namespace pliant::test::stretches_test {
 
 /// R Q diag(l) Qᵀ − I with rotations Q and R.
 template <int Dim>
@@ -130,4 +130,4 @@ TEST_CASE("the corotated law is mu |F - R|^2 + lambda/2 tr(R'F - I)^2", "[law]")
   check(std::integral_constant<int, 3>{});
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::stretches_test

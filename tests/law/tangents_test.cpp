@@ -1,7 +1,7 @@
 #include "support/difference_quotient.hpp"
 #include "support/laws.hpp"
 
-namespace pliant::test {
+namespace pliant::test::tangents_test {
 
 TEST_CASE("the tangent is the derivative of the stress", "[law]") {
   on_each_law<Ask::stress_and_tangent>([](auto law, auto dim) {
@@ -30,4 +30,4 @@ TEST_CASE("the tangent is symmetric at every point", "[law]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::tangents_test

@@ -4,7 +4,7 @@
 #include "support/formulations.hpp"
 
 // Laws as a user writes them: the energy, once.
-namespace pliant::test {
+namespace pliant::test::user_law_suite {
 
 /// Saint Venant-Kirchhoff, in the displacement gradient.
 template <class T>
@@ -87,4 +87,4 @@ TEST_CASE("a law that takes nothing from an Elastic needs its parameters", "[law
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::user_law_suite

@@ -6,7 +6,7 @@
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 
-namespace pliant::test {
+namespace pliant::test::check_test {
 
 template <Element E>
 Mesh<E> small_mesh() {
@@ -206,4 +206,4 @@ TEST_CASE("sides that two elements share are no outer sides", "[mesh]") {
   CHECK(count(thrice) == 0);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::check_test

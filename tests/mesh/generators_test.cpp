@@ -8,7 +8,7 @@
 #include "support/fields.hpp"
 #include "support/meshes.hpp"
 
-namespace pliant::test {
+namespace pliant::test::generators_test {
 
 template <Element E>
 Mesh<E> slab() {
@@ -168,4 +168,4 @@ TEST_CASE("a boundary of another name is refused, with those that there are", "[
   CHECK_THROWS_WITH(mesh.boundary("lid"), says("\"lid\"") && says("bottom, left, right, top"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::generators_test

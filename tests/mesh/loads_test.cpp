@@ -5,7 +5,7 @@
 #include "support/elements.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::loads_test {
 
 /// ∫ y² dV over the box of distorted_mesh, [−0.25, 0.75] × [0.5, 1.5] (× [0.125, 1.125]).
 constexpr double mean_square_of_y = (1.5 * 1.5 * 1.5 - 0.5 * 0.5 * 0.5) / 3;
@@ -169,4 +169,4 @@ TEST_CASE("loads of all nodes are those of each", "[body]") {
   CHECK(nodal_loads(at_once) == loads);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::loads_test

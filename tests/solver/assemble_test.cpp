@@ -6,7 +6,7 @@
 #include "support/formulations.hpp"
 
 // What is assembled agrees with what a body computes without matrices.
-namespace pliant::test {
+namespace pliant::test::assemble_test {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 
@@ -135,4 +135,4 @@ TEST_CASE("reactions are the residual that is assembled", "[solver]") {
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::assemble_test

@@ -5,7 +5,7 @@
 #include "support/formulations.hpp"
 
 // What a user may do to a body between the calls of an integrator.
-namespace pliant::test {
+namespace pliant::test::between_steps_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Stiff = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -197,4 +197,4 @@ TEST_CASE("integrators that take turns book no work", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::between_steps_suite

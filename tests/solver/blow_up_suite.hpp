@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::blow_up_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 
@@ -166,4 +166,4 @@ TEST_CASE("options that make no sense are refused", "[solver]") {
   CHECK_NOTHROW(CentralDifference({.safety = 1}));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::blow_up_suite

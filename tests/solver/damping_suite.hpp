@@ -3,7 +3,7 @@
 #include "support/assembly.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::damping_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 
@@ -88,4 +88,4 @@ TEST_CASE("mass damping does not lower the stable limit", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::damping_suite

@@ -3,7 +3,7 @@
 #include "support/formulations.hpp"
 
 // What the energy check of CentralDifference sees, and what it does not take for growth.
-namespace pliant::test {
+namespace pliant::test::energy_check_suite {
 
 template <template <class> class Law>
 using Square = Formulation<Quad4, Gauss<2>, Law>;
@@ -229,4 +229,4 @@ TEST_CASE("what leapfrog keeps is compared with the start, however slowly it gro
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::energy_check_suite

@@ -2,7 +2,7 @@
 
 #include "support/seed_scene.hpp"
 
-namespace pliant::test {
+namespace pliant::test::energy_suite {
 
 /// The largest |E| up to 0.4 s from rest, where E is 0.
 template <class B>
@@ -31,4 +31,4 @@ TEST_CASE("the energy error of central differences is of second order", "[solver
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::energy_suite

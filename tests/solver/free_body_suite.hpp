@@ -2,7 +2,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::free_body_suite {
 
 template <class TheBody>
 FieldOf<TheBody::dim> momenta(TheBody& body) {
@@ -46,4 +46,4 @@ TEST_CASE("a free body keeps its linear and angular momentum", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::free_body_suite

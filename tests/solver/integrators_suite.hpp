@@ -4,7 +4,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::integrators_suite {
 
 TEST_CASE("an integrator made where another one was in memory takes its own steps", "[solver]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
@@ -19,4 +19,4 @@ TEST_CASE("an integrator made where another one was in memory takes its own step
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::integrators_suite

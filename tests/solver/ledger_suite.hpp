@@ -3,7 +3,7 @@
 #include "support/formulations.hpp"
 
 // What leapfrog keeps changes by what is booked, and by nothing else.
-namespace pliant::test {
+namespace pliant::test::ledger_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
@@ -150,4 +150,4 @@ TEST_CASE("what a user changes of the state is booked", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::ledger_suite

@@ -13,7 +13,7 @@
 #include "support/small_patches.hpp"
 
 // Each element has its own time step.
-namespace pliant::test {
+namespace pliant::test::local_steps_suite {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
@@ -546,4 +546,4 @@ TEST_CASE("with one level local steps are central differences", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::local_steps_suite

@@ -3,7 +3,7 @@
 #include "support/assembly.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::lumped_bar_suite {
 
 /// A bar of n cells and length 1 along x.
 template <Element E>
@@ -77,4 +77,4 @@ TEST_CASE("a bar swings at the frequency of its mode and step", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::lumped_bar_suite

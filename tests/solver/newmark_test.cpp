@@ -5,7 +5,7 @@
 #include "support/elements.hpp"
 #include "support/seed_scene.hpp"
 
-namespace pliant::test {
+namespace pliant::test::newmark_test {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
@@ -333,4 +333,4 @@ TEST_CASE("no step changes nothing, and fewer are refused", "[solver]") {
   CHECK_THROWS_WITH(step(body, -5), says("-5 steps"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::newmark_test

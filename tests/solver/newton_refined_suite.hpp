@@ -5,7 +5,7 @@
 #include "adaptation/plane_bodies.hpp"
 #include "support/assembly.hpp"
 
-namespace pliant::test {
+namespace pliant::test::newton_refined_suite {
 
 template <Element E, class B>
 auto cantilever(B const& backend, int n, Put law) {
@@ -161,4 +161,4 @@ TEST_CASE("a hanging node cannot be held or driven", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::newton_refined_suite

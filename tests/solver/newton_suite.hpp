@@ -4,7 +4,7 @@
 
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::newton_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
@@ -189,4 +189,4 @@ TEST_CASE("options of the static solver that make no sense are refused", "[solve
   CHECK_THROWS_AS(solve_static(body, {.tolerance = NAN}), Error);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::newton_suite

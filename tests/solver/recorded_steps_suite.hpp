@@ -6,7 +6,7 @@
 #include "support/repeatable.hpp"
 
 // Many steps at once are recorded and replayed; they are the same steps.
-namespace pliant::test {
+namespace pliant::test::recorded_steps_suite {
 
 template <class F, class B>
 auto swinging_body(B const& backend, Mesh<Quad4> const& mesh) {
@@ -104,4 +104,4 @@ TEST_CASE("bodies are moved, on no backend copied", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::recorded_steps_suite

@@ -8,7 +8,7 @@
 #include "support/repeatable.hpp"
 
 // A roll-back brings back all that a run changes, and an integrator says what it did.
-namespace pliant::test {
+namespace pliant::test::roll_back_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -343,4 +343,4 @@ TEST_CASE("a state that turns NaN is rolled back, or is an error that says where
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::roll_back_suite

@@ -3,7 +3,7 @@
 #include "support/assembly.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::stable_step_suite {
 
 /// 2/ω of the highest frequency of the body as it is.
 template <class TheBody>
@@ -96,4 +96,4 @@ TEST_CASE("the stable step is the same in single precision", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::stable_step_suite

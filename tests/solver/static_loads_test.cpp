@@ -3,7 +3,7 @@
 #include "support/formulations.hpp"
 
 // What loads a body at rest, and from where its loads grow.
-namespace pliant::test {
+namespace pliant::test::static_loads_test {
 
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
 
@@ -175,4 +175,4 @@ TEST_CASE("a static solution is a change by hand for integrators that watch the 
   CHECK(body.steps() == steps + 300);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::static_loads_test

@@ -5,7 +5,7 @@
 #include "support/formulations.hpp"
 
 // What solve_static says of its answer and of its work, and what it refuses.
-namespace pliant::test {
+namespace pliant::test::static_report_test {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
@@ -159,4 +159,4 @@ TEST_CASE("absurd options of the static solver are refused", "[solver]") {
     CHECK_THROWS_WITH(solve_static(body, {.tolerance = tolerance}), says("a tolerance of"));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::static_report_test

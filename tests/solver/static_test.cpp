@@ -4,7 +4,7 @@
 #include "support/seed_scene.hpp"
 
 // Static equilibria of two other codes on the same meshes (REFERENCES, sections 12a and 12b).
-namespace pliant::test {
+namespace pliant::test::static_test {
 
 template <class F>
 void check_beam(Point<2> const& tip) {
@@ -119,4 +119,4 @@ TEST_CASE("a static solution that does not converge leaves the body as it was", 
   CHECK(largest(body.displacements()) == 0);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::static_test

@@ -2,7 +2,7 @@
 
 #include "support/seed_scene.hpp"
 
-namespace pliant::test {
+namespace pliant::test::trajectory_suite {
 
 /// The tip at 0.02 s, 0.1 s and 0.2 s (REFERENCES, section 12c: two other codes on the same mesh).
 template <class F>
@@ -77,4 +77,4 @@ TEST_CASE("single precision follows the trajectory", "[solver]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::trajectory_suite

@@ -3,7 +3,7 @@
 #include "adaptation/plane_bodies.hpp"
 #include "support/flat.hpp"
 
-namespace pliant::test {
+namespace pliant::test::on_change_suite {
 
 /// What a simulator that embeds a body keeps beside it.
 struct Simulator {
@@ -175,4 +175,4 @@ TEST_CASE("a body of the mesh of a refined one has the same energy and forces", 
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::on_change_suite

@@ -3,7 +3,7 @@
 #include "support/catch.hpp"
 #include "support/fields.hpp"
 
-namespace pliant::test {
+namespace pliant::test::transfer_test {
 
 /// Two elements of 6 nodes, of which the second is split in four; two of another type, which stay.
 inline Transfer<2> transfer() {
@@ -64,4 +64,4 @@ TEST_CASE("arrays of another size are refused", "[topology][errors]") {
   CHECK_THROWS_AS(t.carry_elements(std::vector<int>(6), 0, 2), Error);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::transfer_test

@@ -20,7 +20,7 @@ void elements(Table& table, bool full) {
   manufactured_rows<Hex27, L>(table, quadratic);
 }
 
-void tables(Table& table) {
+void tables_of_solids(Table& table) {
   auto const b = force_needed<SaintVenantKirchhoff, 3>({0.3, 0.7, 0.4});
   char const* const digits[] = {"0.318096452163", "0.234068004248", "0.590481838822"};
   for (std::size_t k = 0; k < 3; ++k)
@@ -35,6 +35,6 @@ void tables(Table& table) {
 
 int main(int argc, char** argv) {
   pliant::verification::Table table("Manufactured solutions, solid (9)", argc, argv);
-  pliant::verification::tables(table);
+  pliant::verification::tables_of_solids(table);
   return table.finish();
 }

@@ -24,7 +24,7 @@ void tapered(Table& table, std::vector<int> const& sizes) {
 
 /// FV52 with u_z and the tangential u held on the sides: modes are exact Rayleigh-Lamb and SH waves.
 template <Element E>
-void plate(Table& table, std::vector<int> const& sizes) {
+void vibrating_plate(Table& table, std::vector<int> const& sizes) {
   using F = Formulation<E, Full<E>, Hooke>;
   double const exact[] = {45.97121156,  109.85686161, 109.85686161, 155.04341824, 155.04341824,
                           168.81929420, 205.86461205, 205.86461205, 219.26450483};
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
   seed_beam_converged(table);
   tapered<Quad9>(table, {12, 24, 40});
   tapered<Quad8>(table, {12, 24, 40});
-  plate<Hex20>(table, {8, 12});
-  if (table.full()) plate<Hex27>(table, {8, 12});
+  vibrating_plate<Hex20>(table, {8, 12});
+  if (table.full()) vibrating_plate<Hex27>(table, {8, 12});
   return table.finish();
 }
