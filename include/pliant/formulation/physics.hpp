@@ -79,15 +79,20 @@ template <class F, class L, class S>
 [[gnu::noinline]] constexpr Tensor<S, F::nodes * F::dim> stiffness(
     L const& law, Nodal<typename F::element, S> const& rest,
     Nodal<typename F::element, S> const& u) {
-  constexpr int n = F::nodes * F::dim;
-  Tensor<S, n> k;
-  for (int column = 0; column < n; ++column) {
-    auto du = Nodal<typename F::element, S>::zero();
-    du(column / F::dim, column % F::dim) = S(1);
-    auto const df = tangent_product<F>(law, rest, u, du);
-    for (int row = 0; row < n; ++row) k(row, column) = -df(row / F::dim, row % F::dim);
+  using Scheme = detail::SchemeOf<F, Geometry::isoparametric>;
+  if constexpr (requires { Scheme::stiffness(law, rest, u); }) {
+    return Scheme::stiffness(law, rest, u);
+  } else {
+    constexpr int n = F::nodes * F::dim;
+    Tensor<S, n> k;
+    for (int column = 0; column < n; ++column) {
+      auto du = Nodal<typename F::element, S>::zero();
+      du(column / F::dim, column % F::dim) = S(1);
+      auto const df = tangent_product<F>(law, rest, u, du);
+      for (int row = 0; row < n; ++row) k(row, column) = -df(row / F::dim, row % F::dim);
+    }
+    return k;
   }
-  return k;
 }
 
 }  // namespace pliant

@@ -56,6 +56,55 @@ struct Pointwise {
     }
     return df.per_node();
   }
+
+  /// K_(ai)(bk) = Σ_q w_q det J Σ_jl ∂N_a/∂X_j ∂P_ij/∂H_kl ∂N_b/∂X_l.
+  template <class L, class S>
+  PLIANT_HOST_DEVICE static Tensor<S, F::nodes * F::dim> stiffness(L const& law,
+                                                                   Nodal<E, S> const& rest,
+                                                                   Nodal<E, S> const& u) {
+    using T = builtin_scalar<S>;
+    constexpr int dim = F::dim, nodes = F::nodes;
+    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
+    auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
+    auto k = Tensor<S, nodes * dim>::zero();
+    for (int q = 0; q < F::points; ++q) {
+      auto const map = RestMap<E, S, G>::at(x, table, q);
+      auto const h = map.gradient(v, table, q);
+      Matrix<S, dim, nodes> gradient;  // det J ∂N_b/∂X_l
+      for (int l = 0; l < dim; ++l)
+        for (int b = 0; b < nodes; ++b) {
+          gradient(l, b) = map.cofactors(l, 0) * T(table.gradient[q][b][0]);
+          for (int m = 1; m < dim; ++m)
+            gradient(l, b) = gradient(l, b) + map.cofactors(l, m) * T(table.gradient[q][b][m]);
+        }
+      S const weight = map.inverse_volume * T(table.weight[q]);
+      for (int direction = 0; direction < dim; ++direction) {
+        Tensor<S, dim> tangent[dim];  // ∂P/∂H_(direction)l
+        for (int l = 0; l < dim; ++l) {
+          auto dh = Tensor<S, dim>::zero();
+          dh(direction, l) = weight;
+          tangent[l] = stress_tangent_product(at_point(law, q), h, dh);
+        }
+        for (int i = 0; i < dim; ++i) {
+          Matrix<S, dim, nodes> pull;  // Σ_l ∂P_ij/∂H_(direction)l ∂N_b/∂X_l
+          for (int j = 0; j < dim; ++j)
+            for (int b = 0; b < nodes; ++b) {
+              pull(j, b) = tangent[0](i, j) * gradient(0, b);
+              for (int l = 1; l < dim; ++l)
+                pull(j, b) = pull(j, b) + tangent[l](i, j) * gradient(l, b);
+            }
+          for (int a = 0; a < nodes; ++a)
+            for (int b = 0; b < nodes; ++b) {
+              S sum = gradient(0, a) * pull(0, b);
+              for (int j = 1; j < dim; ++j) sum = sum + gradient(j, a) * pull(j, b);
+              S& entry = k(dim * a + i, dim * b + direction);
+              entry = entry + sum;
+            }
+        }
+      }
+    }
+    return k;
+  }
 };
 
 }  // namespace pliant
