@@ -12,6 +12,7 @@
 #include <pliant/adaptation/criterion/shape.hpp>
 #include <pliant/adaptation/criterion/strain.hpp>
 #include <pliant/adaptation/criterion/stress.hpp>
+#include <pliant/adaptation/estimator/discrepancy.hpp>
 #include <pliant/adaptation/estimator/law_discrepancy.hpp>
 #include <pliant/adaptation/estimator/quadrature_discrepancy.hpp>
 #include <pliant/adaptation/estimator/recovered_stress.hpp>
