@@ -262,6 +262,28 @@ TEST_CASE("equal offers are taken by number, as many as the budget allows", "[ad
   });
 }
 
+TEST_CASE("a discrepancy is the same from whatever group it is looked at", "[adaptation]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const mesh = distorted_mesh<Quad4>(8);
+    Body body{backend,         mesh,           soft, Group<Linear>{Hooke<double>{3, 2}},
+              Group<Coarse>{}, Group<Rubber>{}};
+    body.set_displacements(uneven(mesh));
+    auto const sum_within = [&]<class F>(List<F>) {
+      put_all_into<F>(body);
+      return std::pair{estimate(body, detail::DiscrepancyOf<Linear, Rubber>{}),
+                       estimate(body, detail::DiscrepancyOf<Coarse, Rubber>{})};
+    };
+    auto const linear = sum_within(List<Linear>{}), coarse = sum_within(List<Coarse>{}),
+               rubber = sum_within(List<Rubber>{});
+
+    CHECK(linear.first > 0);
+    CHECK(coarse.first == Approx(linear.first));
+    CHECK(rubber.first == Approx(linear.first));
+    CHECK(linear.second == Approx(coarse.second));
+    CHECK(rubber.second == Approx(coarse.second));
+  });
+}
+
 TEST_CASE("laws, rules of quadrature and both are chosen among", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     using Rough = Formulation<Quad4, OnePoint, Hooke>;
@@ -523,6 +545,20 @@ struct TestClock {
   inline static double seconds = 0;
   static double read() { return seconds; }
 };
+
+TEST_CASE("choices that differ by a limit look each in their own time", "[adaptation]") {
+  auto body = three_laws(Reference<double>{}, distorted_mesh<Quad4>(3));
+  Adaptation one{within<Linear, Rubber>({.error = 1})}, other{within<Linear, Rubber>({.error = 2})};
+  Adaptation costs{within<Linear, Rubber>({.error = 1, .costs = {0.5, 1}})};
+  one(body);
+  other(body);
+  costs(body);
+  auto const& looks = body.state().record.looks;
+  REQUIRE(looks.size() == 3);
+  // Of equal rules the second has the next number.
+  CHECK(looks[1].adaptation != looks[0].adaptation + 1);
+  CHECK(looks[2].adaptation != looks[0].adaptation + 1);
+}
 
 TEST_CASE("a budget in milliseconds follows what steps take", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
