@@ -3,6 +3,7 @@
 // Everything that is independent of a backend, but what works on sparse matrices: solve.hpp.
 #include <pliant/adaptation/adapt.hpp>
 #include <pliant/adaptation/adaptation.hpp>
+#include <pliant/adaptation/criterion/acoustic.hpp>
 #include <pliant/adaptation/criterion/arithmetic.hpp>
 #include <pliant/adaptation/criterion/combine.hpp>
 #include <pliant/adaptation/criterion/condition.hpp>

@@ -44,7 +44,8 @@ struct WithinOptions {
 
 /// Each element of one of the groups Fs goes to the cheapest of them whose discrepancy is below `tolerance`; or,
 /// limits for the sum of all, elements whose error drops most per cost go to a costlier one. Elements where a discrepancy
-/// is NaN, and those that sleep, stay where they are; elements in other groups are passed over.
+/// is NaN, and those that sleep, stay where they are, as do those under whose deformation the law they would go to is not
+/// strongly elliptic (is_strongly_elliptic); elements in other groups are passed over.
 template <class... Fs>
 struct ChoiceRule {
   using groups = detail::TypeList<Fs...>;

@@ -35,6 +35,12 @@ struct PresentCost {
   }
 };
 
+/// A move that a choice makes.
+template <class From, class To>
+struct GuardedMove : SwitchRule<From, To, DiscrepancyOf<To, To>> {
+  static constexpr bool guards_ellipticity = true;
+};
+
 /// Looks that find, in every group of a list, the discrepancy of each but the last, and the moves between them.
 template <class All, class... Fs>
 struct ChoiceLooks;
@@ -52,7 +58,7 @@ struct ChoiceLooks<TypeList<All...>, Fs...> {
   }
   template <class From, class... Tos>
   static auto moves_of() {
-    return std::tuple{SwitchRule<From, Tos, DiscrepancyOf<To, To>>{}...};
+    return std::tuple{GuardedMove<From, Tos>{}...};
   }
   using Looks = decltype(std::tuple_cat(looks_of<Fs, All...>()...));
   using Moves = decltype(std::tuple_cat(moves_of<Fs, All...>()...));
