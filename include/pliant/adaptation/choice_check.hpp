@@ -64,6 +64,15 @@ struct ChoiceLooks<TypeList<All...>, Fs...> {
   using Moves = decltype(std::tuple_cat(moves_of<Fs, All...>()...));
 };
 
+/// What the kernels of a check are made of.
+template <class Table, int Dim, class List>
+struct RulesOfChoice;
+template <class Table, int Dim, class... Rules>
+struct RulesOfChoice<Table, Dim, std::tuple<Rules...>> {
+  using Evaluated = TableRules<Table, Rules...>;
+  using Act = ActVisitor<Table, Dim, Rules...>;
+};
+
 /// The costs of a choice's groups, in that of the last. Throws Error where they do not ascend.
 template <class Parts, class... Fs>
 std::array<double, sizeof...(Fs)> costs_of(Parts const& parts, ChoiceRule<Fs...> const& rule) {
@@ -89,16 +98,9 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>> {
   static_assert(((Table::template group_of<Fs> < Table::groups) && ...),
                 "a choice names a formulation of which the body has no Group");
   using Of = ChoiceLooks<TypeList<Fs...>, Fs...>;
-  template <class List>
-  struct RulesOf;
-  template <class... Rules>
-  struct RulesOf<std::tuple<Rules...>> {
-    using Evaluated = TableRules<Table, Rules...>;
-    using Act = ActVisitor<Table, Parts::dim, Rules...>;
-  };
-  using Looks = typename RulesOf<typename Of::Looks>::Evaluated;
-  using Moves = typename RulesOf<typename Of::Moves>::Evaluated;
-  using Act = typename RulesOf<typename Of::Moves>::Act;
+  using Looks = typename RulesOfChoice<Table, Parts::dim, typename Of::Looks>::Evaluated;
+  using Moves = typename RulesOfChoice<Table, Parts::dim, typename Of::Moves>::Evaluated;
+  using Act = typename RulesOfChoice<Table, Parts::dim, typename Of::Moves>::Act;
 
  public:
   /// `evaluations`: the budget now; NaN: not known yet, nothing switches.
@@ -224,13 +226,12 @@ double evaluations_per_step(TheBody const& body, ChoiceRule<Fs...> const& rule) 
   auto const costs = detail::costs_of(parts, rule);
   auto const groups = body.template groups_of<E>();
   auto const asleep = asleep_elements<E>(body);
+  std::array const places{Table::template group_of<Fs>...};
   double sum = 0;
   for (std::size_t e = 0; e < groups.size(); ++e) {
-    std::size_t place = 0;
-    for (int group : {Table::template group_of<Fs>...}) {
-      if (groups[e] == group && !asleep[e]) sum += costs[place];
-      ++place;
-    }
+    auto const place = std::ranges::find(places, int{groups[e]}) - places.begin();
+    if (place < ChoiceRule<Fs...>::count && !asleep[e])
+      sum += costs[static_cast<std::size_t>(place)];
   }
   return sum;
 }

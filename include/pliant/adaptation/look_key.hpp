@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -31,9 +32,9 @@ void name_marking(std::string& text, TheRule const& rule) {
 }
 template <class TheRule>
 void name_choice(std::string& text, TheRule const& rule) {
-  for (double limit : {rule.tolerance, rule.error, rule.evaluations_per_step,
-                       rule.milliseconds_per_step, rule.release})
-    add_bytes(text, limit);
+  std::array const limits{rule.tolerance, rule.error, rule.evaluations_per_step,
+                          rule.milliseconds_per_step, rule.release};
+  for (double limit : limits) add_bytes(text, limit);
   add_bytes(text, rule.stay);
   for (double cost : rule.costs) add_bytes(text, cost);
 }

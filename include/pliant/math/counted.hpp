@@ -38,7 +38,7 @@ struct Counted {
     return after(1, a.value * b.value);
   }
   friend PLIANT_HOST_DEVICE Counted operator/(Counted a, Counted b) {
-    return after(8, a.value / b.value);
+    return after(20, a.value / b.value);
   }
   friend PLIANT_HOST_DEVICE Counted operator-(Counted a) { return after(1, -a.value); }
   friend PLIANT_HOST_DEVICE Counted& operator+=(Counted& a, Counted b) { return a = a + b; }
@@ -58,11 +58,11 @@ PLIANT_HOST_DEVICE Counted select(bool condition, Counted a, Counted b) {
 }
 PLIANT_HOST_DEVICE bool any_less(Counted a, Counted b) { return a.value < b.value; }
 PLIANT_HOST_DEVICE Counted abs(Counted const& x) { return Counted::after(1, abs(x.value)); }
-PLIANT_HOST_DEVICE Counted sqrt(Counted const& x) { return Counted::after(12, sqrt(x.value)); }
-PLIANT_HOST_DEVICE Counted exp(Counted const& x) { return Counted::after(25, exp(x.value)); }
-PLIANT_HOST_DEVICE Counted expm1(Counted const& x) { return Counted::after(25, expm1(x.value)); }
-PLIANT_HOST_DEVICE Counted log(Counted const& x) { return Counted::after(35, log(x.value)); }
-PLIANT_HOST_DEVICE Counted log1p(Counted const& x) { return Counted::after(35, log1p(x.value)); }
-PLIANT_HOST_DEVICE Counted cbrt(Counted const& x) { return Counted::after(40, cbrt(x.value)); }
+PLIANT_HOST_DEVICE Counted sqrt(Counted const& x) { return Counted::after(28, sqrt(x.value)); }
+PLIANT_HOST_DEVICE Counted exp(Counted const& x) { return Counted::after(50, exp(x.value)); }
+PLIANT_HOST_DEVICE Counted expm1(Counted const& x) { return Counted::after(50, expm1(x.value)); }
+PLIANT_HOST_DEVICE Counted log(Counted const& x) { return Counted::after(70, log(x.value)); }
+PLIANT_HOST_DEVICE Counted log1p(Counted const& x) { return Counted::after(70, log1p(x.value)); }
+PLIANT_HOST_DEVICE Counted cbrt(Counted const& x) { return Counted::after(80, cbrt(x.value)); }
 
 }  // namespace pliant
