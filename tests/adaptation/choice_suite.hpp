@@ -485,6 +485,15 @@ TEST_CASE("where a discrepancy is NaN an element stays", "[adaptation]") {
     check(cheapest<Linear, Rubber>({.tolerance = 1e-30}));
     check(within<Linear, Rubber>({.error = 1e-30}));
     check(within<Linear, Rubber>({.evaluations_per_step = 16}));
+
+    auto body = three_laws(backend, mesh);
+    put_all_into<Rubber>(body);
+    body.set_displacements(u);
+    auto const values = evaluate<Quad4>(body, detail::DiscrepancyOf<Linear, Rubber>{});
+    Adaptation{within<Linear, Rubber>({.error = 1e9})}.now(body);
+    auto const groups = body.template groups_of<Quad4>();
+    for (std::size_t e = 0; e < groups.size(); ++e)
+      CHECK((groups[e] == 2) == std::isnan(values[e]));
   });
 }
 

@@ -98,7 +98,9 @@ void check_costs(std::array<double, N> const& costs) {
 
 /// Each element goes to the cheapest of the groups Fs, listed from cheap to costly, whose discrepancy from the last
 /// one is at most `tolerance`; back to a cheaper one where it is at most `release` times that, after `stay` steps. The
-/// last group has none, so that the tolerance can be met everywhere. Throws Error for options out of range.
+/// last group has none, so that the tolerance can be met everywhere. A look evaluates the stresses of all groups of the
+/// list at each element, which takes about as long as their forces: look seldom where the last law is costly
+/// (Adaptation::every). Throws Error for options out of range.
 template <class... Fs>
 auto cheapest(CheapestOptions const& options) {
   detail::check_choice<Fs...>();
@@ -115,7 +117,8 @@ auto cheapest(CheapestOptions const& options) {
 /// than cost `evaluations_per_step` or `milliseconds_per_step`. What even the cheapest groups cost, and what elements
 /// that must stay cost, is spent whatever the budget. A budget in milliseconds follows what steps took since the look
 /// before: half of the newest, half of before, in the saved state; before something is measured nothing switches. Such
-/// runs do not repeat to the bit; the others do. Throws Error for options out of range.
+/// runs do not repeat to the bit; the others do, where the backend does. Looks cost as those of `cheapest`, and some passes
+/// over the values found. Throws Error for options out of range.
 template <class... Fs>
 auto within(WithinOptions<int{sizeof...(Fs)}> const& options) {
   detail::check_choice<Fs...>();
