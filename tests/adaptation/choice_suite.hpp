@@ -71,7 +71,7 @@ TEST_CASE("each element goes to the cheapest group that is right within the tole
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const u = uneven(mesh);
     auto const errors = errors_of_groups(backend, mesh, u);
-    double const tolerance = most_of(errors[1]);
+    double const tolerance = 1.001 * most_of(errors[1]);
     auto body = three_laws(backend, mesh);
     body.set_displacements(u);
 
@@ -108,7 +108,7 @@ TEST_CASE("elements return below a share of the tolerance, and after their stay"
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const u = uneven(mesh);
     auto const errors = errors_of_groups(backend, mesh, u);
-    double const tolerance = most_of(errors[1]);
+    double const tolerance = 1.001 * most_of(errors[1]);
     auto const from_rubber = [&](CheapestOptions const& options) {
       auto body = three_laws(backend, mesh);
       put_all_into<Rubber>(body);
@@ -267,7 +267,7 @@ TEST_CASE("equal offers are taken by number, as many as the budget allows", "[ad
 TEST_CASE("a discrepancy is the same from whatever group it is looked at", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(8);
-    Body body{backend,         mesh,           soft, Group<Linear>{Hooke<double>{3, 2}},
+    Body body{backend,         mesh,           soft, Group<Linear>{Hooke<double>{30, 20}},
               Group<Coarse>{}, Group<Rubber>{}};
     body.set_displacements(uneven(mesh));
     auto const sum_within = [&]<class F>(List<F>) {
@@ -533,6 +533,11 @@ TEST_CASE("Reference and OpenMP decide alike", "[adaptation]") {
     auto b = loaded_beam(OpenMP<double>{});
     CentralDifference step, other;
     Adaptation adapt{rule}, same{rule};
+    load_at(a, 2);
+    load_at(b, 2);
+    // Until strains are well above what they are rounded by.
+    step(a, 40);
+    other(b, 40);
     bool mixed = false;
     for (int k = 0; k < 30; ++k) {
       load_at(a, 2 + 0.1 * k);
@@ -665,7 +670,8 @@ TEST_CASE("what sleeps stays, costs nothing, and leaves its budget to others", "
     CHECK(std::ranges::count(groups, 1) == costly);
     CHECK(evaluations_per_step(body, rule) == Approx(budget));
 
-    auto const both = run(rule, sleep({.below = 1e-4, .for_steps = 16}));
+    auto const both =
+        run(cheapest<Linear, Rubber>({.tolerance = 1e3}), sleep({.below = 1e-4, .for_steps = 16}));
     CHECK(std::ranges::count(asleep_elements<Quad4>(both), true) > 0);
   });
 }
