@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+
 #include <pliant/adaptation/estimator/discrepancy.hpp>
 #include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/force_costs.hpp>
