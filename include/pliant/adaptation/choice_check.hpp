@@ -1,7 +1,5 @@
 #pragma once
 
-#include <bit>
-
 #include <pliant/adaptation/estimator/discrepancy.hpp>
 #include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/force_costs.hpp>
@@ -12,16 +10,6 @@
 namespace pliant {
 
 namespace detail {
-
-/// A positive number rounded up to half of its digits: errors that are equal but for rounding, of mirrored elements or on
-/// another backend, then count as equal, and their numbers decide.
-template <class T>
-PLIANT_HOST_DEVICE T rounded_up(T x) {
-  using Bits = OrderedBits<T>;
-  constexpr Bits rest = (Bits{1} << std::numeric_limits<T>::digits / 2) - 1;
-  bool const rounds = T(0) < x && x < std::numeric_limits<T>::max() / 4;
-  return rounds ? std::bit_cast<T>((std::bit_cast<Bits>(x) + rest) & static_cast<Bits>(~rest)) : x;
-}
 
 /// Keeps all values of each element.
 template <class T, int Rows>

@@ -1,11 +1,22 @@
 #pragma once
 
+#include <bit>
 #include <limits>
 
 #include <pliant/adaptation/choice.hpp>
 #include <pliant/body/criteria_workspace.hpp>
 
 namespace pliant::detail {
+
+/// A positive number rounded up to half of its digits: errors that are equal but for rounding, of mirrored elements or on
+/// another backend, then count as equal, and their numbers decide.
+template <class T>
+PLIANT_HOST_DEVICE T rounded_up(T x) {
+  using Bits = OrderedBits<T>;
+  constexpr Bits rest = (Bits{1} << std::numeric_limits<T>::digits / 2) - 1;
+  bool const rounds = T(0) < x && x < std::numeric_limits<T>::max() / 4;
+  return rounds ? std::bit_cast<T>((std::bit_cast<Bits>(x) + rest) & static_cast<Bits>(~rest)) : x;
+}
 
 /// Where the groups of a choice stand, and what they cost.
 template <int Groups, int Count>
