@@ -3,6 +3,7 @@
 // Everything that is independent of a backend, but what works on sparse matrices: solve.hpp.
 #include <pliant/adaptation/adapt.hpp>
 #include <pliant/adaptation/adaptation.hpp>
+#include <pliant/adaptation/criterion/acoustic.hpp>
 #include <pliant/adaptation/criterion/arithmetic.hpp>
 #include <pliant/adaptation/criterion/combine.hpp>
 #include <pliant/adaptation/criterion/condition.hpp>
@@ -12,6 +13,7 @@
 #include <pliant/adaptation/criterion/shape.hpp>
 #include <pliant/adaptation/criterion/strain.hpp>
 #include <pliant/adaptation/criterion/stress.hpp>
+#include <pliant/adaptation/estimator/discrepancy.hpp>
 #include <pliant/adaptation/estimator/law_discrepancy.hpp>
 #include <pliant/adaptation/estimator/quadrature_discrepancy.hpp>
 #include <pliant/adaptation/estimator/recovered_stress.hpp>

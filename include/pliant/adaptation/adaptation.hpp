@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <memory>
 
+#include <pliant/adaptation/choice_check.hpp>
 #include <pliant/adaptation/look_key.hpp>
+#include <pliant/adaptation/look_time.hpp>
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/adaptation/sleep_look.hpp>
 #include <pliant/adaptation/strategy.hpp>
@@ -70,6 +72,7 @@ class Adaptation {
                   "a rule is for an element type that the body's mesh does not have");
     auto& parts = body.parts();
     prepare(parts);
+    if constexpr (chooses) take_time(parts);
     begin_look(parts, 0);
     decide(parts);
     if constexpr (switches && refines) {
@@ -101,6 +104,7 @@ class Adaptation {
                     "sleep takes no laws with internal variables, which go on relaxing at rest");
       look_for_rest(parts, sleep_rule());
     }
+    if constexpr (chooses) start_time(parts);
   }
 
   int interval() const { return interval_; }
@@ -120,14 +124,21 @@ class Adaptation {
   }
 
  private:
-  static constexpr bool switches = (SwitchingRule<Rules> || ...);
+  static constexpr bool chooses = (ChoosingRule<Rules> || ...);
+  static constexpr bool switches = chooses || (SwitchingRule<Rules> || ...);
   static constexpr bool refines = (RefiningRule<Rules> || ...);
   static constexpr bool sleeps = (SleepingRule<Rules> || ...);
   static_assert((0 + ... + int{SleepingRule<Rules>}) <= 1,
                 "an Adaptation has at most one rule that puts patches to sleep");
+  static_assert((0 + ... + int{ChoosingRule<Rules>}) <= 1,
+                "an Adaptation has at most one rule that chooses: one of cheapest and within");
+  static_assert(
+      !chooses || ((ChoosingRule<Rules> || SleepingRule<Rules>)&&...),
+      "cheapest and within choose for all elements of their groups: rules that switch or refine "
+      "go into another Adaptation");
   template <class R>
   static constexpr bool takes_means_by() {
-    if constexpr (SleepingRule<R>)
+    if constexpr (SleepingRule<R> || ChoosingRule<R>)
       return false;
     else
       return !std::same_as<
@@ -139,6 +150,8 @@ class Adaptation {
   static constexpr bool acts_on() {
     if constexpr (SleepingRule<R>)
       return true;
+    else if constexpr (ChoosingRule<R>)
+      return TheBody::layout_type::template has<typename R::element>;
     else
       return TheBody::layout_type::template acts<typename R::from>;
   }
@@ -150,13 +163,14 @@ class Adaptation {
 
     int interval() const { return adapt_.interval_; }
     std::shared_ptr<void const> const& identity() const { return adapt_.identity_; }
-    /// Refining and sleep pass through the host, means at nodes allocate, timers do not run in recordings; on the host nothing
-    /// would be gained.
+    /// Refining, sleep and budgets in milliseconds pass through the host, means at nodes allocate, timers do not run in
+    /// recordings; on the host nothing would be gained.
     template <class Parts>
     bool can_record(Parts const& parts) const {
       return !refines && !takes_means && !sleeps &&
              !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
-             !parts.timers.criteria.timer && !parts.timers.migration.timer;
+             !parts.timers.criteria.timer && !parts.timers.migration.timer &&
+             !adapt_.limits_milliseconds();
     }
     template <class Parts>
     void prepare(Parts& parts) const {
@@ -174,23 +188,18 @@ class Adaptation {
     Adaptation adapt_;
   };
 
-  auto sleep_rule() const {
-    return std::get<0>(std::apply(
-        [](auto const&... rule) { return std::tuple_cat(sleep_rule_of(rule)...); }, rules_));
-  }
-  template <class R>
-  static auto sleep_rule_of(R const& rule) {
-    if constexpr (SleepingRule<R>)
-      return std::tuple<R>{rule};
-    else
-      return std::tuple<>{};
+  auto const& sleep_rule() const { return std::get<place_of({SleepingRule<Rules>...})>(rules_); }
+  auto const& choosing_rule() const { return std::get<place_of({ChoosingRule<Rules>...})>(rules_); }
+  /// Of the first that holds.
+  static constexpr std::size_t place_of(std::initializer_list<bool> holds) {
+    return static_cast<std::size_t>(std::find(holds.begin(), holds.end(), true) - holds.begin());
   }
   template <class Parts>
   LastLook& last_look(Parts& parts, std::int64_t first) const {
     auto& looks = parts.state.record.looks;
     auto const key = detail::look_key(parts.lookers, rules_key_, identity_);
     auto const found = std::ranges::find(looks, key, &LastLook::adaptation);
-    return found != looks.end() ? *found : *looks.insert(found, {key, first});
+    return found != looks.end() ? *found : *looks.insert(found, {.adaptation = key, .step = first});
   }
   /// When the last call was at a step. A first one counts as made after a look.
   template <DeformableBody TheBody>
@@ -224,9 +233,17 @@ class Adaptation {
     parts.for_each_type([&](auto& table, auto& elements) {
       using Table = std::remove_cvref_t<decltype(table)>;
       using Elements = std::remove_cvref_t<decltype(elements)>;
-      auto const rules = detail::rules_on<Table>(rules_);
-      visit(detail::TableCheck<Parts, Table, Elements, std::remove_cvref_t<decltype(rules)>>{
-          parts, table, elements, rules});
+      if constexpr (chooses) {
+        using R = std::remove_cvref_t<decltype(choosing_rule())>;
+        if constexpr (std::same_as<typename R::element, typename Table::element>)
+          visit(detail::ChoiceCheck<Parts, Table, Elements, R>{
+              parts, table, elements, choosing_rule(),
+              detail::budget_now(choosing_rule(), last_look(parts, parts.state.steps))});
+      } else {
+        auto const rules = detail::rules_on<Table>(rules_);
+        visit(detail::TableCheck<Parts, Table, Elements, std::remove_cvref_t<decltype(rules)>>{
+            parts, table, elements, rules});
+      }
     });
   }
   template <class Parts>
@@ -276,6 +293,29 @@ class Adaptation {
     auto plan = plan_refinement(parts, marked, max_level);
     if (plan) (void)commit(parts, *plan);
     return plan;
+  }
+
+  /// Measures what steps have taken since the look before, where a budget is in milliseconds.
+  template <class Parts>
+  void take_time(Parts& parts) const {
+    if (!limits_milliseconds()) return;
+    double evaluations = 0;
+    for_each_check(parts, [&](auto const& check) { evaluations += check.evaluations_now(); });
+    auto& look = last_look(parts, parts.state.steps);
+    detail::take_time(parts, choosing_rule(), detail::looker_of(parts.lookers, identity_),
+                      evaluations, look);
+  }
+  template <class Parts>
+  void start_time(Parts& parts) const {
+    if (!limits_milliseconds()) return;
+    auto& look = last_look(parts, parts.state.steps);
+    detail::start_time(parts, choosing_rule(), detail::looker_of(parts.lookers, identity_), look);
+  }
+  bool limits_milliseconds() const {
+    if constexpr (chooses)
+      return std::isfinite(choosing_rule().milliseconds_per_step);
+    else
+      return false;
   }
 
   void set_interval(int calls) {

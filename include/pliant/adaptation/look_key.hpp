@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -30,9 +31,19 @@ void name_marking(std::string& text, TheRule const& rule) {
   if constexpr (RefiningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.max_level});
 }
 template <class TheRule>
+void name_choice(std::string& text, TheRule const& rule) {
+  std::array const limits{rule.tolerance, rule.error, rule.evaluations_per_step,
+                          rule.milliseconds_per_step, rule.release};
+  for (double limit : limits) add_bytes(text, limit);
+  add_bytes(text, rule.stay);
+  for (double cost : rule.costs) add_bytes(text, cost);
+}
+template <class TheRule>
 void name_rule(std::string& text, TheRule const& rule) {
   text += plain_type_name<TheRule>();
-  if constexpr (SleepingRule<TheRule>) {
+  if constexpr (ChoosingRule<TheRule>) {
+    name_choice(text, rule);
+  } else if constexpr (SleepingRule<TheRule>) {
     add_bytes(text, rule.below);
     add_bytes(text, rule.for_steps);
   } else {
@@ -46,6 +57,13 @@ std::uint64_t rules_key(Rules const&... rules) {
   std::string text;
   (name_rule(text, rules), ...);
   return checksum(text);
+}
+
+/// The one of an Adaptation that has a number.
+inline Looker& looker_of(std::vector<Looker>& lookers,
+                         std::shared_ptr<void const> const& adaptation) {
+  return *std::ranges::find_if(
+      lookers, [&](Looker const& looker) { return looker.adaptation.lock() == adaptation; });
 }
 
 /// The number of an Adaptation's last look. Of those with the same key, each has its own, in the order in which

@@ -26,6 +26,14 @@ enum class Search {
   tie       ///< among values equal to the last that `count` takes: so many by number
 };
 
+/// The digit of a key at a shift, with what it weighs; nothing where the digits before are not `prefix`.
+template <class Key>
+PLIANT_HOST_DEVICE Bin digit_of(Key key, Key prefix, int shift, bool first, std::int64_t weight) {
+  constexpr int bits = 8 * int{sizeof(Key)};
+  bool const candidate = first || shift + 8 >= bits || (key >> (shift + 8)) == prefix;
+  return candidate ? Bin{static_cast<int>(key >> shift & 255), weight} : Bin{-1, 0};
+}
+
 /// The digit of an element's value or number, and what it weighs.
 template <class T>
 struct Digit {
@@ -53,10 +61,7 @@ struct Digit {
  private:
   template <class Key>
   PLIANT_HOST_DEVICE Bin digit(Key key, std::int64_t weight) const {
-    constexpr int bits = 8 * int{sizeof(Key)};
-    bool const candidate =
-        first || shift + 8 >= bits || (key >> (shift + 8)) == static_cast<Key>(ranking->prefix);
-    return candidate ? Bin{static_cast<int>(key >> shift & 255), weight} : Bin{-1, 0};
+    return digit_of(key, static_cast<Key>(ranking->prefix), shift, first, weight);
   }
   PLIANT_HOST_DEVICE std::int64_t weight(T value) const {
     if (ranking->scale == 0) return value > std::numeric_limits<T>::max() ? 1 : 0;
@@ -64,6 +69,47 @@ struct Digit {
                         : 0;
   }
 };
+
+/// The power of two by which no sum of so many values up to the largest reaches 2⁶².
+template <class T>
+PLIANT_HOST_DEVICE double scale_for(OrderedBits<T> largest, Index elements) {
+  using Key = OrderedBits<T>;
+  constexpr int mantissa = std::numeric_limits<T>::digits - 1;
+  constexpr int most = std::numeric_limits<T>::max_exponent - 1;  // the bias of exponents
+  constexpr Key sign = Key{1} << (8 * sizeof(T) - 1);
+  if ((largest & sign) == 0) return 1;  // nothing is positive, and weighs
+  int const exponent = static_cast<int>((largest ^ sign) >> mantissa) - most + 1;
+  if (exponent > most + 1) return 0;
+  int bits = 62;
+  for (Index n = elements; n > 0; n /= 2) --bits;
+  // Of double, whatever T is: small values of float need a scale beyond its range.
+  constexpr int bias = std::numeric_limits<double>::max_exponent - 1;
+  int const power = min(bits - exponent, bias);
+  return std::bit_cast<double>(static_cast<std::uint64_t>(power + bias) << 52);
+}
+
+/// Finds the digit at which `r.remaining` is reached among those of a histogram, from the largest or the smallest on,
+/// and clears that. Returns the weight at this digit.
+template <class T>
+PLIANT_HOST_DEVICE std::int64_t take_digit(Ranking<T>& r, std::int64_t* histogram, bool ascending) {
+  constexpr int bins = histogram_bins;
+  std::int64_t left = r.remaining, weight = 0;
+  int found = -1;
+  for (int k = 0; k < bins; ++k) {
+    int const bin = ascending ? k : bins - 1 - k;
+    std::int64_t const here = histogram[bin];
+    bool const reaches = found < 0 && here >= left;
+    found = reaches ? bin : found;
+    weight = reaches ? here : weight;
+    left = found < 0 ? left - here : left;
+  }
+  for (int k = 0; k < bins; ++k) histogram[k] = 0;
+  if (r.state == Ranking<T>::searching) {
+    r.remaining = left;
+    r.prefix = static_cast<OrderedBits<T>>(r.prefix << 8 | static_cast<OrderedBits<T>>(found));
+  }
+  return weight;
+}
 
 /// Finds the next digit of the value that is searched from the histogram, and clears that.
 template <class T>
@@ -81,23 +127,8 @@ struct NarrowRanking {
 
   PLIANT_HOST_DEVICE void operator()(Index) const {
     Ranking<T>& r = *ranking;
-    constexpr int bins = histogram_bins;
     if (first) begin(r);
-    bool const ascending = search == Search::tie;
-    std::int64_t left = r.remaining;
-    int found = -1;
-    for (int k = 0; k < bins; ++k) {
-      int const bin = ascending ? k : bins - 1 - k;
-      std::int64_t const here = histogram[bin];
-      bool const reaches = found < 0 && here >= left;
-      found = reaches ? bin : found;
-      left = found < 0 ? left - here : left;
-    }
-    for (int k = 0; k < bins; ++k) histogram[k] = 0;
-    if (r.state == Ranking<T>::searching) {
-      r.remaining = left;
-      r.prefix = static_cast<Key>(r.prefix << 8 | static_cast<Key>(found));
-    }
+    (void)take_digit(r, histogram, search == Search::tie);
     if (last) finish(r);
   }
 
@@ -130,7 +161,7 @@ struct NarrowRanking {
     if (r.state == Ranking<T>::none) {
       r.cut = Cut<T>::none();
     } else if (search == Search::largest) {
-      r.scale = scale_for(static_cast<Key>(((r.prefix + 1) << shift) - 1));
+      r.scale = scale_for<T>(static_cast<Key>(((r.prefix + 1) << shift) - 1), elements);
     } else if (search == Search::highest) {
       constexpr T most = std::numeric_limits<T>::max();  // what is infinite counts as this
       T const largest = max(-most, min(from_ordered_bits<T>(r.prefix), most));
@@ -142,22 +173,6 @@ struct NarrowRanking {
     } else if (r.state == Ranking<T>::searching) {
       r.cut.tighten({r.key, static_cast<Index>(r.prefix)});
     }
-  }
-
-  /// The power of two by which no sum of so many values up to the largest reaches 2⁶².
-  PLIANT_HOST_DEVICE double scale_for(Key largest) const {
-    constexpr int mantissa = std::numeric_limits<T>::digits - 1;
-    constexpr int most = std::numeric_limits<T>::max_exponent - 1;  // the bias of exponents
-    constexpr Key sign = Key{1} << (8 * sizeof(T) - 1);
-    if ((largest & sign) == 0) return 1;  // nothing is positive, and weighs
-    int const exponent = static_cast<int>((largest ^ sign) >> mantissa) - most + 1;
-    if (exponent > most + 1) return 0;
-    int bits = 62;
-    for (Index n = elements; n > 0; n /= 2) --bits;
-    // Of double, whatever T is: small values of float need a scale beyond its range.
-    constexpr int bias = std::numeric_limits<double>::max_exponent - 1;
-    int const power = min(bits - exponent, bias);
-    return std::bit_cast<double>(static_cast<std::uint64_t>(power + bias) << 52);
   }
 };
 

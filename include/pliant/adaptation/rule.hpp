@@ -66,7 +66,14 @@ concept SleepingRule = requires(R const& rule) {
   { rule.below } -> std::convertible_to<double>;
   { rule.for_steps } -> std::convertible_to<std::int64_t>;
 };
+/// Chooses a group for each element of several; `cheapest` and `within` make them.
 template <class R>
-concept Rule = SwitchingRule<R> || RefiningRule<R> || SleepingRule<R>;
+concept ChoosingRule = requires(R const& rule) {
+  typename R::groups;
+  typename R::element;
+  { rule.limits_sums() } -> std::same_as<bool>;
+};
+template <class R>
+concept Rule = SwitchingRule<R> || RefiningRule<R> || SleepingRule<R> || ChoosingRule<R>;
 
 }  // namespace pliant

@@ -33,6 +33,10 @@ struct RuleContext {
     return groups.template law<g>(own);
   }
   PLIANT_HOST_DEVICE auto young() const { return around.young[G]; }
+  template <class F>
+  PLIANT_HOST_DEVICE auto young_of() const {
+    return around.young[Slots::template group_of<F>];
+  }
   PLIANT_HOST_DEVICE auto const& origin() const { return around.origin; }
   template <class C, class S>
   PLIANT_HOST_DEVICE S found() const {

@@ -5,8 +5,13 @@
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/group_statistics.hpp>
 #include <pliant/body/point_visitors.hpp>
+#include <pliant/formulation/strong_ellipticity.hpp>
 
 namespace pliant::detail {
+
+/// A rule whose moves are made only where the new law is strongly elliptic.
+template <class R>
+concept GuardsEllipticity = SwitchingRule<R> && requires { requires R::guards_ellipticity; };
 
 /// What of a body changes where elements change groups, and what must be known of its motion.
 template <class T>
@@ -67,6 +72,14 @@ struct ActVisitor {
   template <int From, int To>
   static constexpr bool goes = From != To && (goes_by<From, To, Rules>() || ...);
 
+  template <int From, int To, class TheRule>
+  static constexpr bool guards_by() {
+    if constexpr (GuardsEllipticity<TheRule>)
+      return goes_by<From, To, TheRule>();
+    else
+      return false;
+  }
+
   /// Seldom called, so kept out of line; constexpr is what lets device code call it. What leapfrog keeps is
   /// W + v₋·M·v₊/2 with the velocities v∓ of the half steps around the present time. While a half-kick is
   /// pending, the next step finds v₊ = v₋ + Δt M⁻¹ F, so that a change ΔF of an element's forces adds
@@ -79,6 +92,8 @@ struct ActVisitor {
     auto const old_law = groups.template law<From>(own);
     auto const new_law = groups.template law<To>(own);
     auto const [rest, u, v] = again();
+    if constexpr ((guards_by<From, To, Rules>() || ...))
+      if (!is_strongly_elliptic<New>(new_law, rest, u)) return;
     T const before = energy<Old>(old_law, rest, u);
     bool const pending = target.pending_half_kick != T(0);
     auto change = decltype(force<Old>(old_law, rest, u))::zero();  // of the element's forces

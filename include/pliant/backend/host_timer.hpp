@@ -11,7 +11,7 @@ class HostTimer {
   void stop() { seconds_ += now() - started_; }
   double seconds() { return seconds_; }
 
- private:
+  /// s, since some moment.
   // Not <chrono>, which takes long to compile.
   static double now() {
     std::timespec time;
@@ -19,6 +19,7 @@ class HostTimer {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
+ private:
   double started_ = 0, seconds_ = 0;
 };
 

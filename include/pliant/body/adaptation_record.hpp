@@ -42,11 +42,17 @@ struct MeshLimits {
 struct LastLook {
   std::uint64_t adaptation;  // which: see Adaptation
   std::int64_t step;
+  /// Of a budget in milliseconds: what the force of one element in the costliest group takes with all that comes with
+  /// it, s (0: not known yet), and the step from which on that is measured next; −1: none.
+  double seconds_per_evaluation = 0;
+  std::int64_t timed = -1;
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
     visit("adaptation", r.adaptation...);
     visit("step", r.step...);
+    visit("seconds per evaluation", r.seconds_per_evaluation...);
+    visit("step of the last measurement", r.timed...);
   }
 };
 

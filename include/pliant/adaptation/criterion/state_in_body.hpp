@@ -51,6 +51,10 @@ struct ContextProbe {
     return *static_cast<LawInKernels<To, double> const*>(none);
   }
   PLIANT_HOST_DEVICE double young() const { return 1; }
+  template <class G>
+  PLIANT_HOST_DEVICE double young_of() const {
+    return 1;
+  }
   PLIANT_HOST_DEVICE Vector<double, F::dim> origin() const { return {}; }
   template <class C, class S>
   PLIANT_HOST_DEVICE S found() const {

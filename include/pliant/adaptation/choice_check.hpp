@@ -1,0 +1,240 @@
+#pragma once
+
+#include <pliant/adaptation/estimator/discrepancy.hpp>
+#include <pliant/adaptation/evaluate.hpp>
+#include <pliant/adaptation/force_costs.hpp>
+#include <pliant/adaptation/sleep_look.hpp>
+#include <pliant/adaptation/spending.hpp>
+#include <pliant/adaptation/switching.hpp>
+
+namespace pliant {
+
+namespace detail {
+
+/// Keeps all values of each element.
+template <class T, int Rows>
+struct StoreRows {
+  static constexpr int counters = 0;
+  template <int>
+  static constexpr bool bounded = false;
+  T* values;  // (rows, elements)
+  Index elements;
+  template <int G, class V, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
+    for (int k = 0; k < Rows; ++k)
+      values[static_cast<std::ptrdiff_t>(elements) * k + e] = rounded_up(own[k]);
+  }
+};
+
+/// What an element costs in its present group.
+template <class Choice>
+struct PresentCost {
+  Choice choice;
+  PLIANT_HOST_DEVICE double operator()(Index e) const {
+    int const place = choice.place_of(e);
+    return place < 0 || choice.sleeps(e) ? 0 : choice.table.cost[place];
+  }
+};
+
+/// A move that a choice makes.
+template <class From, class To>
+struct GuardedMove : SwitchRule<From, To, DiscrepancyOf<To, To>> {
+  static constexpr bool guards_ellipticity = true;
+};
+
+/// Looks that find, in every group of a list, the discrepancy of each but the last, and the moves between them.
+template <class All, class... Fs>
+struct ChoiceLooks;
+template <class... All, class... Fs>
+struct ChoiceLooks<TypeList<All...>, Fs...> {
+  using To = std::tuple_element_t<sizeof...(Fs) - 1, std::tuple<All...>>;
+  template <class From, class... Of>
+  static auto looks_of() {
+    return std::tuple_cat([]<class G>(Look<From, DiscrepancyOf<G, To>> look) {
+      if constexpr (std::same_as<G, To>)
+        return std::tuple<>{};
+      else
+        return std::tuple{look};
+    }(Look<From, DiscrepancyOf<Of, To>>{})...);
+  }
+  template <class From, class... Tos>
+  static auto moves_of() {
+    return std::tuple{GuardedMove<From, Tos>{}...};
+  }
+  using Looks = decltype(std::tuple_cat(looks_of<Fs, All...>()...));
+  using Moves = decltype(std::tuple_cat(moves_of<Fs, All...>()...));
+};
+
+/// What the kernels of a check are made of.
+template <class Table, int Dim, class List>
+struct RulesOfChoice;
+template <class Table, int Dim, class... Rules>
+struct RulesOfChoice<Table, Dim, std::tuple<Rules...>> {
+  using Evaluated = TableRules<Table, Rules...>;
+  using Act = ActVisitor<Table, Dim, Rules...>;
+};
+
+/// The costs of a choice's groups, in that of the last. Throws Error where they do not ascend.
+template <class Parts, class... Fs>
+std::array<double, sizeof...(Fs)> costs_of(Parts const& parts, ChoiceRule<Fs...> const& rule) {
+  if (rule.gives_costs()) return relative_to_last(rule.costs);
+  auto const costs = counted_costs(parts, typename ChoiceRule<Fs...>::groups{});
+  for (std::size_t k = 1; k < costs.size(); ++k)
+    if (!(costs[k] > costs[k - 1]))
+      throw Error("within: by counted operations group ", k, " of the list costs ", costs[k],
+                  " and the one before it ", costs[k - 1],
+                  ", in those of the last; list groups from cheap to costly, or give costs");
+  return costs;
+}
+
+/// What TableCheck is for rules that compare values with thresholds, for one that chooses.
+template <class Parts, class Table, class Elements, class TheRule>
+class ChoiceCheck;
+
+template <class Parts, class Table, class Elements, class... Fs>
+class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>> {
+  using B = typename Parts::backend_type;
+  using T = typename Parts::T;
+  static constexpr int count = sizeof...(Fs);
+  static_assert(((Table::template group_of<Fs> < Table::groups) && ...),
+                "a choice names a formulation of which the body has no Group");
+  using Of = ChoiceLooks<TypeList<Fs...>, Fs...>;
+  using Looks = typename RulesOfChoice<Table, Parts::dim, typename Of::Looks>::Evaluated;
+  using Moves = typename RulesOfChoice<Table, Parts::dim, typename Of::Moves>::Evaluated;
+  using Act = typename RulesOfChoice<Table, Parts::dim, typename Of::Moves>::Act;
+
+ public:
+  /// `evaluations`: the budget now; NaN: not known yet, nothing switches.
+  ChoiceCheck(Parts& parts, Table& table, Elements& elements, ChoiceRule<Fs...> const& rule,
+              double evaluations)
+      : parts_(parts), table_(table), elements_(elements), rule_(rule), evaluations_(evaluations) {}
+
+  void prepare() const {
+    (void)choice();  // throws where costs do not ascend
+    if (reserve()) ++parts_.revision;
+  }
+  void decide() const {
+    auto const c = choice();
+    evaluate_criteria(std::as_const(parts_), std::as_const(table_),
+                      active(std::as_const(table_).elements), Looks{}, workspace(),
+                      StoreRows<T, Looks::rows>{workspace().values.data(), table_.count()},
+                      parts_.no_counters);
+    auto* const ranking = workspace().rankings.data();
+    if (rule_.limits_sums())
+      find_spending(backend(), c, rule_.error, evaluations_, workspace().histogram.data(), ranking);
+    backend().add_sum(table_.count(),
+                      Choose<std::remove_const_t<decltype(c)>, T>{
+                          c, rule_.limits_sums() ? ranking : nullptr, workspace().next.data()},
+                      parts_.moves.data());
+  }
+  void act() const {
+    backend().template visit<Table::groups>(
+        parts_.awake_in(table_),
+        Act{table_.laws, Moves{},
+            surroundings<T, Moves>(std::as_const(parts_), std::as_const(table_), workspace()),
+            workspace().next.data(), workspace().values.data(), table_.count(), target()},
+        elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
+        std::as_const(parts_).v());
+  }
+  /// What its elements cost in their present groups, in evaluations of the last, those that sleep aside.
+  double evaluations_now() const {
+    auto const c = choice();
+    return backend().sum(table_.count(), PresentCost<std::remove_const_t<decltype(c)>>{c});
+  }
+
+ private:
+  B const& backend() const { return parts_.backend; }
+  CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
+  SwitchTarget<T> target() const {
+    auto& statistics = elements_.statistics;
+    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
+            parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
+  }
+  bool reserve() const {
+    auto& w = workspace();
+    auto const n = static_cast<std::size_t>(table_.count());
+    bool made = false;
+    auto const hold = [&](auto& array, std::size_t size) {
+      made = CriteriaWorkspace<B>::reserve(backend(), array, size) || made;
+    };
+    if (!elements_.statistics.open) {
+      elements_.statistics.start(backend(), table_.count(), parts_.state.record.born);
+      made = true;
+    }
+    if (w.number.size() < n) {
+      w.number = upload(backend(), table_.user_element);
+      made = true;
+    }
+    hold(w.next, n);
+    hold(w.values, static_cast<std::size_t>(Looks::rows) * n);
+    hold(w.rankings, 1);
+    hold(w.histogram, std::size_t{histogram_bins});
+    return made;
+  }
+  ChoiceTable<Table::groups, count> places() const {
+    ChoiceTable<Table::groups, count> made;
+    int const groups[] = {Table::template group_of<Fs>...};
+    std::array<double, sizeof...(Fs)> costs{};
+    if (rule_.limits_sums()) costs = costs_of(parts_, rule_);
+    for (int& place : made.place) place = -1;
+    for (int k = 0; k < count; ++k) {
+      made.place[groups[k]] = k;
+      made.group[k] = static_cast<Tag>(groups[k]);
+      made.cost[k] = costs[static_cast<std::size_t>(k)];
+      made.whole[k] = static_cast<std::int64_t>(made.cost[k] * made.units + 0.5);
+    }
+    return made;
+  }
+  ChoiceOfElement<T, Table::groups, count> choice() const {
+    auto const& w = workspace();
+    auto const own = target();
+    constexpr std::size_t type = Parts::layout_type::template type_of<typename Table::element>;
+    std::uint8_t const* const asleep =
+        parts_.awake ? parts_.awake->asleep.data() + parts_.patch_nodes->first_of_type[type]
+                     : nullptr;
+    return {places(),
+            w.values.data(),
+            table_.count(),
+            w.number.data(),
+            own.tags,
+            own.since,
+            own.step,
+            asleep,
+            table_.elements.patch_size(),
+            static_cast<T>(rule_.tolerance),
+            static_cast<T>(rule_.release),
+            rule_.stay,
+            !(evaluations_ == evaluations_)};
+  }
+
+  Parts& parts_;
+  Table& table_;
+  Elements& elements_;
+  ChoiceRule<Fs...> const& rule_;
+  double evaluations_;
+};
+
+}  // namespace detail
+
+/// What the elements of a choice cost in their present groups, in forces of one element in the last group per step:
+/// what WithinOptions::evaluations_per_step limits. Elements that sleep cost nothing.
+template <DeformableBody TheBody, class... Fs>
+double evaluations_per_step(TheBody const& body, ChoiceRule<Fs...> const& rule) {
+  using E = typename ChoiceRule<Fs...>::element;
+  auto const& parts = body.parts();
+  auto const& table = parts.layout.template table<E>();
+  using Table = std::remove_cvref_t<decltype(table)>;
+  auto const costs = detail::costs_of(parts, rule);
+  auto const groups = body.template groups_of<E>();
+  auto const asleep = asleep_elements<E>(body);
+  std::array const places{Table::template group_of<Fs>...};
+  double sum = 0;
+  for (std::size_t e = 0; e < groups.size(); ++e) {
+    auto const place = std::ranges::find(places, int{groups[e]}) - places.begin();
+    if (place < ChoiceRule<Fs...>::count && !asleep[e])
+      sum += costs[static_cast<std::size_t>(place)];
+  }
+  return sum;
+}
+
+}  // namespace pliant

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+
+#include <pliant/formulation/point_stress.hpp>
+#include <pliant/math/spectrum.hpp>
+
+// Whether a law lets waves travel: see Ogden, Non-Linear Elastic Deformations, 1984, section 6.2.7.
+namespace pliant {
+
+namespace detail {
+/// Directions that are looked at: in the plane every π/16, in space along edges, face and body diagonals of a cube.
+template <int Dim>
+constexpr auto wave_directions() {
+  if constexpr (Dim == 2) {
+    constexpr double c1 = 0.98078528040323045, s1 = 0.19509032201612825, c2 = 0.92387953251128676,
+                     s2 = 0.38268343236508977, c3 = 0.83146961230254524, s3 = 0.55557023301960218,
+                     c4 = 0.70710678118654752;
+    return std::array<std::array<double, 2>, 16>{{{1, 0},
+                                                  {c1, s1},
+                                                  {c2, s2},
+                                                  {c3, s3},
+                                                  {c4, c4},
+                                                  {s3, c3},
+                                                  {s2, c2},
+                                                  {s1, c1},
+                                                  {0, 1},
+                                                  {-s1, c1},
+                                                  {-s2, c2},
+                                                  {-s3, c3},
+                                                  {-c4, c4},
+                                                  {-c3, s3},
+                                                  {-c2, s2},
+                                                  {-c1, s1}}};
+  } else {
+    constexpr double d = 0.70710678118654752, b = 0.57735026918962576;
+    return std::array<std::array<double, 3>, 13>{{{1, 0, 0},
+                                                  {0, 1, 0},
+                                                  {0, 0, 1},
+                                                  {d, d, 0},
+                                                  {d, -d, 0},
+                                                  {d, 0, d},
+                                                  {d, 0, -d},
+                                                  {0, d, d},
+                                                  {0, d, -d},
+                                                  {b, b, b},
+                                                  {b, b, -b},
+                                                  {b, -b, b},
+                                                  {-b, b, b}}};
+  }
+}
+
+template <class S, int Dim>
+PLIANT_HOST_DEVICE S least_eigenvalue(Tensor<S, Dim> const& q) {
+  using T = builtin_scalar<S>;
+  if constexpr (Dim == 2) {
+    S const mean = T(0.5) * (q(0, 0) + q(1, 1)), gap = T(0.5) * (q(0, 0) - q(1, 1));
+    return mean - sqrt(square(gap) + square(T(0.5) * (q(0, 1) + q(1, 0))));
+  } else {
+    auto const values = Spectrum<S, Dim>::of(q).values;
+    return minimum(values[0], minimum(values[1], values[2]));
+  }
+}
+}  // namespace detail
+
+/// The least eigenvalue, Pa, of the acoustic tensor Q_ik(N) = ∂P_iJ/∂F_kL N_J N_L over directions N at rest; of those
+/// that are looked at (16 in the plane, 13 in space), so that a narrow cone may be missed. Where it is not positive the
+/// law has lost strong ellipticity: short waves grow instead of travelling. NaN where the law has no tangent.
+template <class L, class S, int Dim>
+PLIANT_HOST_DEVICE S least_acoustic_eigenvalue(L const& law, Tensor<S, Dim> const& h) {
+  using T = builtin_scalar<S>;
+  static constexpr auto directions = detail::wave_directions<Dim>();
+  S least(std::numeric_limits<T>::max());
+  for (auto const& n : directions) {
+    Tensor<S, Dim> q;
+    for (int k = 0; k < Dim; ++k) {
+      auto df = Tensor<S, Dim>::zero();
+      for (int j = 0; j < Dim; ++j) df(k, j) = S(static_cast<T>(n[static_cast<std::size_t>(j)]));
+      auto const dp = stress_tangent_product(law, h, df);
+      for (int i = 0; i < Dim; ++i) {
+        q(i, k) = S(0);
+        for (int j = 0; j < Dim; ++j)
+          q(i, k) = q(i, k) + dp(i, j) * static_cast<T>(n[static_cast<std::size_t>(j)]);
+      }
+    }
+    least = minimum(least, detail::least_eigenvalue(q));
+  }
+  return least;
+}
+
+/// Whether the law of a formulation is strongly elliptic at all points of an element, under their own deformations.
+template <class F, class L, class S>
+PLIANT_HOST_DEVICE bool is_strongly_elliptic(L const& law,
+                                             Nodal<typename F::element, S> const& rest,
+                                             Nodal<typename F::element, S> const& u) {
+  if constexpr (detail::OfSmallStrain<std::remove_cvref_t<decltype(point_law(law, 0))>>) {
+    return true;  // its tangent is that at rest
+  } else {
+    bool holds = true;
+    for_each_point_of<F>(rest, u, [&](int q, S const&, Tensor<S, F::dim> const& h) {
+      holds = holds && S(0) < least_acoustic_eigenvalue(point_law(law, q), h);
+    });
+    return holds;
+  }
+}
+
+}  // namespace pliant
