@@ -209,6 +209,17 @@ TEST_CASE("nearly incompressible bodies are factorised", "[solver]") {
   CHECK(report.energy == Approx(direct.energy).epsilon(1e-10));
 }
 
+TEST_CASE("the stiffness of a linear body is assembled once", "[solver]") {
+  using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
+  auto body = block_of<Linear>(12);
+  auto rubber = block_of<Plane>(12);
+  auto const report = solve_static(body, {.linear = LinearMethod::multilevel});
+  CHECK(report.iterations > 1);
+  CHECK(report.assemblies == 1);
+  CHECK(report.linear.hierarchies == 1);
+  CHECK(solve_static(rubber, {.linear = LinearMethod::multilevel}).assemblies > 2);
+}
+
 TEST_CASE("factors serve later matrices too", "[solver]") {
   auto body = block_of<Solid>(6);
   auto const report = solve_static(body, {.linear = LinearMethod::direct});

@@ -123,6 +123,7 @@ class StaticNewton {
     auto now = evaluate(u_);
     bool settled = false;
     double forcing = first_forcing;
+    bool linear_so_far = false;  // forces changed as the present stiffness says
     for (int iteration = 0;; ++iteration) {
       Vector const increment = target_ - u_;  // of driven nodes, with their slaves
       bool const driving = is_driven_by(increment);
@@ -140,8 +141,10 @@ class StaticNewton {
         throw Error("solve_static: no convergence in load step ", step_, " of ",
                     options_.load_steps, " after ", iteration, " iterations, residual ",
                     report_.residual, " N; use more load_steps, or a law that does not soften");
-      assemble_at(u_, Assemble::stiffness);
-      ++report_.assemblies;
+      if (!linear_so_far) {
+        assemble_at(u_, Assemble::stiffness);
+        ++report_.assemblies;
+      }
       Vector pull = residual, prescribed = Vector::Zero(problem_.size());
       if (driving) {
         problem_.copy_prescribed(increment, prescribed);
@@ -159,7 +162,9 @@ class StaticNewton {
       double const factor = search(now, residual, du, prescribed, driving);
       settled = factor == 1 && !driving && du.norm() <= 1e-14 * u_.norm();
       double const shrunk = out_of_balance(now).norm() / pull.norm();
-      forcing = std::clamp(std::abs(shrunk - linear_.reached()), 0.0, first_forcing);
+      double const surprise = std::abs(shrunk - linear_.reached());
+      forcing = std::clamp(surprise, 0.0, first_forcing);
+      linear_so_far = factor == 1 && surprise < 1e-9;
       ++report_.iterations;
     }
   }
