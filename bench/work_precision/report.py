@@ -173,7 +173,8 @@ def law_rows(problem):
                      f"{row['seconds'] / seconds[costly]:.2f}", percent(row["error"])]
             share = row.get("share")
             if problem.kind(contestant) == "switching":
-                cheap = seconds[contestant.split(",")[0]]
+                # The dearest of the cheap laws, where there are several.
+                cheap = max(seconds[law] for law in contestant.removeprefix("cheapest of ").split(", ") if law in seconds and law != costly)
                 expected = share * seconds[costly] + (1 - share) * cheap
                 cells += [percent(share), f"{row['seconds'] / expected:.2f}"]
                 within = row["error"] <= 0.001
