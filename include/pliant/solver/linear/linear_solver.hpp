@@ -73,7 +73,7 @@ class LinearSolver {
   }
 
  private:
-  /// Unknowns from where on hierarchies are faster than factors: measured by bench/solver/static.
+  /// Unknowns from where on hierarchies were faster than factors, on sheets and blocks under neo-Hooke's law.
   static constexpr Index many = Dim == 2 ? 4000 : 1000;
   /// Matrices for which the multilevel method did not work are factorised; others after them too.
   static constexpr int few_failures = 2;
