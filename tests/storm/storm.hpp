@@ -380,11 +380,10 @@ class Storm {
   test::Random random_;
   Report report_;
   std::optional<TheBody> one_, other_;
-  // While the ledger does not know the work of drives, pressures and damping, a release looks like a gain.
   CentralDifference step_{{.safety = 0.3,
                            .check_interval = 32,
                            .refresh_interval = 100,
-                           .energy_growth = options_.ledger ? 0.1 : 1e9}};
+                           .energy_growth = options_.ledger ? 0.1 : 0.9}};
   std::map<std::string, Motion<dim>> motions_;
   std::optional<std::string> kept_;
   bool rests_ = false, slept_ = false;  // in this epoch: whether patches may sleep, and did
