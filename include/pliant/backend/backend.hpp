@@ -28,6 +28,8 @@
 //                              nothing
 //   histogram(n, f, bins)      adds f(i).weight to bins[f(i).number], an array of at most 256 integers
 //                              in the backend's memory; a negative number: nowhere
+//   for_each_task(n, f) threads()   of backends that have threads on the host, not asked of others: f(k) there,
+//                              in no order, each call worth a thread (backend/host_tasks.hpp)
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
 //                              that return nothing, the same ones with the same arguments each time
 //                              (a GPU records them once as a graph).
