@@ -7,7 +7,8 @@
 
 namespace pliant::test::refinement_internal_variables_suite {
 
-TEST_CASE("children have their parent's values, and its points' memory", "[adaptation]") {
+TEST_CASE("children have their parent's values, and its points' memory, and give them back",
+          "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     auto const visit = [&]<class E>(E) {
       using Q = Gauss<2>;
@@ -25,7 +26,7 @@ TEST_CASE("children have their parent's values, and its points' memory", "[adapt
       body.template assign<Viscous>(every_other);
       body.clamp(boundary_nodes(mesh));
       // A linear field is exact on every mesh; it is kept for a while, so that branches relax in part.
-      auto h = Tensor<double, 2>::zero();
+      auto h = Tensor<double, E::dim>::zero();
       h(0, 0) = 0.1;
       h(0, 1) = 0.2;
       take_steps(body.parts(), 0.01, 1);
@@ -44,9 +45,22 @@ TEST_CASE("children have their parent's values, and its points' memory", "[adapt
       CHECK(difference(body.displacements(), finer) < 1e-14);
       CHECK(strain_energy(body) == Approx(energy).epsilon(1e-13));
       CHECK(inner(body.forces(), finer) == Approx(work).epsilon(1e-13));
+
+      for (std::size_t before = 0; before != body.mesh().nodes.size();) {
+        before = body.mesh().nodes.size();
+        std::vector<Index> all(body.mesh().template elements<E>().size());
+        for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+        coarsen(body, {all});
+      }
+
+      CHECK(body.mesh().nodes == mesh.nodes);
+      CHECK(strain_energy(body) == Approx(energy).epsilon(1e-13));
+      CHECK(inner(body.forces(), along) == Approx(work).epsilon(1e-13));
     };
     SECTION("Tri3") { visit(Tri3{}); }
     SECTION("Quad4") { visit(Quad4{}); }
+    SECTION("Tet4") { visit(Tet4{}); }
+    SECTION("Hex8") { visit(Hex8{}); }
   });
 }
 

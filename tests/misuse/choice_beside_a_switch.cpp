@@ -1,4 +1,4 @@
-// expect: rules that switch or refine go into another Adaptation
+// expect: rules that switch or change the mesh go into another Adaptation
 #include <pliant/pliant.hpp>
 
 using namespace pliant;

@@ -19,12 +19,14 @@
 namespace {
 
 using pliant::Error;
-using pliant::Hierarchy;
-using pliant::HierarchyCell;
 using pliant::Index;
-using pliant::Refinement;
+using pliant::Quad4;
 using pliant::Slave;
-using Point = Hierarchy::Point;
+using pliant::TreeCell;
+using pliant::Tri3;
+using Hierarchy = pliant::Hierarchy<2>;
+using Refinement = pliant::Refinement<2>;
+using Point = pliant::Point<2>;
 using Nodes2 = std::array<Index, 2>;
 using Nodes3 = std::array<Index, 3>;
 using Nodes4 = std::array<Index, 4>;
@@ -34,6 +36,16 @@ enum class Cells { triangles, quads, mixed };
 constexpr double width = 2.0, height = 1.0;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+Hierarchy hierarchy(std::vector<Point> points, std::vector<Nodes3> triangles,
+                    std::vector<Nodes4> quads) {
+  return Hierarchy(
+      pliant::Mesh<Tri3, Quad4>{std::move(points), {std::move(triangles), std::move(quads)}});
+}
+
+Nodes4 four_nodes(TreeCell const& cell) {
+  return {cell.nodes[0], cell.nodes[1], cell.nodes[2], cell.nodes[3]};
+}
 
 // A rectangle whose inner nodes are shifted at random, so that no two cells are alike.
 Hierarchy rectangle(Cells kind, Index nx, Index ny, unsigned seed = 1) {
@@ -58,7 +70,7 @@ Hierarchy rectangle(Cells kind, Index nx, Index ny, unsigned seed = 1) {
         triangles.push_back({c, d, a});
       }
     }
-  return Hierarchy(points, triangles, quads);
+  return hierarchy(points, triangles, quads);
 }
 
 Refinement refine(Hierarchy& mesh, std::vector<Index> const& cells,
@@ -66,19 +78,19 @@ Refinement refine(Hierarchy& mesh, std::vector<Index> const& cells,
   return mesh.refine(cells, limits);
 }
 
-double cross_at(Hierarchy const& mesh, HierarchyCell const& cell, std::size_t i) {
-  auto const k = at(cell.sides);
+double cross_at(Hierarchy const& mesh, TreeCell const& cell, std::size_t i) {
+  auto const k = cell.corners();
   auto const& p = mesh.points()[at(cell.nodes[i])];
   auto const& next = mesh.points()[at(cell.nodes[(i + 1) % k])];
   auto const& last = mesh.points()[at(cell.nodes[(i + k - 1) % k])];
   return (next[0] - p[0]) * (last[1] - p[1]) - (next[1] - p[1]) * (last[0] - p[0]);
 }
 
-double area(Hierarchy const& mesh, HierarchyCell const& cell) {
+double area(Hierarchy const& mesh, TreeCell const& cell) {
   double twice = 0;
-  for (std::size_t i = 0; i < at(cell.sides); ++i) {
+  for (std::size_t i = 0; i < cell.corners(); ++i) {
     auto const& p = mesh.points()[at(cell.nodes[i])];
-    auto const& q = mesh.points()[at(cell.nodes[(i + 1) % at(cell.sides)])];
+    auto const& q = mesh.points()[at(cell.nodes[(i + 1) % cell.corners()])];
     twice += p[0] * q[1] - p[1] * q[0];
   }
   return twice / 2;
@@ -89,7 +101,8 @@ std::vector<double> picture(Hierarchy const& mesh) {
   std::vector<double> seen{static_cast<double>(mesh.leaf_count())};
   for (auto const& p : mesh.points()) seen.insert(seen.end(), p.begin(), p.end());
   for (auto const& c : mesh.cells()) {
-    for (Index const n : {c.sides, c.parent, c.first_child, c.level}) seen.push_back(n);
+    for (Index const n : {static_cast<int>(c.corners()), c.parent, c.first_child, c.level})
+      seen.push_back(n);
     seen.insert(seen.end(), c.nodes.begin(), c.nodes.end());
   }
   for (auto const& s : mesh.slaves()) {
@@ -143,7 +156,7 @@ void check_leaves(Hierarchy const& mesh) {
   for (Index const c : leaves) {
     auto const& cell = mesh.cell(c);
     total += area(mesh, cell);
-    for (std::size_t i = 0; i < at(cell.sides); ++i) bad_corners += !(cross_at(mesh, cell, i) > 0);
+    for (std::size_t i = 0; i < cell.corners(); ++i) bad_corners += !(cross_at(mesh, cell, i) > 0);
     for (Index child = c, up = cell.parent; up >= 0; child = up, up = mesh.cell(up).parent) {
       auto const first = mesh.cell(up).first_child;
       astray += child < first || child >= first + 4;
@@ -200,8 +213,8 @@ std::size_t check_continuity(Hierarchy const& mesh, std::mt19937& random) {
   std::set<Index> hanging;
   for (Index const c : mesh.leaves()) {
     auto const& cell = mesh.cell(c);
-    for (std::size_t i = 0; i < at(cell.sides); ++i) {
-      Index const a = cell.nodes[i], b = cell.nodes[(i + 1) % at(cell.sides)];
+    for (std::size_t i = 0; i < cell.corners(); ++i) {
+      Index const a = cell.nodes[i], b = cell.nodes[(i + 1) % cell.corners()];
       Index const middle = places.between(a, b);
       if (middle < 0) continue;
       hanging.insert(middle);
@@ -225,10 +238,13 @@ void check_report(Refinement const& done, Hierarchy const& mesh, std::size_t cel
     bad_parents += i > 0 && mesh.cell(done.parents[i - 1]).level > parent.level;
   }
   for (std::size_t i = 0; i < done.new_nodes.size(); ++i) {
-    auto const& [node, parents, count] = done.new_nodes[i];
+    auto const& [node, parents] = done.new_nodes[i];
+    auto const count = parents.size();
     Point mean{};
-    for (std::size_t j = 0; j < at(count); ++j)
-      for (std::size_t d = 0; d < 2; ++d) mean[d] += mesh.points()[at(parents[j])][d] / count;
+    for (auto const& [parent, weight] : parents) {
+      bad_nodes += weight != 1.0 / static_cast<double>(count);
+      for (std::size_t d = 0; d < 2; ++d) mean[d] += weight * mesh.points()[at(parent)][d];
+    }
     bad_nodes += node != Index(nodes_before + i) || (count != 2 && count != 4);
     for (std::size_t d = 0; d < 2; ++d)
       bad_nodes += !(std::abs(mesh.points()[at(node)][d] - mean[d]) < 1e-15);
@@ -243,7 +259,7 @@ void check_report(Refinement const& done, Hierarchy const& mesh, std::size_t cel
 }  // namespace
 
 TEST_CASE("a triangle becomes three corners and a middle turned by half a turn", "[hierarchy]") {
-  Hierarchy mesh(std::vector<Point>{{0, 0}, {2, 0}, {0, 2}}, std::vector<Nodes3>{{0, 1, 2}}, {});
+  auto mesh = hierarchy({{0, 0}, {2, 0}, {0, 2}}, {{0, 1, 2}}, {});
 
   auto const done = refine(mesh, {0});
 
@@ -251,26 +267,25 @@ TEST_CASE("a triangle becomes three corners and a middle turned by half a turn",
   REQUIRE(mesh.points() == std::vector<Point>{{0, 0}, {2, 0}, {0, 2}, {1, 0}, {1, 1}, {0, 1}});
   REQUIRE(mesh.leaves() == std::vector<Index>{1, 2, 3, 4});
   CHECK(mesh.cell(0).first_child == 1);
-  CHECK(mesh.cell(1).nodes == Nodes4{0, 3, 5, -1});
-  CHECK(mesh.cell(2).nodes == Nodes4{3, 1, 4, -1});
-  CHECK(mesh.cell(3).nodes == Nodes4{5, 4, 2, -1});
-  CHECK(mesh.cell(4).nodes == Nodes4{4, 5, 3, -1});
+  CHECK(four_nodes(mesh.cell(1)) == Nodes4{0, 3, 5, -1});
+  CHECK(four_nodes(mesh.cell(2)) == Nodes4{3, 1, 4, -1});
+  CHECK(four_nodes(mesh.cell(3)) == Nodes4{5, 4, 2, -1});
+  CHECK(four_nodes(mesh.cell(4)) == Nodes4{4, 5, 3, -1});
 }
 
 TEST_CASE("a quadrilateral becomes four corners numbered like itself", "[hierarchy]") {
-  Hierarchy mesh(std::vector<Point>{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {},
-                 std::vector<Nodes4>{{0, 1, 2, 3}});
+  auto mesh = hierarchy({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {}, {{0, 1, 2, 3}});
 
   auto const done = refine(mesh, {0});
 
   REQUIRE(mesh.points().size() == 9);
   CHECK(mesh.points()[8] == Point{1, 1});
-  CHECK(done.new_nodes.back().parents == Nodes4{0, 1, 2, 3});
-  CHECK(done.new_nodes.back().count == 4);
-  CHECK(mesh.cell(1).nodes == Nodes4{0, 4, 8, 7});
-  CHECK(mesh.cell(2).nodes == Nodes4{4, 1, 5, 8});
-  CHECK(mesh.cell(3).nodes == Nodes4{8, 5, 2, 6});
-  CHECK(mesh.cell(4).nodes == Nodes4{7, 8, 6, 3});
+  CHECK(done.new_nodes.back().parents ==
+        std::vector<std::pair<Index, double>>{{0, 0.25}, {1, 0.25}, {2, 0.25}, {3, 0.25}});
+  CHECK(four_nodes(mesh.cell(1)) == Nodes4{0, 4, 8, 7});
+  CHECK(four_nodes(mesh.cell(2)) == Nodes4{4, 1, 5, 8});
+  CHECK(four_nodes(mesh.cell(3)) == Nodes4{8, 5, 2, 6});
+  CHECK(four_nodes(mesh.cell(4)) == Nodes4{7, 8, 6, 3});
   CHECK(mesh.slaves().empty());
 }
 
@@ -310,8 +325,8 @@ TEST_CASE("closure runs on through ever coarser neighbours", "[hierarchy]") {
 TEST_CASE("slaves of slaves are composed down to free nodes", "[hierarchy]") {
   // A triangle with a neighbour at each side; its middle is refined again and again, which leaves
   // the neighbours alone: every new node hangs between hanging nodes.
-  Hierarchy mesh(std::vector<Point>{{0, 0}, {4, 0}, {0, 4}, {4, 4}, {-4, 2}, {2, -4}},
-                 std::vector<Nodes3>{{0, 1, 2}, {1, 3, 2}, {0, 2, 4}, {0, 5, 1}}, {});
+  auto mesh = hierarchy({{0, 0}, {4, 0}, {0, 4}, {4, 4}, {-4, 2}, {2, -4}},
+                        {{0, 1, 2}, {1, 3, 2}, {0, 2, 4}, {0, 5, 1}}, {});
   Index middle = 0;
   auto const refine_middle = [&] {
     auto const done = refine(mesh, {middle});
@@ -454,10 +469,10 @@ TEST_CASE("a mesh that cannot be refined soundly is refused, and the message say
   std::vector<Point> const points{{0, 0}, {1, 0}, {1, 1},   {0, 1},   {0.3, 0.3}, {2, 0},
                                   {2, 2}, {4, 4}, {nan, 1}, {inf, 1}, {-1, 3}};
   auto const triangle = [&](Nodes3 const& bad) {
-    return message_of([&] { Hierarchy(points, std::vector<Nodes3>{{0, 1, 2}, bad}, {}); });
+    return message_of([&] { hierarchy(points, {{0, 1, 2}, bad}, {}); });
   };
   auto const quad = [&](Nodes4 const& bad) {
-    return message_of([&] { Hierarchy(points, {}, std::vector<Nodes4>{bad}); });
+    return message_of([&] { hierarchy(points, {}, {bad}); });
   };
   CHECK(triangle({0, 2, 3}) == "(no error)");
   CHECK(mentions(triangle({0, 3, 2}), {"cell 1", "inverted", "counter-clockwise"}));
@@ -475,7 +490,7 @@ TEST_CASE("a mesh that cannot be refined soundly is refused, and the message say
   CHECK(mentions(quad({0, 1, 5, 3}), {"cell 0", "degenerate"}));
   // Three cells at an edge: the third lies on the side of one of the others.
   CHECK(mentions(message_of([&] {
-                   Hierarchy(points, std::vector<Nodes3>{{0, 1, 2}, {0, 2, 3}, {0, 2, 10}}, {});
+                   hierarchy(points, {{0, 1, 2}, {0, 2, 3}, {0, 2, 10}}, {});
                  }),
                  {"cell 2", "overlaps"}));
 }

@@ -7,10 +7,15 @@ namespace pliant::test::transfer_test {
 
 /// Two elements of 6 nodes, of which the second is split in four; two of another type, which stay.
 inline Transfer<2> transfer() {
-  return {6,
-          {{6, {{1, 0.5}, {2, 0.5}}}, {7, {{2, 0.5}, {5, 0.5}}}, {8, {{1, 0.5}, {6, 0.5}}}},
-          {2, 2},
-          {{{0, -1}, {1, 0}, {1, 1}, {1, 2}, {1, 3}}, {{1, -1}, {0, -1}}}};
+  return Transfer<2>(
+      {.old_nodes = 6,
+       .new_nodes = {{6, {{1, 0.5}, {2, 0.5}}},
+                     {7, {{2, 0.5}, {5, 0.5}}},
+                     {8, {{1, 0.5}, {6, 0.5}}}},
+       .old_elements = {2, 2},
+       .origins = {{{0, -1}, {1, 0}, {1, 1}, {1, 2}, {1, 3}}, {{1, -1}, {0, -1}}},
+       .divided = {
+           {{1, 2}, {{1, 6}, {6, 2}}}, {{5, 2}, {{5, 7}, {7, 2}}}, {{1, 6}, {{1, 8}, {8, 6}}}}});
 }
 
 TEST_CASE("values per node go over as weighted sums", "[topology]") {
@@ -48,8 +53,68 @@ TEST_CASE("facets give way to their parts, in order along them", "[topology]") {
         Facets{{0, 1}, {1, 8}, {8, 6}, {6, 2}, {5, 7}, {7, 2}});
   CHECK(t.carry_facets({{2, 1}}) == Facets{{2, 6}, {6, 8}, {8, 1}});
   CHECK(t.carry_facets({}) == Facets{});
-  Transfer<3> const solid(3, {{3, {{0, 0.5}, {1, 0.5}}}}, {1}, {{{0, -1}}});
-  CHECK(solid.carry_facets({{0, 1, 2}}) == std::vector<Facet<3>>{{0, 1, 2}});
+}
+
+TEST_CASE("facets of solids give way to four parts that run round as they do", "[topology]") {
+  using Facets = std::vector<Facet<3>>;
+  Transfer<3> const solid(
+      {.old_nodes = 7,
+       .new_nodes = {{7, {{0, 0.5}, {1, 0.5}}},
+                     {8, {{1, 0.5}, {2, 0.5}}},
+                     {9, {{2, 0.5}, {0, 0.5}}}},
+       .old_elements = {1},
+       .origins = {{{0, -1}}},
+       .divided = {{{0, 1, 2}, {{0, 7, 9}, {1, 8, 7}, {2, 9, 8}, {8, 9, 7}}},
+                   {{3, 4, 5, 6}, {{3, 0, 1, 2}, {4, 7, 1, 0}, {5, 8, 1, 7}, {6, 2, 1, 8}}}}});
+  CHECK(solid.carry_facets({{0, 1, 3}}) == Facets{{0, 1, 3}});
+  CHECK(solid.carry_facets({{1, 2, 0}}) == Facets{{1, 8, 7}, {2, 9, 8}, {0, 7, 9}, {8, 9, 7}});
+  CHECK(solid.carry_facets({{1, 0, 2}}) == Facets{{1, 7, 8}, {0, 9, 7}, {2, 8, 9}, {8, 7, 9}});
+  CHECK(solid.carry_facets({{4, 3, 6, 5}}) ==
+        Facets{{4, 0, 1, 7}, {3, 2, 1, 0}, {6, 8, 1, 2}, {5, 7, 1, 8}});
+}
+
+/// Nodes 2 and 4 go; elements 0 to 3 of six become one.
+inline Transfer<2> merging() {
+  return Transfer<2>({.old_nodes = 6,
+                      .renumbered = {0, 1, -1, 2, -1, 3},
+                      .gone = {{2, {{0, 0.25}, {5, 0.75}}}, {4, {{1, 0.5}, {3, 0.5}}}},
+                      .old_elements = {6},
+                      .origins = {{{4, -1}, {0, Transfer<2>::Origin::merged, 0}, {5, -1}}},
+                      .families = {{0, {0, 1, 2, 3}, {1}, {0.125, 0.125, 0.25, 0.5}}},
+                      .merged = {{{0, 5}, {{0, 2}, {2, 5}}}}});
+}
+
+TEST_CASE("values at nodes that go are left behind, and sums handed on", "[topology]") {
+  auto const t = merging();
+  CHECK(t.nodes() == 4);
+  CHECK(t.carry_nodes(std::vector<double>{10, 11, 12, 13, 14, 15}) ==
+        std::vector<double>{10, 11, 13, 15});
+  CHECK(t.carry_sums(std::vector<double>{1, 2, 4, 8, 16, 32}) ==
+        std::vector<double>{2, 10, 16, 35});
+  CHECK(transfer().carry_sums(std::vector<double>{1, 2, 3, 4, 5, 6}) ==
+        std::vector<double>{1, 2, 3, 4, 5, 6, 0, 0, 0});
+  CHECK_THROWS_AS(t.carry_sums(std::vector<double>(4)), Error);
+}
+
+TEST_CASE("merged elements have their children's mean by volume, or their most frequent value",
+          "[topology]") {
+  auto const t = merging();
+  CHECK(t.carry_elements(std::vector<double>{1, 2, 3, 4, 5, 6}) ==
+        std::vector<double>{5, 3.125, 6});
+  CHECK(t.carry_elements(std::vector<double>{0.1, 0.1, 0.1, 0.1, 5, 6}) ==
+        std::vector<double>{5, 0.1, 6});
+  CHECK(t.carry_elements(std::vector<int>{7, 8, 9, 8, 1, 2}) == std::vector<int>{1, 8, 2});
+  CHECK(t.carry_elements(std::vector<int>{7, 8, 8, 7, 1, 2}) == std::vector<int>{1, 7, 2});
+}
+
+TEST_CASE("parts of a facet are made whole where all of them are listed", "[topology]") {
+  auto const t = merging();
+  using Facets = std::vector<Facet<2>>;
+  CHECK(t.carry_facets({{3, 1}, {0, 2}, {2, 5}, {5, 1}}) == Facets{{2, 1}, {0, 3}, {3, 1}});
+  CHECK(t.carry_facets({{5, 2}, {2, 0}}) == Facets{{3, 0}});
+  CHECK(t.cut_facets({{0, 2}, {2, 5}, {5, 1}}).empty());
+  CHECK(t.cut_facets({{3, 1}, {2, 5}}) == Facets{{0, 2}, {2, 5}});
+  CHECK_THROWS_WITH(t.carry_facets({{2, 5}}), says("nodes 0 and 2") && says("not all are listed"));
 }
 
 TEST_CASE("arrays of another size are refused", "[topology][errors]") {

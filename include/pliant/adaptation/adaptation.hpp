@@ -35,7 +35,7 @@ struct BeginLook {
 /// Algorithm 1 of Caillaud et al. 2013, in parallel: at intervals, every rule's criterion is evaluated
 /// for the elements of its formulation, and the elements that it marks act. Where several rules that
 /// switch look at one formulation, the first that holds acts. Rules that switch go before rules that
-/// refine, which look at the groups after it, and these before one that puts patches to sleep. In sleeping patches
+/// refine or coarsen, which look at the groups after it, and these before one that puts patches to sleep. In sleeping patches
 /// nothing switches. An element where a criterion is NaN does not act by that rule.
 template <Rule... Rules>
 class Adaptation {
@@ -59,11 +59,11 @@ class Adaptation {
   void operator()(TheBody& body) {
     if (steps_to_look(body, body.steps() - 1) > 1) return;
     now(body);
-    // A refinement puts another state in place of the one that was looked at.
+    // Another mesh puts another state in place of the one that was looked at.
     last_look(body.parts(), body.steps()).step = body.steps();
   }
 
-  /// Looks and acts at once, whatever the interval. When it throws (refinement would exceed the mesh's
+  /// Looks and acts at once, whatever the interval. When it throws (the mesh would exceed the mesh's
   /// limits, a force term cannot be made anew, or a criterion throws on a backend that lets it), the body is
   /// as it was; but for what listeners throw, who are told when all is done.
   template <DeformableBody TheBody>
@@ -75,7 +75,7 @@ class Adaptation {
     if constexpr (chooses) take_time(parts);
     begin_look(parts, 0);
     decide(parts);
-    if constexpr (switches && refines) {
+    if constexpr (switches && changes_mesh) {
       bool moved = false;
       auto const plan = [&] {
         try {
@@ -84,7 +84,7 @@ class Adaptation {
             moved = true;
             move_elements(parts);
           }
-          return refine_marked(parts);
+          return change_mesh(parts);
         } catch (...) {  // the mesh is the one of before
           if (moved) {
             for_each_check(parts, [](auto const& check) { check.put_back(); });
@@ -96,8 +96,8 @@ class Adaptation {
       if (plan) tell_listeners(parts, *plan);
     } else if constexpr (switches) {
       switch_groups(parts);
-    } else if constexpr (refines) {
-      if (auto const plan = refine_marked(parts)) tell_listeners(parts, *plan);
+    } else if constexpr (changes_mesh) {
+      if (auto const plan = change_mesh(parts)) tell_listeners(parts, *plan);
     }
     if constexpr (sleeps) {
       static_assert(!TheBody::has_internal_variables,
@@ -126,16 +126,16 @@ class Adaptation {
  private:
   static constexpr bool chooses = (ChoosingRule<Rules> || ...);
   static constexpr bool switches = chooses || (SwitchingRule<Rules> || ...);
-  static constexpr bool refines = (RefiningRule<Rules> || ...);
+  static constexpr bool changes_mesh = (MeshRule<Rules> || ...);
   static constexpr bool sleeps = (SleepingRule<Rules> || ...);
   static_assert((0 + ... + int{SleepingRule<Rules>}) <= 1,
                 "an Adaptation has at most one rule that puts patches to sleep");
   static_assert((0 + ... + int{ChoosingRule<Rules>}) <= 1,
                 "an Adaptation has at most one rule that chooses: one of cheapest and within");
-  static_assert(
-      !chooses || ((ChoosingRule<Rules> || SleepingRule<Rules>)&&...),
-      "cheapest and within choose for all elements of their groups: rules that switch or refine "
-      "go into another Adaptation");
+  static_assert(!chooses || ((ChoosingRule<Rules> || SleepingRule<Rules>)&&...),
+                "cheapest and within choose for all elements of their groups: rules that switch or "
+                "change the "
+                "mesh go into another Adaptation");
   template <class R>
   static constexpr bool takes_means_by() {
     if constexpr (SleepingRule<R> || ChoosingRule<R>)
@@ -163,11 +163,11 @@ class Adaptation {
 
     int interval() const { return adapt_.interval_; }
     std::shared_ptr<void const> const& identity() const { return adapt_.identity_; }
-    /// Refining, sleep and budgets in milliseconds pass through the host, means at nodes allocate, timers do not run in
+    /// Changes of the mesh, sleep and budgets in milliseconds pass through the host, means at nodes allocate, timers do not run in
     /// recordings; on the host nothing would be gained.
     template <class Parts>
     bool can_record(Parts const& parts) const {
-      return !refines && !takes_means && !sleeps &&
+      return !changes_mesh && !takes_means && !sleeps &&
              !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
              !parts.timers.criteria.timer && !parts.timers.migration.timer &&
              !adapt_.limits_milliseconds();
@@ -282,16 +282,16 @@ class Adaptation {
   }
   /// What it has done; listeners are still to be told.
   template <class Parts>
-  auto refine_marked(Parts& parts) const {
+  auto change_mesh(Parts& parts) const {
     int max_level = 0;
-    std::vector<std::vector<Index>> marked;
+    MarkedElements marked;
     {
       auto const measured = parts.timers.criteria.measure();
-      for_each_check(parts, [&](auto const& check) { marked.push_back(check.marked(max_level)); });
+      for_each_check(parts, [&](auto const& check) { check.mark(marked, max_level); });
     }
     auto const measured = parts.timers.migration.measure();
-    auto plan = plan_refinement(parts, marked, max_level);
-    if (plan) (void)commit(parts, *plan);
+    auto plan = plan_change(parts, marked, max_level);
+    if (plan) commit(parts, *plan);
     return plan;
   }
 

@@ -17,7 +17,7 @@ struct Decision {
   T sign[count];    // −1: the rule looks for small values
   T beyond[count];  // what sign · value exceeds; of rules that rank: see `rankings`
   std::int64_t stay[count];
-  int max_level[count];
+  int level[count];            // the largest of rules that refine; the least of those that coarsen
   bool ranks, stores;          // whether some rule ranks; whether values are kept
   Ranking<T> const* rankings;  // (rules)
   T* values;                   // (rows, elements)
@@ -25,10 +25,10 @@ struct Decision {
   Index const* number;  // (elements)
   Tag const* tags;
   std::int64_t const* since;
-  std::int64_t const* step;  // (1): of this look
-  int const* levels;         // (elements): how often each was refined
-  Tag* next;                 // (elements)
-  std::uint32_t* refining;   // (elements): bit R: rule R refines it
+  std::int64_t const* step;   // (1): of this look
+  int const* levels;          // (elements): how often each was refined
+  Tag* next;                  // (elements)
+  std::uint32_t* mesh_marks;  // (elements): bit R: rule R refines it, or would merge it
 
   T quiet[Table::groups];  // H:H up to which no element of a group acts; negative: not known
 
@@ -64,10 +64,10 @@ struct Decision {
     if (tags[e] != static_cast<Tag>(All::template group<R>)) return Candidate::none;
     return may_act<R>(e) && !is_taken<R, 0>(e) ? Candidate::may_act : Candidate::looked_at;
   }
-  PLIANT_HOST_DEVICE void mark_refining(Index e) const {
+  PLIANT_HOST_DEVICE void mark_for_mesh(Index e) const {
     std::uint32_t mask = 0;
-    dispatch<Table::groups>(tags[e], [&]<int G>(GroupNumber<G>) { add_refining<G, 0>(e, mask); });
-    refining[e] = mask;
+    dispatch<Table::groups>(tags[e], [&]<int G>(GroupNumber<G>) { add_marks<G, 0>(e, mask); });
+    mesh_marks[e] = mask;
   }
   PLIANT_HOST_DEVICE T& value(Index e, int row) const {
     return values[static_cast<std::ptrdiff_t>(elements) * row + e];
@@ -90,7 +90,9 @@ struct Decision {
     if constexpr (switches<R>)
       return *step - since[e] >= stay[R];
     else if constexpr (RefiningRule<typename All::template rule<R>>)
-      return levels[e] < max_level[R];
+      return levels[e] < level[R];
+    else if constexpr (CoarseningRule<typename All::template rule<R>>)
+      return levels[e] > level[R];
     else
       return true;
   }
@@ -127,11 +129,11 @@ struct Decision {
     }
   }
   template <int G, int R>
-  PLIANT_HOST_DEVICE void add_refining(Index e, std::uint32_t& mask) const {
+  PLIANT_HOST_DEVICE void add_marks(Index e, std::uint32_t& mask) const {
     if constexpr (R < count) {
-      if constexpr (All::template group<R> == G && RefiningRule<typename All::template rule<R>>)
+      if constexpr (All::template group<R> == G && MeshRule<typename All::template rule<R>>)
         if (acts<R>(value(e, All::template row<R>), e)) mask |= std::uint32_t{1} << R;
-      add_refining<G, R + 1>(e, mask);
+      add_marks<G, R + 1>(e, mask);
     }
   }
 };
@@ -147,9 +149,9 @@ struct FindCandidates {
 };
 
 template <class D>
-struct MarkRefining {
+struct MarkForMesh {
   D decision;
-  PLIANT_HOST_DEVICE void operator()(Index e) const { decision.mark_refining(e); }
+  PLIANT_HOST_DEVICE void operator()(Index e) const { decision.mark_for_mesh(e); }
 };
 
 }  // namespace pliant::detail

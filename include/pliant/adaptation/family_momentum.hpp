@@ -1,83 +1,128 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include <pliant/constraint/condition.hpp>
-#include <pliant/element/linear.hpp>
 #include <pliant/formulation/mass.hpp>
-#include <pliant/topology/topology.hpp>
+#include <pliant/topology/plan.hpp>
 
 namespace pliant::detail {
 
-/// The area that each node of a cell carries.
-inline std::array<double, 4> nodal_areas(Hierarchy const& tree, HierarchyCell const& cell) {
-  std::array<double, 4> areas{};
-  auto const fill = [&]<Element E>(E) {
-    Nodal<E, double> rest;
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      for (std::size_t k = 0; k < 2; ++k)
-        rest(static_cast<int>(a), static_cast<int>(k)) =
-            tree.points()[static_cast<std::size_t>(cell.nodes[a])][k];
-    auto const share = nodal_volumes<E>(rest);
-    for (std::size_t a = 0; a < E::nodes; ++a) areas[a] = share[static_cast<int>(a)];
-  };
-  if (cell.sides == 3)
-    fill(Tri3{});
-  else
-    fill(Quad4{});
-  return areas;
-}
-
-/// The momentum that a cell carries, kg m/s, from velocities at nodes, less that of its mass moving
+/// The momentum that an element carries, kg m/s, from velocities at nodes, less that of its mass moving
 /// as one at the velocity `base`: where all do, what rounding left is no momentum.
-inline Point<2> momentum(Hierarchy const& tree, HierarchyCell const& cell, double density,
-                         std::vector<Point<2>> const& v, Point<2> const& base) {
-  auto const areas = nodal_areas(tree, cell);
-  Point<2> p{};
-  for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
-    for (std::size_t k = 0; k < 2; ++k)
-      p[k] += density * areas[a] * (v[static_cast<std::size_t>(cell.nodes[a])][k] - base[k]);
+template <Element E>
+Point<E::dim> momentum(Connectivity<E> const& nodes, Vector<double, E::nodes> const& volumes,
+                       double density, std::vector<Point<E::dim>> const& v,
+                       Point<E::dim> const& base) {
+  Point<E::dim> p{};
+  for (std::size_t a = 0; a < E::nodes; ++a)
+    for (std::size_t k = 0; k < E::dim; ++k)
+      p[k] += density * volumes[static_cast<int>(a)] *
+              (v[static_cast<std::size_t>(nodes[a])][k] - base[k]);
   return p;
 }
 
-/// What each node must be given so that the family of a refined cell keeps its momentum: the
-/// difference that lumping made, shared in proportion to the family's nodal masses.
-inline void add_family_impulse(Hierarchy const& tree, Index parent, double density,
-                               std::vector<Point<2>> const& v, std::vector<Point<2>>& impulse) {
-  HierarchyCell const& cell = tree.cell(parent);
-  Point<2> const base = v[static_cast<std::size_t>(cell.nodes[0])];
-  Point<2> lost = momentum(tree, cell, density, v, base);
-  double area = 0;
-  for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
-    Point<2> const p = momentum(tree, tree.cell(c), density, v, base);
-    for (std::size_t k = 0; k < 2; ++k) lost[k] -= p[k];
-    for (double a : nodal_areas(tree, tree.cell(c))) area += a;
+/// What each node must be given so that a family keeps its momentum: the difference that lumping made,
+/// shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of
+/// the mesh before and after.
+template <Element E, class M>
+void add_family_impulse(TopologyPlan<M> const& plan,
+                        typename Transfer<M::dim>::Family const& family, double density,
+                        std::vector<Point<M::dim>> const& v_before,
+                        std::vector<Point<M::dim>> const& v, std::vector<Point<M::dim>>& impulse) {
+  constexpr std::size_t dim = M::dim;
+  auto const& old = plan.before->mesh;
+  auto const& now = plan.after->mesh;
+  auto const& first = old.template elements<E>()[static_cast<std::size_t>(family.before[0])];
+  Point<dim> const base = v_before[static_cast<std::size_t>(first[0])];
+  Point<dim> lost{};
+  for (Index e : family.before) {
+    auto const& nodes = old.template elements<E>()[static_cast<std::size_t>(e)];
+    auto const p = momentum<E>(nodes, nodal_volumes<E>(nodal(old, nodes)), density, v_before, base);
+    for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
   }
-  for (Index c = cell.first_child; c < cell.first_child + 4; ++c) {
-    auto const areas = nodal_areas(tree, tree.cell(c));
-    for (std::size_t a = 0; a < static_cast<std::size_t>(cell.sides); ++a)
-      for (std::size_t k = 0; k < 2; ++k)
-        impulse[static_cast<std::size_t>(tree.cell(c).nodes[a])][k] += lost[k] * areas[a] / area;
+  double volume = 0;
+  std::vector<Vector<double, E::nodes>> shares;
+  for (Index e : family.after) {
+    auto const& nodes = now.template elements<E>()[static_cast<std::size_t>(e)];
+    shares.push_back(nodal_volumes<E>(nodal(now, nodes)));
+    auto const p = momentum<E>(nodes, shares.back(), density, v, base);
+    for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
+    for (int a = 0; a < E::nodes; ++a) volume += shares.back()[a];
+  }
+  for (std::size_t i = 0; i < family.after.size(); ++i) {
+    auto const& nodes = now.template elements<E>()[static_cast<std::size_t>(family.after[i])];
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      for (std::size_t k = 0; k < dim; ++k)
+        impulse[static_cast<std::size_t>(nodes[a])][k] +=
+            lost[k] * shares[i][static_cast<int>(a)] / volume;
   }
 }
 
-/// Gives each family of a refinement its momentum back by changing velocities; returns what held
-/// nodes took of it, N s. Slaves hand their impulse to their masters. `held`: directions, by node.
+/// What each node must be given where an element stays, but one of its nodes begins or ceases to hang: the difference in the
+/// velocity at which its mass moves.
+template <Element E, class M>
+void add_impulse_of_slaves(TopologyPlan<M> const& plan, std::size_t type, double density,
+                           std::vector<Point<M::dim>> const& v_before,
+                           std::vector<Point<M::dim>> const& v,
+                           std::vector<Point<M::dim>>& impulse) {
+  auto const& old = plan.before->mesh;
+  auto const& now = plan.after->mesh;
+  std::vector<bool> hangs(now.nodes.size(), false), hung(old.nodes.size(), false);
+  for (Slave const& slave : plan.after->interpolation.slaves())
+    hangs[static_cast<std::size_t>(slave.node)] = true;
+  for (Slave const& slave : plan.before->interpolation.slaves())
+    hung[static_cast<std::size_t>(slave.node)] = true;
+  auto const& origins = plan.transfer.origins(type);
+  for (std::size_t e = 0; e < origins.size(); ++e) {
+    if (origins[e].child != Transfer<M::dim>::Origin::same) continue;
+    auto const& from = old.template elements<E>()[static_cast<std::size_t>(origins[e].element)];
+    auto const& to = now.template elements<E>()[e];
+    auto const changes = [&](std::size_t a) {
+      return hung[static_cast<std::size_t>(from[a])] || hangs[static_cast<std::size_t>(to[a])];
+    };
+    bool any = false;
+    for (std::size_t a = 0; a < E::nodes; ++a) any = any || changes(a);
+    if (!any) continue;
+    auto const volumes = nodal_volumes<E>(nodal(now, to));
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      if (changes(a))
+        for (std::size_t k = 0; k < M::dim; ++k)
+          impulse[static_cast<std::size_t>(to[a])][k] +=
+              density * volumes[static_cast<int>(a)] *
+              (v_before[static_cast<std::size_t>(from[a])][k] -
+               v[static_cast<std::size_t>(to[a])][k]);
+  }
+}
+
+/// Gives each family of a change its momentum back by changing velocities; returns what held
+/// nodes took of it, N s. Slaves move with their masters, and hand their impulse to them as their mass. `held`:
+/// directions, by node.
 template <class Layout, class M>
-Point<2> give_momentum_back(Hierarchy const& tree, std::vector<Index> const& parents,
-                            double density, Layout const& layout, Topology<M> const& topology,
-                            std::vector<DirectionMask> const& held, std::vector<Point<2>>& v) {
-  std::vector<Point<2>> impulse(v.size(), Point<2>{});
-  for (Index parent : parents) add_family_impulse(tree, parent, density, v, impulse);
-  topology.interpolation.apply_transpose(
-      [&](Index i, int k) -> double& {
-        return impulse[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
-      },
-      2);
-  Point<2> taken{};
+Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, double density, Layout const& layout,
+                                 std::vector<DirectionMask> const& held,
+                                 std::vector<Point<M::dim>> v_before,
+                                 std::vector<Point<M::dim>>& v) {
+  constexpr std::size_t dim = M::dim;
+  auto const components = [](std::vector<Point<dim>>& field) {
+    return [&field](Index i, int k) -> double& {
+      return field[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+    };
+  };
+  std::vector<Point<dim>> moving = v;  // with slaves at the velocity of their mass
+  plan.before->interpolation.apply_masses(components(v_before), M::dim);
+  plan.after->interpolation.apply_masses(components(moving), M::dim);
+  std::vector<Point<dim>> impulse(v.size(), Point<dim>{});
+  for_each_type_of(plan.after->mesh, [&]<Element E>(E, std::size_t type) {
+    for (auto const& family : plan.transfer.families())
+      if (family.type == type)
+        add_family_impulse<E>(plan, family, density, v_before, moving, impulse);
+    add_impulse_of_slaves<E>(plan, type, density, v_before, moving, impulse);
+  });
+  plan.after->interpolation.hand_masses(components(impulse), M::dim);
+  Point<dim> taken{};
   for (std::size_t i = 0; i < v.size(); ++i)
-    for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t k = 0; k < dim; ++k)
       if (held[i] >> k & 1)
         taken[k] += impulse[i][k];
       else if (layout.mass_list[i] > 0)

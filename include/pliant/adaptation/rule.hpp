@@ -19,13 +19,27 @@ struct RefineOptions {
   int max_level = 30;  // elements refined this often are left alone
 };
 
-/// Elements of From that a criterion marks are split into four.
+/// Elements of From that a criterion marks are divided into four, solid ones into eight.
 template <class From, class C>
 struct RefineRule {
   using from = From;
   C criterion;
   Marking marking;
   RefineOptions options;
+};
+
+struct CoarsenOptions {
+  int min_level = 0;  // elements refined no more often than this are left alone
+};
+
+/// Families of elements of From (or of the groups of other such rules) all of which a criterion marks are merged, where
+/// no neighbour is too fine.
+template <class From, class C>
+struct CoarsenRule {
+  using from = From;
+  C criterion;
+  Marking marking;
+  CoarsenOptions options;
 };
 
 struct SleepOptions {
@@ -60,6 +74,13 @@ template <class R>
 concept RefiningRule = detail::MarksElements<R> && requires(R const& rule) {
   { rule.options.max_level } -> std::convertible_to<int>;
 };
+template <class R>
+concept CoarseningRule = detail::MarksElements<R> && requires(R const& rule) {
+  { rule.options.min_level } -> std::convertible_to<int>;
+};
+/// Changes the mesh.
+template <class R>
+concept MeshRule = RefiningRule<R> || CoarseningRule<R>;
 /// Puts patches to sleep that are at rest, whatever their formulation; `sleep` makes one.
 template <class R>
 concept SleepingRule = requires(R const& rule) {
@@ -74,6 +95,6 @@ concept ChoosingRule = requires(R const& rule) {
   { rule.limits_sums() } -> std::same_as<bool>;
 };
 template <class R>
-concept Rule = SwitchingRule<R> || RefiningRule<R> || SleepingRule<R> || ChoosingRule<R>;
+concept Rule = SwitchingRule<R> || MeshRule<R> || SleepingRule<R> || ChoosingRule<R>;
 
 }  // namespace pliant

@@ -2,12 +2,14 @@
 
 #include <pliant/adaptation/criterion/condition.hpp>
 #include <pliant/adaptation/rule.hpp>
+#include <pliant/topology/hierarchy.hpp>
 
 // Strategies read as sentences:
 //   when<Linear>(largest(EdgeLengthRatio{}, Rotation{})).above(0.1).become<Nonlinear>()
 //   when<Linear>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine({.max_level = 6})
 //   when<Linear>(RecoveredStress{}).bulk(0.5).refine({.max_level = 6})
 //   when<Linear>(all(VonMises{} > 1e5, Rotation{} < 0.1)).holds().become<Nonlinear>()
+//   when<Linear>(RecoveredStress{}).below(1e-6).coarsen()
 //   sleep({.below = 1e-3, .for_steps = 64})
 namespace pliant {
 
@@ -59,13 +61,23 @@ class Marked {
     return SwitchRule<From, To, C>{criterion_, marking_, stay_};
   }
   auto refine(RefineOptions options = {}) const {
-    static_assert(From::dim == 2 && From::nodes == From::element::cell::corners,
-                  "refine: available for Tri3 and Quad4");
+    static_assert(Refinable<typename From::element>,
+                  "refine: available for the catalogue's elements, pyramids aside");
     if (stay_ != 0)
       throw Error("strategy: refine has no stay; use stay with become, or check less often");
     if (options.max_level < 0)
       throw Error("strategy: a max_level of ", options.max_level, "; give at least 0");
     return RefineRule<From, C>{criterion_, marking_, options};
+  }
+  /// See CoarsenRule. An element that another rule refines in the same look is not merged.
+  auto coarsen(CoarsenOptions options = {}) const {
+    static_assert(Refinable<typename From::element>,
+                  "coarsen: available for the catalogue's elements, pyramids aside");
+    if (stay_ != 0)
+      throw Error("strategy: coarsen has no stay; use stay with become, or check less often");
+    if (options.min_level < 0)
+      throw Error("strategy: a min_level of ", options.min_level, "; give at least 0");
+    return CoarsenRule<From, C>{criterion_, marking_, options};
   }
 
  private:

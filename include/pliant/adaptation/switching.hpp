@@ -31,7 +31,7 @@ struct ActVisitor {
   using All = TableRules<Table, Rules...>;
   using Counters = CounterLayout<Table::groups>;
   static constexpr int counters = Counters::count;
-  static constexpr bool refines = (RefiningRule<Rules> || ...);
+  static constexpr bool changes_mesh = (MeshRule<Rules> || ...);
 
   Laws groups;
   All rules;
@@ -101,8 +101,8 @@ struct ActVisitor {
     carry_internal_variables<From, To>(groups, e, rest, u);
     T const after = energy<New>(new_law, rest, u);
     if (pending) change = force<New>(new_law, rest, u) - change;
-    if constexpr (refines) {
-      // What refining looks at next.
+    if constexpr (changes_mesh) {
+      // What rules that change the mesh look at next.
       auto const now = rules.template evaluate<To>(new_law, rest, u, groups, around, own);
       for (int k = 0; k < All::rows; ++k)
         values[static_cast<std::ptrdiff_t>(elements) * k + e] = now[k];

@@ -29,8 +29,8 @@ auto rules_on(std::tuple<Rules...> const& rules) {
 }
 
 /// One check of one element type: `decide` evaluates all criteria and changes nothing that a user
-/// sees, `act` moves elements between groups, `marked` lists those to refine. None waits for the
-/// backend, `marked` aside.
+/// sees, `act` moves elements between groups, `mark` lists those to refine and to coarsen. None waits for the
+/// backend, `mark` aside.
 template <class Parts, class Table, class Elements, class Rules>
 class TableCheck;
 
@@ -40,7 +40,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   using T = typename Parts::T;
   using All = TableRules<Table, Rules...>;
   static constexpr bool switches = (SwitchingRule<Rules> || ...);
-  static constexpr bool refines = (RefiningRule<Rules> || ...);
+  static constexpr bool changes_mesh = (MeshRule<Rules> || ...);
   static constexpr int count = sizeof...(Rules);
   static_assert(count <= 32, "an Adaptation has at most 32 rules for one element type");
   static_assert((has_target<Table, Rules> && ...),
@@ -80,19 +80,30 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
           std::as_const(parts_).v());
   }
 
-  /// The elements that rules want refined, by the user's number; `max_level` grows to the rules'.
-  std::vector<Index> marked(int& max_level) const {
-    std::vector<Index> marked;
-    if constexpr (refines) {
+  /// Adds a list of the elements that rules want refined, and one of those that rules would merge and none refines, by
+  /// the user's number; `max_level` grows to the rules'.
+  void mark(MarkedElements& marked, int& max_level) const {
+    auto& refine = marked.refine.emplace_back();
+    auto& coarsen = marked.coarsen.emplace_back();
+    if constexpr (changes_mesh) {
       auto const decision = this->decision();
-      if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return RefiningRule<R>; });
-      backend().for_each(table_.count(), MarkRefining<Decision<Table, Rules...>>{decision});
-      auto const masks = download<std::uint32_t>(workspace().refining);
+      if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return MeshRule<R>; });
+      backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
+      std::uint32_t refining = 0;  // bits of rules
+      int r = 0;
+      auto const look_at = [&]<class R>(R const& rule) {
+        if constexpr (RefiningRule<R>) {
+          refining |= std::uint32_t{1} << r;
+          max_level = std::max(max_level, rule.options.max_level);
+        }
+        ++r;
+      };
+      std::apply([&](auto const&... rule) { (look_at(rule), ...); }, rules_.rules);
+      auto const masks = download<std::uint32_t>(workspace().mesh_marks);
       for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
-        if (masks[e] != 0) marked.push_back(table_.user_element[e]);
-      for (int level : decision.max_level) max_level = std::max(max_level, level);
+        if (masks[e] != 0)
+          ((masks[e] & refining) != 0 ? refine : coarsen).push_back(table_.user_element[e]);
     }
-    return marked;
   }
   /// Keeps what `act` changes, and puts it back.
   void keep() const {
@@ -106,7 +117,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   // What of the body is read and changed.
   /// Those that are looked at: of rules that compare elements with each other, and of those that refine, all.
   auto elements() const {
-    return refines || ranks() ? active(table_.elements) : parts_.awake_in(table_);
+    return changes_mesh || ranks() ? active(table_.elements) : parts_.awake_in(table_);
   }
   B const& backend() const { return parts_.backend; }
   CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
@@ -144,14 +155,14 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
         made = true;
       }
     }
-    if constexpr (refines) {
-      hold(w.refining, n);
+    if constexpr (changes_mesh) {
+      hold(w.mesh_marks, n);
       if (w.levels.size() < n) {
         w.levels = upload(backend(), internal_levels());
         made = true;
       }
     }
-    if (refines || ranks()) hold(w.values, static_cast<std::size_t>(All::rows) * n);
+    if (changes_mesh || ranks()) hold(w.values, static_cast<std::size_t>(All::rows) * n);
     if (ranks()) {
       if (w.number.size() < n) {
         w.number = upload(backend(), table_.user_element);
@@ -183,7 +194,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
                                 {},
                                 {},
                                 ranks(),
-                                refines || ranks(),
+                                changes_mesh || ranks(),
                                 w.rankings.data(),
                                 w.values.data(),
                                 table_.count(),
@@ -193,14 +204,15 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
                                 own.step,
                                 w.levels.data(),
                                 w.next.data(),
-                                w.refining.data(),
+                                w.mesh_marks.data(),
                                 {}};
     int r = 0;
     auto const add = [&]<class R>(R const& rule) {
       d.sign[r] = rule.marking.below() ? T(-1) : T(1);
       d.beyond[r] = rule.marking.template beyond<T>();
       if constexpr (SwitchingRule<R>) d.stay[r] = rule.stay;
-      if constexpr (RefiningRule<R>) d.max_level[r] = rule.options.max_level;
+      if constexpr (RefiningRule<R>) d.level[r] = rule.options.max_level;
+      if constexpr (CoarseningRule<R>) d.level[r] = rule.options.min_level;
       ++r;
     };
     std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
@@ -216,7 +228,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
     if constexpr (!Decision<Table, Rules...>::template bounded<G>) {
       return T(-1);
     } else {
-      if (refines || ranks()) return T(-1);  // values are kept, and compared
+      if (changes_mesh || ranks()) return T(-1);  // values are kept, and compared
       double least = std::numeric_limits<double>::infinity();
       auto const add = [&]<class R>(R const& rule) {
         if constexpr (Table::template group_of<typename R::from> == G)

@@ -9,59 +9,60 @@
 #include <pliant/body/groups.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/body/set_state.hpp>
+#include <pliant/topology/refinement_pattern.hpp>
 
 // Another topology for a body: every field goes over by one Transfer.
 namespace pliant {
 
 namespace detail {
 
-/// How many elements of one type (its place among the mesh's) there are.
-template <Element... Es>
-std::size_t element_count(Mesh<Es...> const& mesh, std::size_t type) {
-  std::size_t const counts[] = {mesh.template elements<Es>().size()...};
-  return counts[type];
-}
-
-/// Where a point of a child lies on its parent's cell; the fourth child of a triangle is turned by half a
-/// turn.
-template <class Cell>
-Vector<double, 2> on_parent(Vector<double, 2> const& xi, int child) {
-  if (child < Cell::corners) return 0.5 * (Cell::corner(child) + xi);
-  Vector<double, 2> const middle{{{0.5}, {0.5}}};
-  return middle - 0.5 * xi;
-}
-
 /// The internal variables of the elements of one type, (elements, variables) by the user's number: those of the
 /// nearest point of their ancestors. `tags`: the groups of the new elements.
-template <class Table>
+template <class Table, class TheTransfer>
 std::vector<double> carried_internal_variables(std::vector<double> const& rows,
                                                std::vector<Tag> const& tags,
-                                               std::vector<Transfer<2>::Origin> const& origins) {
+                                               TheTransfer const& transfer, std::size_t type) {
   constexpr int width = Table::Laws::internal_variable_count;
+  auto const& origins = transfer.origins(type);
   std::vector<double> carried(std::size_t{width} * origins.size());
   for (std::size_t e = 0; width > 0 && e < origins.size(); ++e) {
+    auto const& origin = origins[e];
+    auto const* const family = origin.family >= 0
+                                   ? &transfer.families()[static_cast<std::size_t>(origin.family)]
+                                   : nullptr;
     auto const fill = [&]<int G>(GroupNumber<G>) {
       using F = typename Table::template formulation<G>;
       if constexpr (internal_variables_of<F> > 0) {
         using Cell = typename F::element::cell;
         constexpr auto rule = F::quadrature::template rule<Cell>();
         constexpr int size = internal_variables_of<F> / F::points;
+        auto const point = [&](int q) {
+          Vector<double, Cell::dim> xi;
+          for (int k = 0; k < Cell::dim; ++k) xi[k] = rule.points[q][k];
+          return xi;
+        };
+        bool const merged = origin.child == TheTransfer::Origin::merged;
         for (int q = 0; q < F::points; ++q) {
-          Vector<double, 2> at{{{rule.points[q][0]}, {rule.points[q][1]}}};
-          if (origins[e].child >= 0) at = on_parent<Cell>(at, origins[e].child);
-          int nearest = 0;
+          auto at = point(q);
+          if (origin.child >= 0) at = on_parent<Cell>(at, origin.child, family->mirrored);
           double least = std::numeric_limits<double>::infinity();
+          std::size_t from = 0;
+          auto const look_at = [&](Index element, int p, Vector<double, Cell::dim> const& there) {
+            double const apart = dot(there - at, there - at);
+            if (!(apart < least)) return;
+            least = apart;
+            from = std::size_t{width} * static_cast<std::size_t>(element) +
+                   static_cast<std::size_t>(size * p);
+          };
           for (int p = 0; p < F::points; ++p) {
-            double const apart = std::hypot(rule.points[p][0] - at[0], rule.points[p][1] - at[1]);
-            if (apart < least) {
-              least = apart;
-              nearest = p;
-            }
+            if (!merged) look_at(origin.element, p, point(p));
+            for (int c = 0; merged && c < static_cast<int>(family->before.size()); ++c)
+              look_at(family->before[static_cast<std::size_t>(c)], p,
+                      on_parent<Cell>(point(p), c, family->mirrored));
           }
-          auto const from = std::size_t{width} * static_cast<std::size_t>(origins[e].element);
           for (int k = 0; k < size; ++k)
             carried[std::size_t{width} * e + static_cast<std::size_t>(size * q + k)] =
-                rows[from + static_cast<std::size_t>(size * nearest + k)];
+                rows[from + static_cast<std::size_t>(k)];
         }
       }
     };
@@ -76,7 +77,10 @@ Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfe
   for (auto& pressure : prescribed.pressures)
     pressure.facets = transfer.carry_facets(pressure.facets);
   for (auto& condition : prescribed.conditions) {
-    if (condition.facets.empty()) continue;
+    if (condition.facets.empty()) {
+      for (Index& node : condition.nodes) node = transfer.renumbered(node);
+      continue;
+    }
     condition.facets = transfer.carry_facets(condition.facets);
     condition.nodes = nodes_of(condition.facets);
   }
@@ -156,8 +160,8 @@ struct ChangedTopology {
   Point<Parts::dim> taken;  // N s
 };
 
-/// Takes all fields over to another topology, for put_in_force. give_back(layout, held, v) may change the velocities
-/// that the transfer gives (the user's order), and returns the impulse that held nodes took, N s. The body
+/// Takes all fields over to another topology, for put_in_force. give_back(layout, held, v before, v) may change the
+/// velocities v that the transfer gives (the user's order), and returns the impulse that held nodes took, N s. The body
 /// is awake. Throws Error where fields are not finite; the body itself is left as it is.
 template <class Parts, class GiveBack>
 ChangedTopology<Parts> change_topology(
@@ -168,12 +172,13 @@ ChangedTopology<Parts> change_topology(
   synchronize_velocities(parts);
   auto const& old = parts.layout;
   auto u = old.in_user_order(parts.state.u), v = old.in_user_order(parts.state.v);
-  detail::check_field("refine (displacements)", u, old.nodes);
-  detail::check_field("refine (velocities)", v, old.nodes);
+  detail::check_field("change of the mesh (displacements)", u, old.nodes);
+  detail::check_field("change of the mesh (velocities)", v, old.nodes);
   std::vector<Point<dim>> loads;
   if (parts.state.load.size() > 0) loads = old.in_user_order(parts.state.load);
 
   u = transfer.carry_nodes(std::move(u));
+  auto const v_before = v;
   v = transfer.carry_nodes(std::move(v));
   std::vector<std::vector<Tag>> tags;
   std::vector<std::vector<double>> internal_variables;
@@ -184,7 +189,7 @@ ChangedTopology<Parts> change_topology(
         transfer.carry_elements(user_groups<typename Table::element>(std::as_const(parts)), type));
     if constexpr (Table::Laws::internal_variable_count > 0)
       internal_variables.push_back(detail::carried_internal_variables<Table>(
-          table.in_user_order(elements.internal_variables), tags.back(), transfer.origins(type)));
+          table.in_user_order(elements.internal_variables), tags.back(), transfer, type));
     else
       internal_variables.emplace_back();
   });
@@ -195,7 +200,7 @@ ChangedTopology<Parts> change_topology(
   std::vector<DirectionMask> held(topology->mesh.nodes.size(), 0);  // by the user's number
   for (auto const& condition : prescribed->conditions)
     for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
-  Point<dim> const taken = give_back(layout, held, v);
+  Point<dim> const taken = give_back(layout, held, v_before, v);
 
   // As they are, and not by the body's setters, which stop driven nodes.
   ChangedTopology<Parts> changed{
@@ -210,7 +215,7 @@ ChangedTopology<Parts> change_topology(
   next.layout.interpolation.apply(next.backend, next.u());
   next.layout.interpolation.apply(next.backend, next.v());
   if (!loads.empty()) {
-    loads.resize(u.size(), Point<dim>{});
+    loads = transfer.carry_sums(std::move(loads));
     state.load = zeros<T>(next.backend, next.layout.rest.size());
     state.load.upload(next.layout.padded(loads));
   }

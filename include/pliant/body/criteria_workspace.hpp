@@ -80,7 +80,7 @@ struct CriteriaWorkspace {
   Array<T> means;   // (blocks, nodes and scratch rows, 4), of criteria that take means
   Array<T> found;   // (slots, elements): the values of those
   Array<Tag> next;  // (elements): the group after the check
-  Array<std::uint32_t> refining;  // (elements): bit r: rule r wants it refined
+  Array<std::uint32_t> mesh_marks;  // (elements): bit r: rule r refines it, or would merge it
   Array<Index> number;            // (elements): the user's
   Array<Candidate> candidates;    // (elements): of the rule whose cut is searched
   Array<int> levels;              // (elements): how often each was refined

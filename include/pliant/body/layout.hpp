@@ -209,7 +209,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   void lump_mass(Topology<Mesh<Es...>> const& topology, double density) {
     mass_list.assign(topology.mesh.nodes.size(), 0.0);
     (add_mass<Es>(topology.mesh, density), ...);
-    topology.interpolation.apply_transpose(
+    topology.interpolation.hand_masses(
         [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
   }
   template <Element E>

@@ -41,7 +41,7 @@ class ByteWriter {
   }
   template <class U>
   void put(U const& x) const {
-    if constexpr (std::is_arithmetic_v<U>) {
+    if constexpr (std::is_arithmetic_v<U> || std::is_enum_v<U>) {
       numbers(&x, 1);
     } else if constexpr (HasMembers<U const>) {
       U::for_each_member(*this, x);
@@ -90,7 +90,7 @@ class ByteReader {
   void get(U& x) const {
     if constexpr (std::same_as<U, bool>) {
       x = take<unsigned char>() != 0;
-    } else if constexpr (std::is_arithmetic_v<U>) {
+    } else if constexpr (std::is_arithmetic_v<U> || std::is_enum_v<U>) {
       numbers(&x, 1);
     } else if constexpr (HasMembers<U>) {
       U::for_each_member(*this, x);

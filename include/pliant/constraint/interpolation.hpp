@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,51 @@ class Interpolation {
         double const own = value(node, k);
         for (auto const& [master, weight] : masters) value(master, k) += weight * own;
         value(node, k) = 0;
+      }
+  }
+
+  /// What the mass of a slave is to its masters. Forces go by the weights w; masses by |w|/Σ|w|, which are the
+  /// weights themselves where none is negative (those of quadratic elements can be), so that no mass becomes
+  /// negative and the total stays.
+  static double mass_weight(Slave const& slave, std::size_t k) {
+    return std::abs(slave.masters[k].second) / magnitude(slave);
+  }
+  /// Σ|w| of a slave's weights, 1 where none is negative.
+  static double magnitude(Slave const& slave) {
+    double sum = 0, least = 0;
+    for (auto const& [master, weight] : slave.masters) {
+      sum += std::abs(weight);
+      least = std::min(least, weight);
+    }
+    return least < 0 ? sum : 1;
+  }
+  /// The largest of all slaves, 1 or more.
+  double magnitude() const {
+    double largest = 1;
+    for (Slave const& slave : slaves_) largest = std::max(largest, magnitude(slave));
+    return largest;
+  }
+  /// Hands what slaves hold to their masters by the weights of masses, and sets slaves to zero.
+  template <class Value>
+  void hand_masses(Value const& value, int components) const {
+    for (Slave const& slave : slaves_)
+      for (int k = 0; k < components; ++k) {
+        double const own = value(slave.node, k);
+        for (std::size_t m = 0; m < slave.masters.size(); ++m)
+          value(slave.masters[m].first, k) += mass_weight(slave, m) * own;
+        value(slave.node, k) = 0;
+      }
+  }
+  /// Sets slaves to the mean of their masters by the weights of masses: to the velocity at which their mass moves.
+  template <class Value>
+  void apply_masses(Value const& value, int components) const {
+    for (Slave const& slave : slaves_)
+      for (int k = 0; k < components; ++k) {
+        double const base = value(slave.masters[0].first, k);
+        double sum = base;
+        for (std::size_t m = 0; m < slave.masters.size(); ++m)
+          sum += mass_weight(slave, m) * (value(slave.masters[m].first, k) - base);
+        value(slave.node, k) = sum;
       }
   }
 

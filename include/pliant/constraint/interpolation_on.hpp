@@ -10,9 +10,13 @@
 namespace pliant {
 
 namespace detail {
-/// One row of an interpolation: sets a node to, or adds to it, a weighted sum over others.
-template <class T, int C, bool Add>
+/// What a row of an interpolation does to its node: sets it to the weighted sum over others, adds that to it, or adds the
+/// sum with the weights' magnitudes.
+enum class RowAction { set, add, add_magnitudes };
+/// One row of an interpolation.
+template <class T, int C, RowAction Action>
 struct WeightedRow {
+  static constexpr bool Add = Action != RowAction::set;
   NodeField<T, C> field;
   Index const *node, *first, *other;
   T const* weight;
@@ -21,7 +25,8 @@ struct WeightedRow {
     if constexpr (!Add) base = field.at(other[first[k]]);
     auto sum = Add ? field.at(node[k]) : base;
     for (Index j = first[k]; j < first[k + 1]; ++j)
-      sum = sum + weight[j] * (field.at(other[j]) - base);
+      sum = sum + (Action == RowAction::add_magnitudes ? abs(weight[j]) : weight[j]) *
+                      (field.at(other[j]) - base);
     field.set(node[k], sum);
   }
 };
@@ -54,7 +59,8 @@ class InterpolationOn {
   InterpolationOn() = default;
   InterpolationOn(B const& backend, Interpolation const& host)
       : to_slaves_(backend, rows_by_slave(host.slaves())),
-        to_masters_(backend, rows_by_master(host.slaves())) {}
+        to_masters_(backend, rows_by_master(host.slaves())),
+        magnitude_(host.magnitude()) {}
 
   bool empty() const { return to_slaves_.count == 0; }
 
@@ -62,12 +68,16 @@ class InterpolationOn {
   /// weights add up to one: what masters share is not rounded.
   template <int C>
   void apply(B const& backend, NodeField<T, C> field) const {
-    if (!empty()) backend.for_each(to_slaves_.count, to_slaves_.template rows<C, false>(field));
+    if (!empty())
+      backend.for_each(to_slaves_.count,
+                       to_slaves_.template rows<C, detail::RowAction::set>(field));
   }
   /// Adds Pᵀ of what slaves hold to their masters, f_i += Σ_s P_si f_s; slaves keep theirs.
   template <int C>
   void add_transpose(B const& backend, NodeField<T, C> field) const {
-    if (!empty()) backend.for_each(to_masters_.count, to_masters_.template rows<C, true>(field));
+    if (!empty())
+      backend.for_each(to_masters_.count,
+                       to_masters_.template rows<C, detail::RowAction::add>(field));
   }
   /// f ← Pᵀ f: the same, and slaves hold nothing afterwards.
   template <int C>
@@ -75,6 +85,16 @@ class InterpolationOn {
     add_transpose(backend, field);
     clear(backend, field);
   }
+  /// Adds magnitudes that slaves hold to their masters, f_i += Σ_s |P_si| f_s, and sets slaves to zero.
+  template <int C>
+  void hand_on_magnitudes(B const& backend, NodeField<T, C> field) const {
+    if (!empty())
+      backend.for_each(to_masters_.count,
+                       to_masters_.template rows<C, detail::RowAction::add_magnitudes>(field));
+    clear(backend, field);
+  }
+  /// The largest Σ_i |P_si|: 1 where no weight is negative.
+  double magnitude() const { return magnitude_; }
   /// Raises masters to the largest value of their slaves, where that is more.
   void raise_masters(B const& backend, NodeField<T, 1> field) const {
     if (!empty()) backend.for_each(to_masters_.count, to_masters_.largest(field));
@@ -106,8 +126,8 @@ class InterpolationOn {
           first(upload(backend, rows.first)),
           other(upload(backend, rows.other)),
           weight(upload(backend, rows.weight)) {}
-    template <int C, bool Add>
-    detail::WeightedRow<T, C, Add> rows(NodeField<T, C> field) const {
+    template <int C, detail::RowAction Action>
+    detail::WeightedRow<T, C, Action> rows(NodeField<T, C> field) const {
       return {field, node.data(), first.data(), other.data(), weight.data()};
     }
     detail::LargestOfRow<T> largest(NodeField<T, 1> field) const {
@@ -153,6 +173,7 @@ class InterpolationOn {
   }
 
   Rows to_slaves_, to_masters_;
+  double magnitude_ = 1;
 };
 
 }  // namespace pliant

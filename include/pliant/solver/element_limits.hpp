@@ -9,12 +9,15 @@ namespace pliant {
 
 namespace detail {
 
-/// The largest row sum over mass of a node's free directions, in place of its rows.
+/// The largest row sum over mass of a node's free directions, times a factor, in place of its rows.
 template <class T, int Dim>
 struct RowsToQuotient {
   RowOverMass<T, Dim> quotient;
   NodeField<T, 1> to;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { to(i, 0) = static_cast<T>(quotient(i)); }
+  double factor;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    to(i, 0) = static_cast<T>(factor * quotient(i));
+  }
 };
 
 /// Adds to each element the largest value of its nodes.
@@ -65,16 +68,19 @@ double bound_elements(Parts& parts, MassShares shares) {
   bool const by_rows = shares == MassShares::by_rows;
   bool const uses_rows = by_rows || !parts.pressures.empty() || !parts.terms.empty();
   auto const quotient = node_scratch(parts);
+  // Of weights at hanging nodes; see stable_step_of. As if masses were smaller.
+  double const magnitude = parts.layout.interpolation.magnitude();
   if (uses_rows) {
     NodeField<T, dim> const rows{parts.row_sums.data()};
     clear_rows(parts, rows);
     for_each_added_term(parts, [&](auto const& term) { term.add_row_sums(backend, at, rows); });
     if (by_rows) parts.elements().add_row_sums(backend, at, rows);
-    parts.layout.interpolation.apply_transpose(backend, rows);
+    parts.layout.interpolation.hand_on_magnitudes(backend, rows);
     backend.for_each(
         parts.layout.nodes,
         RowsToQuotient<T, dim>{{{rows.data}, parts.layout.mass.data(), parts.layout.held.data()},
-                               quotient});
+                               quotient,
+                               magnitude});
     parts.layout.interpolation.raise_slaves(backend, quotient);
   }
   double largest = 0;
@@ -88,7 +94,8 @@ double bound_elements(Parts& parts, MassShares shares) {
       backend.template visit<Table::groups>(
           table.elements,
           ElementSpectra<T, typename Table::Laws>{
-              table.laws, static_cast<T>(parts.material.density), table.scratch.data()},
+              table.laws, static_cast<T>(parts.material.density / (magnitude * magnitude)),
+              table.scratch.data()},
           parts.no_counters, at.rest, at.u);
     if (uses_rows)
       backend.template visit<Table::groups>(

@@ -99,6 +99,7 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
   constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
   auto const at = std::as_const(parts).here();
+  double const magnitude = parts.layout.interpolation.magnitude();
   if (parts.row_sums.size() != parts.layout.f.size())
     parts.row_sums = zeros<T>(backend, parts.layout.f.size());
   NodeField<T, dim> const rows{parts.row_sums.data()};
@@ -114,8 +115,8 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
   double by_terms = 0;
   for_each_added_term(parts, [&](auto const& term) { term.add_row_sums(backend, at, rows); });
   if (!parts.pressures.empty() || !parts.terms.empty()) {
-    parts.layout.interpolation.apply_transpose(backend, rows);
-    by_terms = largest_row();
+    parts.layout.interpolation.hand_on_magnitudes(backend, rows);
+    by_terms = magnitude * largest_row();
   }
   (among == Among::awake ? parts.awake_elements() : parts.elements())
       .add_row_sums(backend, at, rows);
@@ -138,8 +139,8 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
     by_elements = std::max(
         by_elements, backend.maximum(table.count(), detail::ValueAt<T>{table.scratch.data()}));
   });
-  parts.layout.interpolation.add_transpose(backend, rows);
-  return {by_elements + by_terms, largest_row()};
+  parts.layout.interpolation.hand_on_magnitudes(backend, rows);
+  return {magnitude * magnitude * by_elements + by_terms, magnitude * largest_row()};
 }
 
 /// The better one, 1/s². Throws Error when there is none.
@@ -163,7 +164,8 @@ double squared_frequency_bound(Parts& parts) {
 /// its present state: 2/ω with ω² bounded in two ways, of which the better is taken. Either by the
 /// largest element eigenvalue of M_e⁻¹ K_e (Irons and Treharne 1971), or by unassembled Gershgorin
 /// discs, max_i Σ_e Σ_j |K_e,ij| / m_i, rows of slaves added to their masters'. Both hold with
-/// hanging nodes, whose interpolation weights are not negative. Centred mass damping does not lower
+/// hanging nodes: where interpolation weights are negative (quadratic elements), whose masses go by |w|/σ with
+/// σ = Σ|w|, (Σ w v)² ≤ σ² Σ (|w|/σ) v² makes the first larger by σ², and rows by |w| the second by σ. Centred mass damping does not lower
 /// the limit; a dashpot (KelvinVoigt), whose rate lags half a step, does: ω² Δt² + 2 c Δt ≤ 4. Throws
 /// Error when the state is not finite.
 template <class Parts>

@@ -5,21 +5,51 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <pliant/config.hpp>
+#include <pliant/element/linear.hpp>
+#include <pliant/element/quadratic_simplex.hpp>
+#include <pliant/element/quadratic_tensor.hpp>
 #include <pliant/error.hpp>
+#include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/compose.hpp>
+#include <pliant/topology/transfer.hpp>
 
 namespace pliant {
 
+/// Which nodes the elements of a type have.
+template <Element E>
+inline constexpr CellNodes nodes_on_cell =
+    E::degree == 1                                                 ? CellNodes::corners
+    : TensorCell<typename E::cell> && E::lumping == Lumping::nodal ? CellNodes::all
+                                                                   : CellNodes::edges;
+/// The elements that can be refined: of the catalogue's shape functions, on all cells but pyramids.
+template <class E>
+concept Refinable = Element<E> && has_pattern<typename E::cell> &&
+                    (std::derived_from<E, LinearElement<typename E::cell>> || CurvedSimplex<E> ||
+                     (TensorCell<typename E::cell> && E::degree == 2));
+
 /// What a call of Hierarchy::refine did.
+template <int Dim>
 struct Refinement {
-  std::vector<Index> parents;      ///< refined cells, closure included, coarser ones first
-  std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
+  std::vector<Index> parents;             ///< refined cells, closure included, coarser ones first
+  std::vector<NewNode> new_nodes;         ///< ascending; they follow the nodes that were there
+  std::vector<DividedFacet<Dim>> facets;  ///< sides that were divided, in the plane edges
+};
+
+/// What a call of Hierarchy::coarsen did.
+template <int Dim>
+struct Coarsening {
+  std::vector<Index> parents;  ///< cells that are leaves again, by their new number, ascending
+  Renumbering renumbered;      ///< nodes and cells
+  std::vector<NewNode> gone;  ///< nodes that went, and between which nodes that stayed; old numbers
+  std::vector<DividedFacet<Dim>> facets;  ///< sides that are whole again; old numbers
 };
 
 /// Beyond what Hierarchy::refine throws Error, or leaves cells alone.
@@ -31,36 +61,40 @@ struct RefinementLimits {
   int max_level = 30;
 };
 
-/// The refinement tree of a plane mesh of triangles and quadrilaterals, mixed at will. Refinement
-/// is red: a cell becomes four. Child i lies in corner i and is numbered like its parent, so that
-/// both have the same node i; the fourth child of a triangle is the parent turned by half a turn in
-/// its middle, its node i being the midpoint that faces the parent's node i. Levels differ by one
-/// at most across an edge; hanging nodes are slaves. Numbers stay for good: refinement only
-/// appends.
+/// The refinement tree of a mesh, plane or solid, of elements of degree one or two, as RefinementPattern divides
+/// their cells. Levels differ by one at most across edges and sides; nodes that hang there are slaves of the
+/// coarser element's, so that fields are continuous. Refinement appends cells and nodes; coarsening takes
+/// away what nothing uses any more, and what stays keeps its order: nodes and cells of the initial mesh keep
+/// their numbers for good.
 ///
 ///       2            3------+------2
 ///      /2\           |  3   |  2   |
 ///     +---+          +------+------+
 ///    /0\3/1\         |  0   |  1   |
 ///   0---+---1        0------+------1
+template <int Dim>
 class Hierarchy {
  public:
-  using Point = std::array<double, 2>;  ///< x, y in m
-
   /// Of no cells.
   Hierarchy() = default;
-  /// Takes points, and cells by their nodes; the triangles are numbered first. Throws Error for
-  /// nodes out of range, points that are not finite, cells that are not strictly convex and
-  /// counter-clockwise, and cells that overlap at an edge.
-  Hierarchy(std::span<Point const> points, std::span<std::array<Index, 3> const> triangles,
-            std::span<std::array<Index, 4> const> quads)
-      : points_(points.begin(), points.end()),
-        tree_(checked_cells(points, triangles, quads), static_cast<Index>(points.size())),
-        leaf_count_(triangles.size() + quads.size()) {}
+  /// Takes the elements of a mesh, type after type. Throws Error for nodes out of range, points that are not
+  /// finite, plane cells that are not strictly convex and counter-clockwise, and cells that overlap.
+  template <Refinable... Es>
+    requires(Mesh<Es...>::dim == Dim)
+  explicit Hierarchy(Mesh<Es...> const& mesh)
+      : points_(mesh.nodes), tree_(static_cast<Index>(mesh.nodes.size())) {
+    ((leaf_count_ += mesh.template elements<Es>().size()), ...);
+    if (std::max(points_.size(), 12 * leaf_count_) > most_)
+      throw Error(
+          "Hierarchy: the mesh has more nodes or edges than Index can number; give a coarser one");
+    (add<Es>(mesh.template elements<Es>()), ...);
+    tree_.seal();
+  }
 
-  [[nodiscard]] std::vector<Point> const& points() const { return points_; }
-  [[nodiscard]] std::vector<HierarchyCell> const& cells() const { return tree_.cells(); }
-  [[nodiscard]] HierarchyCell const& cell(Index c) const { return tree_[c]; }
+  [[nodiscard]] std::vector<Point<Dim>> const& points() const { return points_; }
+  [[nodiscard]] CellTree const& tree() const { return tree_; }
+  [[nodiscard]] std::vector<TreeCell> const& cells() const { return tree_.cells(); }
+  [[nodiscard]] TreeCell const& cell(Index c) const { return tree_[c]; }
   [[nodiscard]] bool is_leaf(Index c) const { return tree_.is_leaf(c); }
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
 
@@ -73,43 +107,121 @@ class Hierarchy {
     return found;
   }
 
-  /// Refines the marked leaves and, before each, the leaves that are coarser across one of its
-  /// edges, and so on. The result depends on the set of marked leaves, not on order or repetition;
-  /// the cost is in proportion to the cells refined. Throws Error for a cell that is out of range
-  /// or no leaf, and where a limit would be exceeded; the hierarchy is then as it was.
-  Refinement refine(std::span<Index const> marked, RefinementLimits const& limits = {}) {
+  /// Refines the marked leaves and, before each, the leaves that are coarser across one of its edges or
+  /// sides, and so on. The result depends on the set of marked leaves, not on order or repetition. Throws
+  /// Error for a cell that is out of range or no leaf, and where a limit would be exceeded; the hierarchy is
+  /// then as it was.
+  Refinement<Dim> refine(std::span<Index const> marked, RefinementLimits const& limits = {}) {
     std::vector<Index> wanted;
     for (Index const c : marked) {
-      if (c < 0 || c >= size(cells()))
-        throw Error("Hierarchy: cannot refine cell ", c, ": cells go from 0 to ", size(cells()) - 1,
-                    "; mark leaves only");
+      check_number("refine", c);
       if (!is_leaf(c))
         throw Error("Hierarchy: cannot refine cell ", c, " again; mark its children, from cell ",
                     cell(c).first_child, " on, or theirs");
       if (cell(c).level < limits.max_level) wanted.push_back(c);
     }
-    std::ranges::sort(wanted);
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    sort_and_unify(wanted);
+    if (wanted.empty()) return {};
 
-    Refinement done{.parents = tree_.closure(std::move(wanted)), .new_nodes = {}};
-    make_room(done, limits);
-    // Nothing throws from here on.
-    for (Index const c : done.parents) tree_.split(c, done.new_nodes);
-    for (NewNode const& n : done.new_nodes) points_.push_back(mean_of_parents(n));
-    leaf_count_ += 3 * done.parents.size();
+    Refinement<Dim> done{
+        .parents = tree_.closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
+    auto const nodes = make_room(done.parents, limits);
+    std::vector<Index> whole = sides_of(done.parents);  // that are about to be divided
+    sort_and_unify(whole);
+    std::erase_if(whole, [&](Index s) { return first_part(s) >= 0; });
+    std::vector<PlacedNode> made;
+    made.reserve(nodes);
+    done.new_nodes.reserve(nodes);
+    for (Index const c : done.parents) tree_.split(c, made);
+    for (PlacedNode const& node : made) {
+      done.new_nodes.push_back(interpolated(node));
+      points_.push_back(mean_of_parents(done.new_nodes.back()));
+    }
+    for (Index const s : whole) done.facets.push_back(divided(s));
+    leaf_count_ += tree_.count_new_cells(done.parents) - done.parents.size();
     return done;
   }
 
-  /// Every hanging node, ascending, with its free masters. Weights are positive and sum to one;
-  /// they make the displacement linear along each side of each leaf, and continuous.
+  /// Merges the children of refined cells, all of which are marked. A family stays where one of its children is
+  /// not marked or is refined, and where it touches cells two levels finer than the parent, at edges or sides,
+  /// before the call. Throws Error for a cell that is out of range or no leaf; the hierarchy is then as it was.
+  Coarsening<Dim> coarsen(std::span<Index const> marked) {
+    auto const parents = families(marked);
+    return merge(parents);
+  }
+  /// The parents of the families that coarsen would merge, ascending.
+  [[nodiscard]] std::vector<Index> families(std::span<Index const> marked) const {
+    std::vector<Index> sorted(marked.begin(), marked.end());
+    for (Index const c : sorted) {
+      check_number("coarsen", c);
+      if (!is_leaf(c))
+        throw Error("Hierarchy: cannot merge cell ", c, ", which is refined; mark leaves");
+    }
+    sort_and_unify(sorted);
+    std::vector<Index> parents;
+    for (std::size_t i = 0; i < sorted.size();) {
+      Index const parent = cell(sorted[i]).parent;
+      std::size_t next = i + 1;
+      while (next < sorted.size() && cell(sorted[next]).parent == parent) ++next;
+      if (parent >= 0 && next - i == at(cell(parent).pattern().children) &&
+          tree_.can_be_merged(parent))
+        parents.push_back(parent);
+      i = next;
+    }
+    std::ranges::sort(parents);
+    return parents;
+  }
+  /// Merges families that `families` gave.
+  Coarsening<Dim> merge(std::vector<Index> const& parents) {
+    Coarsening<Dim> done{.parents = parents, .renumbered = {}, .gone = {}, .facets = {}};
+    if (parents.empty()) return done;
+    for (Index const s : sides_of_no_other(parents)) done.facets.push_back(divided(s));
+    auto const inside = between_nodes_of(parents);
+    std::size_t children = 0;
+    for (Index const c : parents) children += at(cell(c).pattern().children);
+    done.renumbered = tree_.merge(parents);
+    leaf_count_ += parents.size();
+    leaf_count_ -= children;
+    for (NewNode const& node : inside)
+      if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
+    for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (done.renumbered.nodes[i] >= 0) points_[next++] = points_[i];
+    points_.resize(next);
+    return done;
+  }
+
+  /// Every hanging node, ascending, with its free masters. Weights sum to one. They make the displacement
+  /// on each edge and side of each leaf what its own nodes say, and continuous.
   [[nodiscard]] std::vector<Slave> slaves() const {
-    std::vector<Slave> hanging;
-    for (auto const& [nodes, cells, parent, middle, half] : tree_.edges())
-      if (middle >= 0 && cells[1] >= 0 && (is_leaf(cells[0]) || is_leaf(cells[1])))
-        hanging.push_back({middle, {{nodes[0], 0.5}, {nodes[1], 0.5}}});
-    // The ends of an edge are older than its middle: ascending order has masters first.
-    std::ranges::sort(hanging, {}, &Slave::node);
-    return compose(std::move(hanging));
+    std::vector<std::pair<int, Slave>> hanging;  // and the level of the coarser element
+    auto const& edges = tree_.edges();
+    for (auto const& edge : edges) {
+      if (edge.leaves == 0 || edge.refined == 0) continue;
+      auto const [a, b] = edge.nodes;
+      if (edge.has == CellNodes::corners) {
+        hanging.push_back({edge.level, {edge.middle, sorted({{a, 0.5}, {b, 0.5}})}});
+        continue;
+      }
+      auto const& half = edges[at(edge.first_half)];
+      auto const& other = edges[at(edge.first_half + 1)];
+      hanging.push_back(
+          {edge.level, {half.middle, sorted({{a, 3. / 8}, {edge.middle, 3. / 4}, {b, -1. / 8}})}});
+      hanging.push_back(
+          {edge.level, {other.middle, sorted({{a, -1. / 8}, {edge.middle, 3. / 4}, {b, 3. / 8}})}});
+    }
+    for (auto const& side : tree_.sides()) {
+      if (side.cells[1] < 0 || is_leaf(side.cells[0]) == is_leaf(side.cells[1])) continue;
+      add_nodes_on(side, hanging);
+    }
+    // The masters of a node at an element's side are that element's nodes; those can hang at coarser ones.
+    std::ranges::sort(hanging, {},
+                      [](auto const& entry) { return std::pair(entry.first, entry.second.node); });
+    std::vector<Slave> slaves;
+    slaves.reserve(hanging.size());
+    for (auto& entry : hanging) slaves.push_back(std::move(entry.second));
+    return compose(std::move(slaves));
   }
 
   template <class Visit, class... R>
@@ -121,72 +233,255 @@ class Hierarchy {
 
  private:
   static constexpr std::size_t most_ = std::numeric_limits<Index>::max();
+  using Masters = std::vector<std::pair<Index, double>>;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
-
-  static std::vector<HierarchyCell> checked_cells(std::span<Point const> points,
-                                                  std::span<std::array<Index, 3> const> triangles,
-                                                  std::span<std::array<Index, 4> const> quads) {
-    auto const count = triangles.size() + quads.size();
-    if (std::max(points.size(), 4 * count) > most_)
-      throw Error(
-          "Hierarchy: the mesh has more nodes or edges than Index can number; give a coarser one");
-    std::vector<HierarchyCell> cells;
-    cells.reserve(count);
-    for (auto const& t : triangles) cells.push_back({.sides = 3, .nodes = {t[0], t[1], t[2], -1}});
-    for (auto const& q : quads) cells.push_back({.sides = 4, .nodes = q});
-    for (Index c = 0; c < size(cells); ++c) check_shape(c, cells[at(c)], points);
-    return cells;
+  static void sort_and_unify(std::vector<Index>& list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  static Masters sorted(Masters masters) {
+    std::ranges::sort(masters);
+    return masters;
+  }
+  void check_number(char const* verb, Index c) const {
+    if (c < 0 || c >= size(cells()))
+      throw Error("Hierarchy: cannot ", verb, " cell ", c, ": cells go from 0 to ",
+                  size(cells()) - 1, "; mark leaves only");
   }
 
-  static void check_shape(Index c, HierarchyCell const& cell, std::span<Point const> points) {
-    auto const k = at(cell.sides);
-    for (Index const n : std::span(cell.nodes).first(k))
-      if (n < 0 || n >= size(points))
-        throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
-                    size(points) - 1, "; mend its node numbers");
+  template <Element E>
+  void add(std::vector<Connectivity<E>> const& elements) {
+    for (auto const& nodes : elements) {
+      auto const c = size(cells());
+      for (Index const n : nodes)
+        if (n < 0 || n >= size(points_))
+          throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
+                      size(points_) - 1, "; mend its node numbers");
+      if constexpr (Dim == 2) check_convex<E>(c, nodes);
+      tree_.add(kind_of<typename E::cell>, nodes_on_cell<E>, nodes);
+    }
+  }
+  template <Element E>
+  void check_convex(Index c, Connectivity<E> const& nodes) const {
+    constexpr std::size_t k = E::cell::corners;
     for (std::size_t i = 0; i < k; ++i) {
-      auto const [x, y] = points[at(cell.nodes[i])];
-      auto const [next_x, next_y] = points[at(cell.nodes[(i + 1) % k])];
-      auto const [last_x, last_y] = points[at(cell.nodes[(i + k - 1) % k])];
+      auto const [x, y] = points_[at(nodes[i])];
+      auto const [next_x, next_y] = points_[at(nodes[(i + 1) % k])];
+      auto const [last_x, last_y] = points_[at(nodes[(i + k - 1) % k])];
       double const a = next_x - x, b = next_y - y, p = last_x - x, q = last_y - y;
       // A sine below 1e-12 is no angle but rounding. The comparison is false for NaN and infinity.
       if (!(a * q - b * p > 1e-12 * std::hypot(a, b) * std::hypot(p, q)))
         throw Error("Hierarchy: cell ", c, " is inverted, degenerate or not finite at its node ",
-                    cell.nodes[i], " ", points[at(cell.nodes[i])],
+                    nodes[i], " ", points_[at(nodes[i])],
                     "; cells must be strictly convex and counter-clockwise");
     }
   }
 
-  void make_room(Refinement& plan, RefinementLimits const& limits) {
-    auto const count = plan.parents.size();
-    if (count == 0) return;
-    auto const nodes = tree_.count_new_nodes(plan.parents);
+  std::size_t make_room(std::vector<Index> const& parents, RefinementLimits const& limits) {
+    auto const nodes = tree_.count_new_nodes(parents);
+    auto const cells_made = tree_.count_new_cells(parents);
     auto const check = [&](char const* what, std::size_t needed, std::size_t limit) {
       if (needed > limit)
-        throw Error("Hierarchy: to refine ", count, " cells, coarser neighbours included, takes ",
-                    needed, " ", what, " in all, and the limit is ", limit,
-                    "; mark fewer cells or raise the limit");
+        throw Error("Hierarchy: to refine ", parents.size(),
+                    " cells, coarser neighbours included, takes ", needed, " ", what,
+                    " in all, and the limit is ", limit, "; mark fewer cells or raise the limit");
     };
     check("nodes", points_.size() + nodes, std::min(limits.nodes, most_));
-    check("leaves", leaf_count_ + 3 * count, limits.leaves);
-    check("cells", cells().size() + 4 * count, most_);
-    check("edges", tree_.edges().size() + CellTree::most_new_edges * count, most_);
-    plan.new_nodes.reserve(nodes);
+    check("leaves", leaf_count_ + cells_made - parents.size(), limits.leaves);
+    check("cells", cells().size() + cells_made, most_);
+    check("edges", tree_.edges().size() + tree_.most_new_edges(parents), most_);
     auto const needed = points_.size() + nodes;
     if (needed > points_.capacity()) points_.reserve(std::max(needed, 2 * points_.size()));
-    tree_.make_room(count);
+    tree_.make_room(parents);
+    return nodes;
   }
 
-  Point mean_of_parents(NewNode const& n) const {
-    Point sum{};
-    for (Index const parent : std::span(n.parents).first(at(n.count)))
-      for (std::size_t d = 0; d < 2; ++d) sum[d] += points_[at(parent)][d];
-    return {sum[0] / n.count, sum[1] / n.count};
+  template <Element E>
+  static Masters weights(CellTree::NodeList const& nodes, std::array<double, 3> const& place) {
+    Vector<double, E::dim> xi;
+    for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
+    auto const shape = E::shape(xi);
+    Masters list;
+    for (int a = 0; a < E::nodes; ++a)
+      if (shape[a] != 0) list.emplace_back(nodes[static_cast<std::size_t>(a)], shape[a]);
+    return list;
+  }
+  /// The weights of an element's nodes in the value at a place on its cell; dyadic numbers, without rounding, so
+  /// that they are the same from all elements around.
+  static Masters weights(CellKind kind, CellNodes has, CellTree::NodeList const& nodes,
+                         std::array<double, 3> const& place) {
+    auto const choose = [&]<Element Linear, Element Edges, Element All>(
+                            std::type_identity<std::tuple<Linear, Edges, All>>) {
+      if (has == CellNodes::corners) return weights<Linear>(nodes, place);
+      if (has == CellNodes::edges) return weights<Edges>(nodes, place);
+      return weights<All>(nodes, place);
+    };
+    switch (kind) {
+      case CellKind::triangle:
+        return choose(std::type_identity<std::tuple<Tri3, Tri6, Tri6>>{});
+      case CellKind::quadrilateral:
+        return choose(std::type_identity<std::tuple<Quad4, Quad8, Quad9>>{});
+      case CellKind::tetrahedron:
+        return choose(std::type_identity<std::tuple<Tet4, Tet10, Tet10>>{});
+      case CellKind::hexahedron:
+        return choose(std::type_identity<std::tuple<Hex8, Hex20, Hex27>>{});
+      case CellKind::wedge:
+        break;
+    }
+    return weights<Wedge6>(nodes, place);
+  }
+  NewNode interpolated(PlacedNode const& node) const {
+    auto const& parent = cell(node.cell);
+    return {node.node, weights(parent.kind, parent.has, tree_.nodes_of(node.cell), node.place)};
+  }
+  Point<Dim> mean_of_parents(NewNode const& n) const {
+    // Equal weights as a sum and a division: the mean does not depend on how the sum is rounded.
+    Point<Dim> sum{};
+    double const first = n.parents[0].second;
+    bool const equal =
+        std::ranges::all_of(n.parents, [&](auto const& parent) { return parent.second == first; });
+    for (auto const& [parent, weight] : n.parents)
+      for (std::size_t d = 0; d < Dim; ++d)
+        sum[d] += (equal ? 1.0 : weight) * points_[at(parent)][d];
+    if (equal)
+      for (double& x : sum) x /= static_cast<double>(n.parents.size());
+    return sum;
   }
 
-  std::vector<Point> points_;
+  /// The nodes between an element's side and its parts on the other side that the element itself has not.
+  void add_nodes_on(TreeSide const& side, std::vector<std::pair<int, Slave>>& hanging) const {
+    auto const& p = side.pattern();
+    auto const n = side.corners();
+    bool const quad = n == 4;
+    auto const& edges = tree_.edges();
+    CellTree::NodeList nodes;
+    for (std::size_t k = 0; k < n; ++k) nodes.push_back(side.nodes[k]);
+    if (side.has != CellNodes::corners)
+      for (std::size_t k = 0; k < n; ++k) nodes.push_back(edges[at(side.edges[k])].middle);
+    if (side.has == CellNodes::all && quad) nodes.push_back(side.centre);
+    auto const kind = quad ? CellKind::quadrilateral : CellKind::triangle;
+    auto const add = [&](Index node, std::array<double, 3> const& place) {
+      hanging.push_back({side.level, {node, sorted(weights(kind, side.has, nodes, place))}});
+    };
+    if (quad && side.has != CellNodes::all) add(side.centre, p.place[at(p.centre)]);
+    if (side.has == CellNodes::corners) return;
+    auto const middle = [](std::array<double, 3> const& a, std::array<double, 3> const& b) {
+      return std::array{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.0};
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      auto const& from = p.place[n + k];
+      auto const& to = quad ? p.place[at(p.centre)] : p.place[n + (k + n - 1) % n];
+      add(edges[at(side.first_inner_edge) + k].middle, middle(from, to));
+      if (quad && side.has == CellNodes::all)
+        add(tree_.sides()[at(side.first_child) + k].centre,
+            middle(p.place[k], p.place[at(p.centre)]));
+    }
+  }
+
+  /// The sides of cells, in the plane their edges: as often as cells have them.
+  std::vector<Index> sides_of(std::vector<Index> const& cells) const {
+    std::vector<Index> list;
+    for (Index const c : cells) {
+      auto const& own = cell(c);
+      for (std::size_t s = 0; s < at(Dim == 2 ? own.pattern().edges : own.pattern().sides); ++s)
+        list.push_back(Dim == 2 ? own.edges[s] : own.sides[s]);
+    }
+    return list;
+  }
+  /// The sides of refined cells that have no other refined cell.
+  std::vector<Index> sides_of_no_other(std::vector<Index> const& cells) const {
+    auto all = sides_of(cells);
+    std::ranges::sort(all);
+    std::vector<Index> own;
+    for (std::size_t i = 0, next = 0; i < all.size(); i = next) {
+      while (next < all.size() && all[next] == all[i]) ++next;
+      if (static_cast<int>(next - i) == refined_cells_at(all[i])) own.push_back(all[i]);
+    }
+    return own;
+  }
+  int refined_cells_at(Index s) const {
+    if constexpr (Dim == 2) return tree_.edges()[at(s)].refined;
+    int count = 0;
+    for (Index c : tree_.sides()[at(s)].cells) count += c >= 0 && !is_leaf(c);
+    return count;
+  }
+  /// Of the parts of a side; −1 while it is whole.
+  Index first_part(Index s) const {
+    return Dim == 2 ? tree_.edges()[at(s)].first_half : tree_.sides()[at(s)].first_child;
+  }
+  Facet<Dim> facet_of(Index s) const {
+    Facet<Dim> facet;
+    auto const& edges = tree_.edges();
+    if constexpr (Dim == 2) {
+      auto const& edge = edges[at(s)];
+      for (Index node : edge.nodes) facet.push_back(node);
+      if (edge.has != CellNodes::corners) facet.push_back(edge.middle);
+    } else {
+      auto const& side = tree_.sides()[at(s)];
+      for (std::size_t k = 0; k < side.corners(); ++k) facet.push_back(side.nodes[k]);
+      if (side.has == CellNodes::corners) return facet;
+      for (std::size_t k = 0; k < side.corners(); ++k)
+        facet.push_back(edges[at(side.edges[k])].middle);
+      if (side.has == CellNodes::all && side.corners() == 4) facet.push_back(side.centre);
+    }
+    return facet;
+  }
+  /// A divided side (in the plane, edge) and its parts.
+  DividedFacet<Dim> divided(Index s) const {
+    DividedFacet<Dim> facet{facet_of(s), {}};
+    Index const first = first_part(s);
+    for (Index part = first; part < first + (Dim == 2 ? 2 : 4); ++part)
+      facet.parts.push_back(facet_of(part));
+    return facet;
+  }
+
+  /// The nodes of refined cells' children that the cells themselves have not, as they lie between nodes of
+  /// the cells: each once, ascending.
+  std::vector<NewNode> between_nodes_of(std::vector<Index> const& parents) const {
+    std::map<Index, NewNode> found;
+    for (Index const c : parents) {
+      auto const& own = cell(c);
+      auto const& p = own.pattern();
+      auto const nodes = tree_.nodes_of(c);
+      for (Index child = own.first_child; child < own.first_child + p.children; ++child) {
+        auto const& corners = p.child[at(child - own.first_child)];
+        auto const list = tree_.nodes_of(child);
+        auto const places = places_of(cell(child));
+        for (std::size_t a = 0; a < list.count; ++a) {
+          if (std::ranges::find(nodes, list[a]) != nodes.end() || found.contains(list[a])) continue;
+          std::array<double, 3> place{};
+          for (std::size_t b = 0; b < at(p.corners); ++b)
+            for (std::size_t k = 0; k < 3; ++k)
+              place[k] += places[a][b] * p.place[at(corners[b])][k];
+          found[list[a]] = {list[a], weights(own.kind, own.has, nodes, place)};
+        }
+      }
+    }
+    std::vector<NewNode> list;
+    for (auto& entry : found) list.push_back(std::move(entry.second));
+    return list;
+  }
+  /// Where the nodes of an element lie between the corners of its cell: the corners' weights.
+  static std::array<std::array<double, 8>, 27> places_of(TreeCell const& cell) {
+    auto const& p = cell.pattern();
+    std::array<std::array<double, 8>, 27> places{};
+    std::size_t next = 0;
+    for (; next < at(p.corners); ++next) places[next][next] = 1;
+    for (std::size_t e = 0; e < at(p.edges); ++e, ++next)
+      for (int corner : p.edge[e]) places[next][at(corner)] = 0.5;
+    for (std::size_t s = 0; s < at(p.sides); ++s) {
+      if (p.side_centre[s] < 0) continue;
+      for (int corner : p.side[s]) places[next][at(corner)] = 0.25;
+      ++next;
+    }
+    if (p.centre >= 0)
+      for (std::size_t a = 0; a < at(p.corners); ++a) places[next][a] = 1.0 / p.corners;
+    return places;
+  }
+
+  std::vector<Point<Dim>> points_;
   CellTree tree_;
   std::size_t leaf_count_ = 0;
 };

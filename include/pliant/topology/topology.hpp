@@ -14,7 +14,7 @@ template <class M>
 struct Topology {
   M mesh;                                           ///< of the elements that act
   Interpolation interpolation;                      ///< its hanging nodes
-  std::shared_ptr<Hierarchy const> tree;            ///< null before the first refinement
+  std::shared_ptr<Hierarchy<M::dim> const> tree;    ///< null before the first refinement
   std::vector<std::vector<double>> element_values;  ///< per type: (elements, values) that laws read
 
   template <class Visit, class... R>

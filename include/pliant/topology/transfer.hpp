@@ -3,82 +3,170 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/mesh/sides.hpp>
 
 namespace pliant {
 
-/// What a change of topology means for fields: where new nodes, elements and facets come from. All numbers
-/// are the user's. Nodes that stay keep their numbers; new ones follow. Values per element are taken
-/// from the ancestor.
+/// A node that comes or goes with a change of topology: its value is a weighted sum over nodes that stay.
+struct NewNode {
+  Index node = -1;
+  std::vector<std::pair<Index, double>> parents;  ///< (node, weight); weights add up to one
+};
+
+/// A facet of the boundary and the parts into which it is divided: part k at its corner k, then that in the
+/// middle of a triangle. Parts run round as the whole does, in 3D from that corner.
+template <int Dim>
+struct DividedFacet {
+  Facet<Dim> whole;
+  std::vector<Facet<Dim>> parts;
+};
+
+/// What a change of topology means for fields: where new nodes, elements and facets come from, and what
+/// becomes of those that go. All numbers are the user's. Nodes that stay keep their order, new ones follow. Values
+/// of elements that are divided go to all of their children; merged elements have the mean of their
+/// children's by volume, and of groups and other integers the most frequent (of equal ones the first).
 template <int Dim>
 class Transfer {
  public:
-  /// A new node, as a weighted sum over nodes that were there before it.
-  struct NewNode {
-    Index node;
-    std::vector<std::pair<Index, double>> parents;  // (node, weight); weights add up to one
-  };
-  /// Where an element comes from: the number of an old element of the same type, and which of its
-  /// children it is; −1: it is that element.
+  using NewNode = pliant::NewNode;
+  /// Where an element comes from: the number of an old element of the same type (of merged ones the first), and
+  /// which of its children it is.
   struct Origin {
     Index element;
-    int child;
+    int child;          ///< 0 and up, or one of these
+    Index family = -1;  ///< of a child, or merged elements: its place among the families
+    static constexpr int same = -1;    ///< it is that element
+    static constexpr int merged = -2;  ///< it was that element's family
+  };
+  /// Elements of one type that take the place of others, children in their order.
+  struct Family {
+    std::size_t type = 0;  ///< its place among the mesh's
+    std::vector<Index> before, after;
+    std::vector<double> shares;  ///< of those before in their volume
+    bool mirrored = false;       ///< whether the undivided cell is (see RefinementPattern)
+  };
+  struct Parts {
+    Index old_nodes = 0;
+    std::vector<Index> renumbered{};  ///< nodes, by the old number; −1: gone; empty: all stay
+    std::vector<NewNode>
+        new_nodes{};              ///< by new numbers, ascending; parents may be new, but before
+    std::vector<NewNode> gone{};  ///< by old numbers
+    std::vector<std::size_t> old_elements{};     ///< by type
+    std::vector<std::vector<Origin>> origins{};  ///< by type, in the new order
+    std::vector<Family> families{};
+    std::vector<DividedFacet<Dim>> divided{};  ///< by new numbers
+    std::vector<DividedFacet<Dim>> merged{};   ///< by old numbers
   };
 
-  /// How many nodes, and elements of each type, there were, and where the new ones come from.
-  Transfer(Index old_nodes, std::vector<NewNode> new_nodes, std::vector<std::size_t> old_elements,
-           std::vector<std::vector<Origin>> origins)
-      : old_nodes_(old_nodes),
-        new_nodes_(std::move(new_nodes)),
-        old_elements_(std::move(old_elements)),
-        origins_(std::move(origins)) {
-    for (NewNode const& n : new_nodes_)
-      if (n.parents.size() == 2)
-        middles_[std::minmax(n.parents[0].first, n.parents[1].first)] = n.node;
+  explicit Transfer(Parts parts) : p_(std::move(parts)) {
+    for (std::size_t i = 0; i < p_.divided.size(); ++i)
+      divided_[mesh::key_of(p_.divided[i].whole)] = i;
+    for (std::size_t i = 0; i < p_.merged.size(); ++i)
+      for (auto const& part : p_.merged[i].parts) merged_[mesh::key_of(part)] = i;
+    stay_ = p_.old_nodes;
+    if (!p_.renumbered.empty())
+      stay_ = static_cast<Index>(
+          std::ranges::count_if(p_.renumbered, [](Index node) { return node >= 0; }));
   }
 
-  Index old_nodes() const { return old_nodes_; }
-  Index nodes() const { return old_nodes_ + static_cast<Index>(new_nodes_.size()); }
-  std::vector<NewNode> const& new_nodes() const { return new_nodes_; }
+  Index old_nodes() const { return p_.old_nodes; }
+  Index nodes() const { return stay_ + static_cast<Index>(p_.new_nodes.size()); }
+  std::vector<NewNode> const& new_nodes() const { return p_.new_nodes; }
+  /// Nodes that go, by old numbers, as weighted sums over nodes that stay.
+  std::vector<NewNode> const& gone() const { return p_.gone; }
+  /// The new number of an old node, or −1 where it goes.
+  Index renumbered(Index node) const {
+    return p_.renumbered.empty() ? node : p_.renumbered[static_cast<std::size_t>(node)];
+  }
   /// Of the elements of one type (its place among the mesh's), in the new order.
-  std::vector<Origin> const& origins(std::size_t type = 0) const { return origins_[type]; }
+  std::vector<Origin> const& origins(std::size_t type = 0) const { return p_.origins[type]; }
+  std::vector<Family> const& families() const { return p_.families; }
 
   /// Values per node (numbers or points) on the new mesh: new nodes take the weighted sum. Throws Error for an
   /// array that is not of the mesh before.
   template <class V>
   std::vector<V> carry_nodes(std::vector<V> values) const {
-    check(values.size(), static_cast<std::size_t>(old_nodes_), "nodes");
-    values.reserve(static_cast<std::size_t>(nodes()));
-    for (NewNode const& n : new_nodes_) {
+    check_nodes(values);
+    values = those_that_stay(std::move(values));
+    for (NewNode const& n : p_.new_nodes) {
+      V const first = values[static_cast<std::size_t>(n.parents[0].first)];
+      bool same = true;  // what all have is not rounded
       V sum{};
-      for (auto const& [parent, weight] : n.parents)
-        add(sum, weight, values[static_cast<std::size_t>(parent)]);
-      values.push_back(sum);
+      for (auto const& [parent, weight] : n.parents) {
+        V const& value = values[static_cast<std::size_t>(parent)];
+        same = same && value == first;
+        add(sum, weight, value);
+      }
+      values.push_back(same ? first : sum);
     }
+    return values;
+  }
+  /// Sums per node (forces, masses, impulses) on the new mesh: nodes that go hand theirs to those they lay between,
+  /// new ones have none, and the total stays. Throws Error as carry_nodes.
+  template <class V>
+  std::vector<V> carry_sums(std::vector<V> values) const {
+    check_nodes(values);
+    for (NewNode const& n : p_.gone)
+      for (auto const& [parent, weight] : n.parents)
+        add(values[static_cast<std::size_t>(parent)], weight,
+            values[static_cast<std::size_t>(n.node)]);
+    values = those_that_stay(std::move(values));
+    values.resize(static_cast<std::size_t>(nodes()), V{});
     return values;
   }
   /// Values per element of one type on the new mesh: `width` each, side by side. Throws Error as carry_nodes.
   template <class V>
   std::vector<V> carry_elements(std::vector<V> const& values, std::size_t type = 0,
                                 std::size_t width = 1) const {
-    check(values.size(), old_elements_[type] * width, "elements");
+    check(values.size(), p_.old_elements[type] * width, "elements");
     std::vector<V> carried;
     carried.reserve(origins(type).size() * width);
     for (Origin const& origin : origins(type)) {
       auto const first = width * static_cast<std::size_t>(origin.element);
-      for (std::size_t k = 0; k < width; ++k) carried.push_back(values[first + k]);
+      for (std::size_t k = 0; k < width; ++k)
+        carried.push_back(origin.child == Origin::merged ? merged_value(values, origin, width, k)
+                                                         : values[first + k]);
     }
     return carried;
   }
-  /// Facets of the boundary on the new mesh: a facet that was split gives way to its parts, in their
-  /// order along it.
+  /// Facets of the boundary on the new mesh: a facet that was divided gives way to its parts, and parts that were
+  /// merged to the whole, in the place of the first. Throws Error where not all of them are there.
   std::vector<Facet<Dim>> carry_facets(std::vector<Facet<Dim>> const& facets) const {
+    if (std::vector<Facet<Dim>> const cut = cut_facets(facets); !cut.empty())
+      throw Error(
+          "transfer: of the ", cut.size(), " facets that were merged, the one with the nodes ",
+          cut[0][0], " and ", cut[0][1],
+          " among them, not all are listed; list all, or keep the elements there from being "
+          "merged");
     std::vector<Facet<Dim>> carried;
-    for (auto const& facet : facets) add_parts(facet, carried);
+    std::vector<bool> done(p_.merged.size(), false);
+    for (auto const& facet : facets) {
+      auto const found = merged_.find(mesh::key_of(facet));
+      if (found == merged_.end()) {
+        add_parts(new_numbers(facet), carried);
+      } else if (!done[found->second]) {
+        done[found->second] = true;
+        carried.push_back(new_numbers(whole_of(p_.merged[found->second], facet)));
+      }
+    }
     return carried;
+  }
+  /// Those of the facets that are merged while others of their whole are not among them.
+  std::vector<Facet<Dim>> cut_facets(std::vector<Facet<Dim>> const& facets) const {
+    std::map<std::size_t, std::size_t> parts;  // by whole
+    for (auto const& facet : facets)
+      if (auto const found = merged_.find(mesh::key_of(facet)); found != merged_.end())
+        ++parts[found->second];
+    std::vector<Facet<Dim>> cut;
+    for (auto const& [whole, count] : parts)
+      if (count < p_.merged[whole].parts.size())
+        cut.insert(cut.end(), p_.merged[whole].parts.begin(), p_.merged[whole].parts.end());
+    return cut;
   }
 
  private:
@@ -86,6 +174,9 @@ class Transfer {
     if (got != wanted)
       throw Error("transfer: got ", got, " values of ", what, ", but those before the change take ",
                   wanted, "; give the arrays from before it");
+  }
+  void check_nodes(auto const& values) const {
+    check(values.size(), static_cast<std::size_t>(p_.old_nodes), "nodes");
   }
   static void add(double& sum, double weight, double value) { sum += weight * value; }
   static void add(float& sum, double weight, float value) {
@@ -95,21 +186,97 @@ class Transfer {
   static void add(std::array<V, N>& sum, double weight, std::array<V, N> const& value) {
     for (std::size_t k = 0; k < N; ++k) add(sum[k], weight, value[k]);
   }
+
+  template <class V>
+  std::vector<V> those_that_stay(std::vector<V> values) const {
+    if (!p_.renumbered.empty()) {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (p_.renumbered[i] >= 0) values[static_cast<std::size_t>(p_.renumbered[i])] = values[i];
+      values.resize(static_cast<std::size_t>(stay_));
+    }
+    values.reserve(static_cast<std::size_t>(nodes()));
+    return values;
+  }
+  template <class V>
+  V merged_value(std::vector<V> const& values, Origin const& origin, std::size_t width,
+                 std::size_t k) const {
+    Family const& family = p_.families[static_cast<std::size_t>(origin.family)];
+    auto const value_of = [&](std::size_t child) -> V const& {
+      return values[width * static_cast<std::size_t>(family.before[child]) + k];
+    };
+    if constexpr (std::is_integral_v<V> || std::is_enum_v<V>) {
+      std::size_t best = 0;
+      std::ptrdiff_t most = 0;
+      for (std::size_t i = 0; i < family.before.size(); ++i) {
+        std::ptrdiff_t count = 0;
+        for (std::size_t j = 0; j < family.before.size(); ++j) count += value_of(j) == value_of(i);
+        if (count > most) {
+          most = count;
+          best = i;
+        }
+      }
+      return value_of(best);
+    } else {
+      bool same = true;  // what all have is not rounded
+      V sum{};
+      for (std::size_t i = 0; i < family.before.size(); ++i) {
+        same = same && value_of(i) == value_of(0);
+        add(sum, family.shares[i], value_of(i));
+      }
+      return same ? value_of(0) : sum;
+    }
+  }
+
+  Facet<Dim> new_numbers(Facet<Dim> facet) const {
+    for (Index& node : facet) node = renumbered(node);
+    return facet;
+  }
+  /// A facet, or the same the other way round: in 2D from its other end, in 3D from the same corner.
+  static Facet<Dim> turned(Facet<Dim> const& facet, bool backwards) {
+    if (!backwards) return facet;
+    auto const n = facet.corners();
+    Facet<Dim> other = facet;
+    if constexpr (Dim == 2) {
+      std::swap(other.begin()[0], other.begin()[1]);
+    } else {
+      std::reverse(other.begin() + 1, other.begin() + n);
+      if (facet.size() >= 2 * n) std::reverse(other.begin() + n, other.begin() + 2 * n);
+    }
+    return other;
+  }
+  /// The whole of which `part` is one, running round as that does.
+  static Facet<Dim> whole_of(DividedFacet<Dim> const& divided, Facet<Dim> const& part) {
+    for (auto const& own : divided.parts)
+      if (mesh::key_of(own) == mesh::key_of(part))
+        return turned(divided.whole, runs_backwards(own, part));
+    return divided.whole;
+  }
+  /// Whether two facets with the same corners run round in opposite directions.
+  static bool runs_backwards(Facet<Dim> const& one, Facet<Dim> const& other) {
+    auto const n = one.corners();
+    std::size_t at = 0;
+    while (other[at] != one[0]) ++at;
+    return Dim == 2 ? at != 0 : other[(at + 1) % n] != one[1];
+  }
   void add_parts(Facet<Dim> const& facet, std::vector<Facet<Dim>>& parts) const {
-    auto const middle = middles_.find(std::minmax(facet[0], facet[1]));
-    if (facet.size() != 2 || middle == middles_.end()) {
+    auto const found = divided_.find(mesh::key_of(facet));
+    if (found == divided_.end()) {
       parts.push_back(facet);
       return;
     }
-    add_parts({facet[0], middle->second}, parts);
-    add_parts({middle->second, facet[1]}, parts);
+    auto const& [whole, own] = p_.divided[found->second];
+    bool const backwards = runs_backwards(whole, facet);
+    for (std::size_t k = 0; k < facet.corners(); ++k) {
+      std::size_t corner = 0;
+      while (whole[corner] != facet[k]) ++corner;
+      add_parts(turned(own[corner], backwards), parts);
+    }
+    if (own.size() > facet.corners()) add_parts(turned(own.back(), backwards), parts);
   }
 
-  Index old_nodes_;
-  std::vector<NewNode> new_nodes_;
-  std::vector<std::size_t> old_elements_;  // by type
-  std::vector<std::vector<Origin>> origins_;
-  std::map<std::pair<Index, Index>, Index> middles_;  // of edges that were halved, by their ends
+  Parts p_;
+  Index stay_ = 0;
+  std::map<std::array<Index, 4>, std::size_t> divided_, merged_;  // by corners, see key_of
 };
 
 }  // namespace pliant
