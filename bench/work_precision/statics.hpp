@@ -161,9 +161,10 @@ void add_rules(std::vector<Contestant>& contestants, Options const& options) {
       return Adaptation{when<F>(RecoveredStress{}).bulk(share).refine()};
     });
   }
-  add_adaptive<Problem, F>(contestants, options, element + ", R_S above 0.9 of largest", [] {
-    return Adaptation{when<F>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine()};
-  });
+  if constexpr (E::degree == 1)
+    add_adaptive<Problem, F>(contestants, options, element + ", R_S above 0.9 of largest", [] {
+      return Adaptation{when<F>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine()};
+    });
 }
 
 template <class Problem>
@@ -179,6 +180,8 @@ void compare_meshes(Options const& options, std::vector<Contestant> contestants 
   uniform(Quad9{});
   add_rules<Problem, Tri3>(contestants, options);
   add_rules<Problem, Quad4>(contestants, options);
+  add_rules<Problem, Tri6>(contestants, options);
+  add_rules<Problem, Quad9>(contestants, options);
   hold_contest(Problem::name, contestants, options);
 }
 

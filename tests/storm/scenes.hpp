@@ -18,7 +18,16 @@ std::vector<Index> some_of(TheBody const& body, std::size_t one_in, test::Random
   return some(static_cast<Index>(body.mesh().template elements<E>().size()), one_in, random);
 }
 
-/// Triangles and quadrilaterals of two and three laws, refined as they go.
+/// All elements but some.
+template <Element E, class TheBody>
+std::vector<Index> most_of(TheBody const& body, test::Random& random) {
+  std::vector<Index> list;
+  for (Index e = 0; e < static_cast<Index>(body.mesh().template elements<E>().size()); ++e)
+    if (random.below(50) != 0) list.push_back(e);
+  return list;
+}
+
+/// Triangles and quadrilaterals of two and three laws, refined and coarsened as they go.
 template <Backend B>
 struct Plane {
   using TriLinear = Formulation<Tri3, Gauss<1>, Hooke>;
@@ -63,6 +72,10 @@ struct Plane {
   }
   void refine(body_type& body, unsigned seed_of_marks) const {
     test::Random random(seed_of_marks);
+    if (random.below(2) == 0) {
+      pliant::coarsen(body, {most_of<Tri3>(body, random), most_of<Quad4>(body, random)});
+      return;
+    }
     auto triangles = some_of<Tri3>(body, 30, random);
     pliant::refine(body, {triangles, some_of<Quad4>(body, 30, random)}, 2);
   }
@@ -74,7 +87,7 @@ struct Plane {
   }
 };
 
-/// Solid elements of two laws; those without internal variables switch between them.
+/// Solid elements of two laws, refined and coarsened as they go; those without internal variables switch between them.
 template <Backend B, Element E, template <class> class Second>
 struct Solid {
   using First = Formulation<E, Gauss<E::cell::corners == 4 ? 1 : 2>, SaintVenantKirchhoff>;
@@ -87,7 +100,9 @@ struct Solid {
   int cells = 4;  // along an edge
 
   body_type body() const {
-    return {backend, test::distorted_mesh<E>(cells, seed), soft, Group<First>{}, other};
+    body_type made{backend, test::distorted_mesh<E>(cells, seed), soft, Group<First>{}, other};
+    set_mesh_limits(made, {.nodes = static_cast<std::size_t>(5 * cells * cells * cells)});
+    return made;
   }
   void switch_groups(body_type& body) const {
     static Adaptation rules =
@@ -97,7 +112,13 @@ struct Solid {
     rules(body);
   }
   void make_finer(body_type&) const {}
-  void refine(body_type&, unsigned) const {}
+  void refine(body_type& body, unsigned seed_of_marks) const {
+    test::Random random(seed_of_marks);
+    if (random.below(2) == 0)
+      pliant::coarsen(body, {most_of<E>(body, random)});
+    else
+      pliant::refine(body, {some_of<E>(body, 60, random)}, 1);
+  }
   void assign(body_type& body, unsigned seed_of_marks) const {
     test::Random random(seed_of_marks);
     body.template assign<First>(some_of<E>(body, 10, random));
