@@ -140,6 +140,12 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   return {plan->merged, plan->transfer.gone().size()};
 }
 
+/// How often each element of a type was refined, by the user's number.
+template <Element E, DeformableBody TheBody>
+std::vector<int> refinement_levels(TheBody const& body) {
+  return detail::levels_of<E>(body.parts());
+}
+
 /// The largest mesh that refinements of a body may make.
 template <DeformableBody TheBody>
 void set_mesh_limits(TheBody& body, MeshLimits limits) {

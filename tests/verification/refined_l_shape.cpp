@@ -1,0 +1,143 @@
+#include <pliant/adaptation/adaptation.hpp>
+#include <pliant/adaptation/estimator/recovered_stress.hpp>
+#include <pliant/solve.hpp>
+
+#include "verification/support/l_shape.hpp"
+
+// REFERENCES, section 8: the L-shape of linear elasticity, and the same extruded under plane strain, refined where
+// RecoveredStress says. In the plane the energy norm of the error falls with N^(-p/2) over the number N of
+// unknowns, p the elements' degree, as if the solution were smooth; on uniform meshes with N^(-alpha/2). Along
+// an edge, cells that are refined alike in all directions allow N^(-1/3) to p = 1, and N^(-alpha) to p = 2.
+namespace pliant::verification {
+
+/// The L-shape with one layer of cells for each along an arm.
+template <Element E>
+Mesh<E> initial_mesh(int n) {
+  if constexpr (E::dim == 2) {
+    return l_shape<E>(n, 1);
+  } else {
+    auto const plane = l_shape<Quad4>(n, 1);
+    auto const count = static_cast<Index>(plane.nodes.size());
+    using Linear = LinearOn<E>;
+    Mesh<Linear> solid;
+    for (int k = 0; k <= n; ++k)
+      for (auto const& p : plane.nodes) solid.nodes.push_back({p[0], p[1], std::sqrt(2.0) * k / n});
+    for (int k = 0; k < n; ++k)
+      for (auto const& q : plane.elements<Quad4>()) {
+        Connectivity<Hex8> hex;
+        for (std::size_t a = 0; a < 4; ++a) {
+          hex[a] = q[a] + k * count;
+          hex[a + 4] = hex[a] + count;
+        }
+        auto& elements = solid.template elements<Linear>();
+        if constexpr (std::same_as<Linear, Hex8>)
+          elements.push_back(hex);
+        else
+          for (auto const& part : mesh::detail::split_cell(hex, Linear{})) elements.push_back(part);
+      }
+    if constexpr (E::degree > 1)
+      return mesh::raised<E>(solid);
+    else
+      return solid;
+  }
+}
+
+template <int Dim>
+bool on_outer(Point<Dim> const& p) {
+  return on_outer_l_shape({p[0], p[1]});
+}
+
+/// The energy norm of the error.
+template <Element E, class TheBody>
+double error_of(TheBody& body) {
+  static constexpr auto points = tabulate<E, Gauss<(E::dim == 2 ? 6 : 4)>, double>();
+  auto const law = Hooke<double>::from(l_shape_material);
+  auto const& mesh = body.mesh();
+  auto const u = body.displacements();
+  double squares = 0;
+  for (auto const& element : mesh.template elements<E>()) {
+    auto const rest = nodal(mesh, element);
+    Nodal<E, double> own;
+    for (int a = 0; a < E::nodes; ++a)
+      for (int k = 0; k < E::dim; ++k)
+        own(a, k) = u[static_cast<std::size_t>(element[static_cast<std::size_t>(a)])]
+                     [static_cast<std::size_t>(k)];
+    auto const x = Coefficients<E, double>::of(rest), v = Coefficients<E, double>::of(own);
+    for (int q = 0; q < points.count; ++q) {
+      auto const map = RestMap<E, double>::at(x, points, q);
+      Point<2> place{};
+      for (int a = 0; a < E::nodes; ++a)
+        for (int k = 0; k < 2; ++k)
+          place[static_cast<std::size_t>(k)] += points.shape[q][a] * rest(a, k);
+      auto off = map.gradient(v, points, q);
+      auto const exact = gradient_in_l_shape(place);
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) off(i, k) = off(i, k) - exact(i, k);
+      squares += 2 * energy_density(law, off) * map.volume * points.weight[q];
+    }
+  }
+  return std::sqrt(squares);
+}
+
+/// Rounds of refinement until there are so many unknowns: of each round, how many there were, and the error.
+template <Element E>
+Runs refined(int n, long most, double share) {
+  using F = Formulation<E, Full<E>, Hooke>;
+  auto body = body_of<F>(initial_mesh<E>(n), l_shape_material);
+  body.clamp(mesh::outer_sides_where(body.mesh(), on_outer<E::dim>));
+  if constexpr (E::dim == 3)
+    body.hold(
+        mesh::outer_sides_where(
+            body.mesh(), [](Point<3> const& p) { return p[2] == 0 || p[2] == std::sqrt(2.0); }),
+        4);
+  Adaptation adapt{when<F>(RecoveredStress{}).bulk(share).refine()};
+  Runs runs;
+  for (;;) {
+    auto u = body.displacements();
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      auto const& p = body.mesh().nodes[i];
+      if (!on_outer<E::dim>(p)) continue;
+      auto const exact = displacement_in_l_shape({p[0], p[1]});
+      for (std::size_t k = 0; k < 2; ++k) u[i][k] = exact[k];
+    }
+    body.set_displacements(u);
+    auto const report = solve_static(body, where_forces_cancel);
+    runs.push_back({static_cast<int>(report.unknowns), {error_of<E>(body)}});
+    if (report.unknowns > most) return runs;
+    adapt.now(body);
+  }
+}
+
+/// The round that ended, and the last before with at most a quarter of its unknowns.
+Runs ends_of(Runs const& runs) {
+  std::size_t first = runs.size() - 1;
+  while (first > 0 && 4 * runs[first].n > runs.back().n) --first;
+  return {runs[first], runs.back()};
+}
+
+template <Element E>
+void row(Table& table, int n, long most, double rate) {
+  using F = Formulation<E, Full<E>, Hooke>;
+  auto const runs = refined<E>(n, most, E::dim == 2 ? 0.5 : 0.4);
+  table.converge({std::string("8, L-shape") + (E::dim == 3 ? ", extruded" : "") + ", energy norm",
+                  name_of<F>(), "refined by RecoveredStress, unknowns"},
+                 ends_of(runs), 0, rate);
+}
+
+}  // namespace pliant::verification
+
+int main(int argc, char** argv) {
+  using namespace pliant;
+  verification::Table table("L-shape, refined where the error is (8)", argc, argv);
+  bool const full = table.full();
+  verification::row<Tri3>(table, 4, full ? 20000 : 4000, 0.5);
+  verification::row<Quad4>(table, 4, full ? 20000 : 4000, 0.5);
+  verification::row<Tri6>(table, 2, full ? 20000 : 4000, 1);
+  verification::row<Quad8>(table, 2, full ? 20000 : 4000, 1);
+  verification::row<Quad9>(table, 2, full ? 20000 : 4000, 1);
+  if (!full) return table.finish();
+  verification::row<Tet4>(table, 2, 60000, 1.0 / 3);
+  verification::row<Hex8>(table, 2, 60000, 1.0 / 3);
+  verification::row<Tet10>(table, 1, 60000, 0.54);
+  return table.finish();
+}
