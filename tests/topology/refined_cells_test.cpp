@@ -251,6 +251,29 @@ TEST_CASE("the tetrahedra of all generations are of three similar shapes at most
   CHECK(shapes.size() == 3);
 }
 
+TEST_CASE("behind the middle of a tetrahedron's side the coarser neighbour is refined too",
+          "[topology]") {
+  // Such a child shares no edge with the neighbour, only a side inside the neighbour's.
+  Mesh<Tet4> const two{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}},
+                       {{{0, 1, 2, 3}, {1, 2, 3, 4}}}};
+  Hierarchy<3> mesh(two);
+  mesh.refine(std::vector<Index>{0});
+  int behind = 0;
+  for (Index c = mesh.cell(0).first_child; c < mesh.cell(0).first_child + 8; ++c) {
+    int on_side = 0, corners = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      auto const& p = mesh.points()[at(mesh.cell(c).nodes[a])];
+      on_side += p[0] + p[1] + p[2] == 1;
+      corners += p[0] == 1 || p[1] == 1 || p[2] == 1;
+    }
+    if (on_side != 3 || corners > 0) continue;
+    ++behind;
+    auto trial = mesh;
+    CHECK(trial.refine(std::vector<Index>{c}).parents == std::vector<Index>{1, c});
+  }
+  CHECK(behind == 1);
+}
+
 TEST_CASE("a family stays where a child is not marked or a neighbour is too fine", "[topology]") {
   Hierarchy<3> mesh(sheared_mesh<Hex8>(2));  // 2 × 1 × 1
   mesh.refine(std::vector<Index>{0, 1});
