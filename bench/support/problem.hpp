@@ -10,7 +10,7 @@
 
 namespace pliant::bench {
 
-/// A mesh in the order of a body: elements along a Morton curve, nodes as these touch them.
+/// A mesh in the order of a body.
 template <Element E>
 struct OrderedMesh {
   Mesh<E> mesh;
