@@ -194,7 +194,8 @@ TEST_CASE("what carries load sleeps until it is pulled at", "[adaptation]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     auto body = bar_on(backend), plain = bar_on(backend);
     CentralDifference step, same_step;
-    Adaptation adapt{quick_sleep()};
+    // A wave that comes between two looks is thrown back until the next, whatever the threshold.
+    Adaptation adapt = Adaptation{quick_sleep()}.every(1);
     for (auto* b : {&body, &plain}) {
       stretch(*b);
       hit_left_end(*b);
@@ -227,7 +228,7 @@ TEST_CASE("what carries load sleeps until it is pulled at", "[adaptation]") {
     double apart = 0;
     for (std::size_t i = 0; i < v.size(); ++i)
       for (std::size_t k = 0; k < 2; ++k) apart = std::max(apart, std::abs(v[i][k] - w[i][k]));
-    CHECK(apart < 0.02 * largest(v));
+    CHECK(apart < slow);
   });
 }
 
