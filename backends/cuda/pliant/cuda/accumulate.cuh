@@ -62,21 +62,25 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   using Places = Packed<PatchRow<Nodes>>;
   Places places;
   if (is_element()) places = Places::load(patches.rows + e);
+  auto const node_at = [&](Index r) { return r < patches.node_capacity ? nodes[r].node : -1; };
+  Index next_node = node_at(thread);
 #pragma unroll 1
   for (Index d = thread; d < patches.diagonal_capacity; d += threads)
     memory.diagonals[d] =
         patches.diagonals[static_cast<std::ptrdiff_t>(patch) * patches.diagonal_capacity + d];
   begin_after_previous_kernel();
+  Tag const first_tag = is_element() ? patches.tags[e] : Tag{0};
 #pragma unroll 1
   for (Index r = thread; r < patches.node_capacity; r += threads) {
-    Index const node = nodes[r].node;
-    if (node < 0) continue;
+    Index const node = next_node;
+    if (node < 0) break;  // behind the patch's last
+    next_node = node_at(r + threads);
     T row[M];
     int offset = 0;
     ((load_node(fields, node, row + offset), offset += Fields::components), ...);
     memory.rows.store(r, row);
   }
-  if (is_element()) loop.set_tag(patches.tags[e]);
+  loop.set_tag(first_tag);
   __syncthreads();
 
 #pragma unroll 1
@@ -107,11 +111,15 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
     if (own_tag >= Groups) store(Matrix<T, Nodes, C>::zero());
     if constexpr (!tuning.prefetch) load_next();
   }
+  auto const sum_at = [&](Index r) { return r < patches.node_capacity ? nodes[r] : PatchNode{}; };
+  PatchNode next_sum = sum_at(thread);
   if (!__syncthreads_or(loop.acted())) return;  // no element of the patch acts
 
 #pragma unroll 1
   for (Index r = thread; r < patches.node_capacity; r += threads) {
-    PatchNode const n = nodes[r];
+    PatchNode const n = next_sum;
+    if (n.valence == 0) break;  // behind the patch's last
+    next_sum = sum_at(r + threads);
     T sum[C] = {};
 #pragma unroll 4
     for (int d = 0; d < n.valence; ++d) {
@@ -120,7 +128,7 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
 #pragma unroll
       for (int k = 0; k < C; ++k) sum[k] += share[k];
     }
-    if (n.valence > 0) add_to_node(out, n.node, sum);
+    add_to_node(out, n.node, sum);
   }
 }
 
