@@ -22,7 +22,8 @@
 //                              and wait for that
 //
 // Node loops    f is a functor marked for host and device, called once for each i in [0, n).
-//   for_each(n, f)             f(i)
+//   for_each(n, f)             f(i); f may tell what it reads apart from what it writes: see ReadsFirst in
+//                              backend/kernel.hpp
 //   sum(n, f) maximum(n, f)    double; of f(i)
 //   add_sum(n, f, to)          *to += the sum of f(i), where `to` is in the backend's memory; waits for
 //                              nothing
