@@ -128,7 +128,9 @@ TEST_CASE("refining a uniform state leaves the strain energy alone", "[adaptatio
 
     for (int k = 0; k < 4; ++k) refine(body, random_marks(body, random, 4));
 
-    CHECK(strain_energy(body) == Approx(before).epsilon(32 * epsilon_of<decltype(body)>));
+    // Displacements of 0.2 are rounded over edges of 0.2/16, and 800 elements are summed: 31 to 36 ε, by the order of
+    // the elements.
+    CHECK(strain_energy(body) == Approx(before).epsilon(64 * epsilon_of<decltype(body)>));
     CHECK(before > 0.01);
   });
 }
