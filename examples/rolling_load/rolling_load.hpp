@@ -43,6 +43,7 @@ inline Mesh<Hex8> block(int n) {
     }
     mesh.elements<Hex8>().push_back(element);
   }
+  mesh.boundaries["skin"] = mesh::outer_sides(mesh);
   mesh.boundaries["top"] =
       mesh::outer_sides_where(mesh, [](Point<3> const& p) { return p[2] == 1; });
   mesh.boundaries["feet"] = mesh::outer_sides_where(mesh, [n](Point<3> const& p) {
@@ -88,7 +89,7 @@ Answer move_to(TheBody& body, double place, Changes const& changes) {
 
 template <class TheBackend>
 void run(TheBackend const& backend, scene::Options const& options) {
-  int const cells = options.cells > 0 ? options.cells : 5;
+  int const cells = options.cells > 0 ? options.cells : 4;
   auto const made = [&](Mesh<Hex8> const& mesh) {
     Body body{backend, mesh, steel, Group<F>{}};
     body.clamp(mesh.boundary("feet"));
@@ -97,7 +98,7 @@ void run(TheBackend const& backend, scene::Options const& options) {
   auto adaptive = made(block(cells));
   auto uniform = made(block(cells << uniform_level));
   // An element's error falls to 1/32 when it becomes eight: merging asks for less than that of eight times the tolerance.
-  double const most = 2e-4;  // J, of one element
+  double const most = 1.2e-3;  // J, of one element
   Adaptation adapt{when<F>(RecoveredStress{}).above(most).refine({.max_level = max_level}),
                    when<F>(RecoveredStress{}).below(most / 64).coarsen()};
   auto const adapts = [&](auto& body) {
@@ -129,7 +130,7 @@ void run(TheBackend const& backend, scene::Options const& options) {
                   other.elements, percent(other), other.seconds);
     frames.push_back(
         {.polygons = scene::draw_solid<Hex8>(
-             adaptive, 2e3,
+             adaptive, adaptive.mesh().boundary("skin"), 2e3,
              [&](std::size_t e) { return picture::green_to_red(double(levels[e]) / max_level); }),
          .caption = caption});
   }

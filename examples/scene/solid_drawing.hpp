@@ -10,11 +10,12 @@
 
 namespace scene {
 
-/// The visible sides of a deformed solid body, seen from the front, the right and above, without perspective; each
+/// The visible ones of the facets of a deformed solid body's mesh, seen from the front, the right and above, without perspective; each
 /// filled by colour(element), darker the more it looks away. Displacements are magnified.
 template <pliant::Element E, class TheBody, class Colour>
-std::vector<pliant::picture::Polygon> draw_solid(TheBody const& body, double magnified,
-                                                 Colour const& colour) {
+std::vector<pliant::picture::Polygon> draw_solid(TheBody const& body,
+                                                 std::vector<pliant::Facet<3>> const& facets,
+                                                 double magnified, Colour const& colour) {
   using pliant::Index;
   using Point3 = pliant::Point<3>;
   auto const u = body.displacements();
@@ -39,8 +40,7 @@ std::vector<pliant::picture::Polygon> draw_solid(TheBody const& body, double mag
   std::vector<Side> sides;
   auto const outer = [&] {
     std::vector<std::array<Index, 4>> keys;
-    for (auto const& facet : pliant::mesh::outer_sides(body.mesh()))
-      keys.push_back(pliant::mesh::key_of(facet));
+    for (auto const& facet : facets) keys.push_back(pliant::mesh::key_of(facet));
     std::ranges::sort(keys);
     return keys;
   }();
