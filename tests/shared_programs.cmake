@@ -37,7 +37,7 @@ share(shared/groups
 share(shared/elements
       adaptation/discrepancies adaptation/other_elements adaptation/own_actions
       adaptation/recovered_stress_of_elements body/element_values element/shape_functions
-      formulation/coefficients mesh/check mesh/generators mesh/loads
+      formulation/coefficients mesh/check mesh/generators mesh/loads mesh/middles
       topology/transfer)
 share(shared/statics
       body/pressure solver/assemble solver/newmark solver/static solver/static_loads

@@ -8,7 +8,8 @@
 
 #include <pliant/formulation/kinematics.hpp>
 #include <pliant/math/group_by_key.hpp>
-#include <pliant/mesh/mesh.hpp>
+#include <pliant/mesh/check_middles.hpp>
+#include <pliant/mesh/describe.hpp>
 #include <pliant/mesh/sides.hpp>
 #include <pliant/quadrature/corners.hpp>
 #include <pliant/quadrature/gauss.hpp>
@@ -16,13 +17,6 @@
 namespace pliant {
 
 namespace detail {
-
-template <Element E, class M>
-std::string describe(M const& mesh, std::size_t e) {
-  std::string text = message({E::name(), " element ", e, " with nodes"});
-  for (Index node : mesh.template elements<E>()[e]) text += message({" ", node});
-  return text;
-}
 
 template <Element E, class M>
 void check_elements(M const& mesh) {
@@ -219,8 +213,9 @@ void check_slaves(M const& mesh) {
 
 /// Throws Error when the mesh has no elements, a node that is not finite or belongs to no element, an index out
 /// of range, an element that is inverted, has no volume or is there twice, or a node that hangs on an
-/// edge or a flat side and is not listed as a slave; and for slaves whose weights do not add up to one or put
-/// them elsewhere. The message names the first culprit.
+/// edge or a flat side, or lies in the middle of one for one of its elements and not for another, and is not
+/// listed as a slave; and for slaves whose weights do not add up to one or put them elsewhere. The message
+/// names the first culprit.
 template <Element... Es>
 void check(Mesh<Es...> const& mesh) {
   if ((mesh.template elements<Es>().empty() && ...))
@@ -243,6 +238,7 @@ void check(Mesh<Es...> const& mesh) {
                   " belongs to no element; leave it out, and number the others without it");
   (detail::check_twins<Es>(mesh), ...);
   detail::check_slaves(mesh);
+  detail::check_middles(mesh);
   detail::check_hanging(mesh);
 }
 
