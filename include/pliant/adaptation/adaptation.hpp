@@ -93,6 +93,7 @@ class Adaptation {
           throw;
         }
       }();
+      if (moved) parts.state.integrator.implicit.a.clear();
       if (plan) tell_listeners(parts, *plan);
     } else if constexpr (switches) {
       switch_groups(parts);
@@ -248,13 +249,17 @@ class Adaptation {
   }
   template <class Parts>
   void switch_groups(Parts& parts) const {
-    if (!asks_whether_to_switch(parts) || something_moves(parts)) move_elements(parts);
+    if (asks_whether_to_switch(parts) && !something_moves(parts)) return;
+    move_elements(parts);
+    parts.state.integrator.implicit.a.clear();
   }
-  /// Between the steps of leapfrog, and where no integrator has a step, nothing follows from a switch but the
-  /// elements' own: on a backend that looks at each tag as it goes, the host need not know of it.
+  /// Between the steps of leapfrog, and where no integrator has a step or accelerations, nothing follows from a
+  /// switch but the elements' own: on a backend that looks at each tag as it goes, the host need not know
+  /// of it.
   template <class Parts>
   static bool asks_whether_to_switch(Parts const& parts) {
     return Parts::backend_type::orders_by_group || parts.forces_current ||
+           !parts.state.integrator.implicit.empty() ||
            (parts.state.pending_half_kick == 0 && parts.state.integrator.step > 0);
   }
   template <class Parts>

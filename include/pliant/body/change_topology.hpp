@@ -230,6 +230,7 @@ ChangedTopology<Parts> change_topology(
   });
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
+  state.integrator.implicit = {};
   return changed;
 }
 

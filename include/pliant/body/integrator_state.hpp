@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace pliant {
 
@@ -16,10 +17,33 @@ struct FrequencyBounds {
   }
 };
 
-/// What an explicit integrator keeps from call to call. It stands in the body's state, so that a run that
-/// is rolled back or resumed goes on as it would have.
+/// What an implicit integrator keeps from call to call: the motion over (node, direction) in the user's order, with
+/// digits beyond the body's precision and the velocities of driven nodes, which the body does not keep, and what
+/// the accelerations are in balance with. Empty where something else moved the body last; without
+/// accelerations where its forces became others.
+struct ImplicitState {
+  std::vector<double> u, v, a;   // m, m/s, m/s²
+  std::vector<double> external;  // N: gravity and loads
+  double damping = 0;            // 1/s
+  std::int32_t mass = 0;         // which MassMatrix
+
+  bool empty() const { return u.empty(); }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("displacements", r.u...);
+    visit("velocities", r.v...);
+    visit("accelerations", r.a...);
+    visit("loads", r.external...);
+    visit("damping", r.damping...);
+    visit("masses", r.mass...);
+  }
+};
+
+/// What an integrator keeps from call to call. It stands in the body's state, so that a run that is rolled back
+/// or resumed goes on as it would have.
 struct IntegratorState {
-  bool active = false;    // an integrator has taken this state over
+  bool active = false;    // an explicit integrator has taken this state over
   double step = 0;        // s
   double macro_step = 0;  // s: of level 0 of local steps, before `slower`; 0 without them
   double slower = 1;      // the step is this often smaller than the stable one asks
@@ -34,6 +58,7 @@ struct IntegratorState {
   double last_energy = std::numeric_limits<double>::quiet_NaN();
   double scale = 0;     // the largest of strain and kinetic energy so far, J
   double unbooked = 0;  // changes that were not booked up to the last check
+  ImplicitState implicit{};
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -51,6 +76,7 @@ struct IntegratorState {
     visit("last energy", r.last_energy...);
     visit("scale", r.scale...);
     visit("unbooked changes", r.unbooked...);
+    visit("implicit motion", r.implicit...);
   }
 };
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include <pliant/solver/assemble_mass.hpp>
 #include <pliant/solver/linear/direct_solver.hpp>
 #include <pliant/solver/newton.hpp>
@@ -15,8 +13,20 @@ struct NewmarkOptions {
   /// large ones its energy may grow: watch it, or take γ > 1/2 with β = (γ + 1/2)²/4.
   double beta = 0.25, gamma = 0.5;  // β in (0, 1], γ in [1/2, 1]
   MassMatrix mass = MassMatrix::consistent;
-  int max_iterations = 30;   // of Newton's method, per step
-  double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
+  int max_iterations = 30;     // of Newton's method, per step
+  double tolerance = 1e-10;    // of the residual, relative to the largest of the forces; below 1
+  bool accept_folded = false;  // steps that fold the body somewhere, instead of an Error
+};
+
+/// What a call of Newmark did, and at what cost.
+struct NewmarkReport {
+  int steps = 0;           // taken
+  double time = 0;         // s: where the body is now
+  int iterations = 0;      // of Newton's method, in all
+  int factorisations = 0;  // of matrices, in all
+  double residual = 0;     // N, of the last step
+  LeastJacobian
+      least_J{};  // det F where it is least at the ends of these steps, at points of elements and between
 };
 
 /// Implicit time integration on the assembled matrix, in double precision (Newmark 1959):
@@ -39,44 +49,40 @@ class Newmark {
                   "; give a number between 0 and 1, relative to the forces");
   }
 
-  /// Takes steps; driven nodes have the speed of their motions over a step. Throws Error where one does not
-  /// converge; the body is then exactly as the last one that did left it.
+  /// Takes steps; driven nodes have the speed of their motions over a step. What it needs from call to call stands
+  /// in the body's state: a body that is saved, copied or rolled back goes on with the same bits, by this
+  /// Newmark or another. Throws Error where a step does not converge or folds the body (det F ≤ 0, looked
+  /// for all over each element whose law is not linear); the body is then exactly as the last step that was good
+  /// left it.
   template <DeformableBody TheBody>
-  void operator()(TheBody& body, int steps = 1) {
+  NewmarkReport operator()(TheBody& body, int steps = 1) {
     static_assert(!TheBody::has_internal_variables,
                   "Newmark takes laws without internal variables: step viscous bodies with "
                   "CentralDifference");
     if (steps < 0) throw Error("Newmark: ", steps, " steps; give 0 or more");
-    if (steps == 0) return;
-    using Problem = detail::StaticProblem<TheBody>;
+    NewmarkReport report{.time = body.time()};
+    if (steps == 0) return report;
+    int const before = direct_.factorisations() + by_mass_.factorisations();
     System<TheBody> const system(body, options_.mass);
-    State now{system.problem.start(), Problem::flat(body.velocities()), {}};
-    // Velocities of driven nodes, which a body does not keep, and digits beyond its precision go on.
-    bool const goes_on = taken_ != nullptr && body.parts().integrator == taken_ &&
-                         revision_ == body.parts().revision && now.u.size() == seen_.u.size() &&
-                         now.u == seen_.u && now.v == seen_.v;
-    if (goes_on)
-      now = last_;
-    else
-      take_speed_of_motions(system.problem, now, body.time());
-    if (!goes_on || system.problem.external != external_) now.a = acceleration(system, now);
-    external_ = system.problem.external;
-    double time = body.time();
-    int done = 0;
+    Motion now = present_motion(body, system);
     try {
-      for (; done < steps; ++done) {
-        now = next(system, now, time + options_.step);
-        time += options_.step;
+      for (; report.steps < steps; ++report.steps) {
+        Motion then = next(system, now, report.time + options_.step, report);
+        look_for_folds(body, then, report);
+        now = std::move(then);
+        report.time += options_.step;
       }
     } catch (...) {
-      if (done > 0) store(body, now, time, done);
+      if (report.steps > 0) store(body, system, now, report);
       throw;
     }
-    store(body, now, time, done);
+    store(body, system, now, report);
+    report.factorisations = direct_.factorisations() + by_mass_.factorisations() - before;
+    return report;
   }
 
  private:
-  struct State {
+  struct Motion {
     Eigen::VectorXd u, v, a;
   };
 
@@ -95,10 +101,35 @@ class Newmark {
           conservative(detail::is_conservative(b)) {}
   };
 
+  /// Where the body is, with accelerations in balance.
+  template <DeformableBody TheBody>
+  Motion present_motion(TheBody& body, System<TheBody> const& system) {
+    auto const& kept = body.state().integrator.implicit;
+    Motion now;
+    bool balanced = false;
+    if (kept.empty()) {
+      now = {system.problem.start(), detail::StaticProblem<TheBody>::flat(body.velocities()), {}};
+      take_speed_of_motions(system.problem, now, body.time());
+    } else {
+      now = {vector_of(kept.u), vector_of(kept.v), vector_of(kept.a)};
+      balanced = !kept.a.empty() && system.problem.external == vector_of(kept.external) &&
+                 kept.damping == body.state().damping &&
+                 kept.mass == static_cast<std::int32_t>(options_.mass);
+    }
+    if (!balanced) now.a = acceleration(system, now);
+    return now;
+  }
+  static Eigen::Map<Eigen::VectorXd const> vector_of(std::vector<double> const& values) {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
+  }
+  static std::vector<double> list_of(Eigen::VectorXd const& values) {
+    return {values.data(), values.data() + values.size()};
+  }
+
   /// Gives driven nodes the mean velocity of their motions over the step before a time, s, or over the first one
   /// where none was before.
   template <class Problem>
-  void take_speed_of_motions(Problem const& problem, State& s, double time) const {
+  void take_speed_of_motions(Problem const& problem, Motion& s, double time) const {
     double const start = time >= options_.step ? time - options_.step : time;
     Eigen::VectorXd from = s.u, to = s.u;
     problem.prescribe(from, start);
@@ -108,7 +139,7 @@ class Newmark {
 
   /// In balance with the forces at u and v; zero where nodes are held or driven.
   template <DeformableBody TheBody>
-  Eigen::VectorXd acceleration(System<TheBody> const& system, State const& s) {
+  Eigen::VectorXd acceleration(System<TheBody> const& system, Motion const& s) {
     auto const force = assemble(system.body, s.u, Assemble::energy_and_force).force;
     Eigen::VectorXd const pull =
         force + system.problem.external - system.body.state().damping * (system.mass * s.v);
@@ -121,9 +152,10 @@ class Newmark {
     return a;
   }
 
-  /// The state at a time, one step on.
+  /// The motion at a time, one step on.
   template <DeformableBody TheBody>
-  State next(System<TheBody> const& system, State const& now, double time) {
+  Motion next(System<TheBody> const& system, Motion const& now, double time,
+              NewmarkReport& report) {
     double const dt = options_.step, beta = options_.beta, gamma = options_.gamma;
     double const damping = system.body.state().damping;
     double const a_by_u = 1 / (beta * dt * dt), v_by_u = gamma / (beta * dt);
@@ -134,7 +166,7 @@ class Newmark {
     Eigen::SparseMatrix<double> const inertia =
         unknowns.restrict(system.mass) * (a_by_u + damping * v_by_u);
 
-    State then;
+    Motion then;
     then.u = now.u;  // held where it is
     system.problem.add(then.u, dt * now.v + dt * dt / 2 * now.a, 1);
     system.problem.prescribe(then.u, time);
@@ -147,7 +179,7 @@ class Newmark {
       Eigen::VectorXd const inert = system.mass * (then.a + damping * then.v);
       Eigen::VectorXd const residual = unknowns.restrict(Eigen::VectorXd(pull - inert));
       double const scale = std::max({external.norm(), state.force.norm(), inert.norm()});
-      double const size = residual.norm();
+      double const size = report.residual = residual.norm();
       // Where forces cancel to rounding, the displacement tells.
       bool const settled = last_change <= 1e-14 * (then.u.norm() + dt * then.v.norm());
       if (std::isfinite(size) && (size <= options_.tolerance * scale || settled)) return then;
@@ -159,30 +191,46 @@ class Newmark {
       Eigen::VectorXd const du = direct_.solve(matrix, residual, system.conservative);
       system.problem.add(then.u, unknowns.expand(du), 1);
       last_change = du.norm();
+      ++report.iterations;
     }
   }
 
+  /// Throws Error where a step folds an element whose law takes no folds.
   template <DeformableBody TheBody>
-  void store(TheBody& body, State const& state, double time, int steps) {
+  void look_for_folds(TheBody const& body, Motion const& then, NewmarkReport& report) const {
+    auto const least = detail::least_jacobian_at(body.parts(), then.u, true);
+    if (!(least.value > 0) && !options_.accept_folded) {
+      auto const folded = detail::least_jacobian_at(body.parts(), then.u, false);
+      if (!(folded.value > 0))
+        throw Error("Newmark: the step to time ", report.time + options_.step,
+                    " s folds the body: det F comes to ", folded.value, " in ", folded.element,
+                    " element ", folded.number,
+                    ", perhaps between the points of its quadrature; take smaller steps, more "
+                    "points or a finer mesh there, or accept it by accept_folded");
+    }
+    if (!(least.value >= report.least_J.value)) report.least_J = least;
+  }
+
+  template <DeformableBody TheBody>
+  void store(TheBody& body, System<TheBody> const& system, Motion const& motion,
+             NewmarkReport const& report) {
     using Problem = detail::StaticProblem<TheBody>;
-    auto const u = Problem::per_node(state.u), v = Problem::per_node(state.v);
+    auto const u = Problem::per_node(motion.u), v = Problem::per_node(motion.v);
     detail::check_field<typename TheBody::scalar>("Newmark (velocities)", v, body.nodes());
     body.set_displacements(u);
     body.set_velocities(v);
-    body.parts().state.time = time;
-    body.parts().state.steps += steps;
-    body.parts().integrator = taken_ = std::make_shared<char>();
-    revision_ = body.parts().revision;
-    last_ = state;
-    seen_ = {Problem::flat(body.displacements()), Problem::flat(body.velocities()), {}};
+    auto& state = body.parts().state;
+    state.time = report.time;
+    state.steps += report.steps;
+    state.integrator.active = false;  // explicit integrators begin anew
+    state.integrator.implicit = {list_of(motion.u), list_of(motion.v),
+                                 list_of(motion.a), list_of(system.problem.external),
+                                 state.damping,     static_cast<std::int32_t>(options_.mass)};
+    body.parts().integrator = nullptr;
   }
 
   NewmarkOptions options_;
   detail::DirectSolver direct_{"Newmark"}, by_mass_{"Newmark"};
-  std::shared_ptr<void const> taken_;  // tells the body as it was left from all others
-  long revision_ = 0;
-  Eigen::VectorXd external_;  // of last_
-  State last_, seen_;         // as it was left, and as the body has it
 };
 
 }  // namespace pliant
