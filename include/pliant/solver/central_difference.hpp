@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
 #include <pliant/body/leapfrog_energy.hpp>
-#include <pliant/body/ledger.hpp>
-#include <pliant/body/set_state.hpp>
 #include <pliant/solver/distortion.hpp>
+#include <pliant/solver/energy_check.hpp>
 #include <pliant/solver/leapfrog.hpp>
 #include <pliant/solver/stable_step.hpp>
 
@@ -171,74 +169,46 @@ class CentralDifference {
       parts.state.energy_of_steps += change;
       own.last_energy -= change;
     } else {
-      forget_energies(own);
+      detail::forget_energies(own);
     }
     own.step = step;
   }
 
-  /// The next check has nothing to compare with.
-  static void forget_energies(IntegratorState& own) {
-    own.first_energy = own.last_energy = std::numeric_limits<double>::quiet_NaN();
-  }
+  /// What its check of a state asks of it.
+  template <class Parts>
+  struct Checked {
+    Parts& parts;
+    WatchedEnergy energies{};
 
+    detail::CheckedEnergy energy(double total, double booked) {
+      auto& own = parts.state.integrator;
+      energies = {total, square(own.step) * acceleration_term(parts)};
+      if (double const unbooked = unbooked_changes(parts);
+          unbooked != std::exchange(own.unbooked, unbooked))
+        detail::forget_energies(own);
+      return {total - booked, energies.kept() - booked};
+    }
+    /// Whether the total has no more over what leapfrog keeps than a stable step leaves it: of linear laws, whose
+    /// forces are the loads and those of the strain energy, √A ≤ √A_loads + ω Δt/2 √W. So a load that
+    /// comes at once is no growth, whenever it comes.
+    bool explains(double growth) const {
+      double const bound = step() * std::sqrt(load_term(parts)) + std::sqrt(growth);
+      return !(energies.acceleration > bound * bound);
+    }
+    double step() const { return parts.state.integrator.step; }
+    void go_back() const { roll_back_motion(parts); }
+    void halve(double slower) const { parts.state.integrator.slower = slower; }
+  };
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
   template <class Parts>
   bool check(Parts& parts) {
-    auto& state = parts.state;
-    auto& own = state.integrator;
-    double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
-    double const present = strain + kinetic_energy_of(parts);
-    auto const energies = leapfrog_energy(parts);
-    double const booked = booked_energy(parts);
-    double const total = energies.total - booked, kept = energies.kept() - booked;
-    double const unbooked = unbooked_changes(parts);
-    if (unbooked != own.unbooked) forget_energies(own);
-    bool const watched =
-        !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
-    // An unstable step lets the total grow while what leapfrog keeps stays; a state that stiffens faster than
-    // the step follows adds to that too. Comparisons with NaN, before the first check, are false.
-    bool const grew =
-        watched &&
-        ((total > own.last_energy + options_.energy_growth * present &&
-          is_beyond_loads(parts, energies.acceleration, options_.energy_growth * present)) ||
-         kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
-    if (std::isfinite(total) && !grew) {
-      own.scale = std::max(own.scale, present);
-      own.last_energy = total;
-      own.unbooked = unbooked;
-      if (!std::isfinite(own.first_energy)) own.first_energy = kept;
-      own.next_check = state.steps + options_.check_interval;
-      keep_checkpoint(parts);
-      return true;
-    }
-    std::string const what =
-        detail::message({"CentralDifference: the body ", grew ? "gained energy" : "went non-finite",
-                         " before step ", state.steps});
-    if (!parts.has_checkpoint)
-      throw Error(what,
-                  ", and there is no earlier state to go back to since the mesh, a condition or "
-                  "the state was changed by hand; start from a finite state, with a smaller step");
-    double const slower = own.slower, step = own.step;
-    roll_back_motion(parts);
-    if (slower >= 8)
-      throw Error(what, ", with an eighth of the step too (", step, " s); it is now at step ",
-                  state.steps, " and time ", state.time,
-                  " s, before that: look at its loads, and at laws that soften or cannot invert");
-    own.slower = 2 * slower;
+    detail::EnergyCheck const how{"CentralDifference",   "step",
+                                  "a smaller step",      options_.energy_growth,
+                                  options_.energy_drift, options_.check_interval};
+    Checked<Parts> checked{parts};
+    if (detail::check_energy(parts, how, checked)) return true;
     ++retries_;
-    own.next_check = state.steps + options_.check_interval;
-    own.next_refresh = own.next_watch = state.steps;
     return false;
-  }
-
-  /// Whether the total has more over what leapfrog keeps than a stable step leaves it: of linear laws, whose
-  /// forces are the loads and those of the strain energy, √A ≤ √A_loads + ω Δt/2 √W. So a load that comes at
-  /// once is no growth, whenever it comes.
-  template <class Parts>
-  static bool is_beyond_loads(Parts& parts, double acceleration, double growth) {
-    double const step = parts.state.integrator.step;
-    double const bound = step * std::sqrt(load_term(parts)) + std::sqrt(growth);
-    return acceleration > bound * bound;
   }
 
   CentralDifferenceOptions options_;

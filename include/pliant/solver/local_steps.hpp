@@ -115,7 +115,7 @@ class LocalSteps {
 
   /// Makes the schedule that a state had which was loaded or rolled back to.
   template <class Parts>
-  void restore(Parts& parts) {
+  void restore(Parts& parts) const {
     bool whole = true;
     parts.for_each_type([&](auto& table, auto& elements) {
       whole = whole && elements.step_levels.size() == static_cast<std::size_t>(table.count());
@@ -168,51 +168,42 @@ class LocalSteps {
     return half_kick_energy(parts, own.macro_step / own.slower);
   }
 
+  /// What its check of a state asks of it.
+  template <class Parts>
+  struct Checked {
+    LocalSteps const& integrator;
+    Parts& parts;
+
+    detail::CheckedEnergy energy(double total, double booked) const {
+      // Of the present levels, once there are some; a change by hand begins the comparison anew.
+      auto& own = parts.state.integrator;
+      if (!parts.has_checkpoint) own.first_energy = std::numeric_limits<double>::quiet_NaN();
+      double const kept = parts.schedule ? total - booked - correction(parts)
+                                         : std::numeric_limits<double>::quiet_NaN();
+      return {total - booked, kept};
+    }
+    bool explains(double) const { return false; }
+    double step() const { return integrator.step_; }
+    void go_back() const {
+      roll_back(parts);
+      integrator.restore(parts);
+    }
+    void halve(double slower) const {
+      auto& own = parts.state.integrator;
+      double const before = parts.schedule ? correction(parts) : 0;
+      own.slower = slower;
+      if (parts.schedule) own.first_energy += before - correction(parts);
+    }
+  };
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
   template <class Parts>
   bool check(Parts& parts) {
-    auto& state = parts.state;
-    auto& own = state.integrator;
-    double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
-    double const present = strain + kinetic_energy_of(parts);
-    double const total =
-        strain + kinetic_energy_of(parts) + potential_energy_of(parts) - booked_energy(parts);
-    // Of the present levels, once there are some; a change by hand begins the comparison anew.
-    if (!parts.has_checkpoint) own.first_energy = std::numeric_limits<double>::quiet_NaN();
-    double const kept =
-        parts.schedule ? total - correction(parts) : std::numeric_limits<double>::quiet_NaN();
-    bool const watched = parts.driven.empty() && parts.pressures.empty();
-    bool const grew =
-        watched && (total > own.last_energy + options_.energy_growth * present ||
-                    kept > own.first_energy + options_.energy_drift * std::max(own.scale, present));
-    if (std::isfinite(total) && !grew) {
-      own.scale = std::max(own.scale, present);
-      own.last_energy = total;
-      if (!std::isfinite(own.first_energy)) own.first_energy = kept;
-      own.next_check = state.steps + options_.check_interval;
-      keep_checkpoint(parts);
-      return true;
-    }
-    std::string const what =
-        detail::message({"LocalSteps: the body ", grew ? "gained energy" : "went non-finite",
-                         " before macro step ", state.steps});
-    if (!parts.has_checkpoint)
-      throw Error(what,
-                  ", and there is no earlier state to go back to since the mesh, a condition or "
-                  "the state was changed by hand; start from a finite state, with less safety");
-    double const slower = own.slower;
-    roll_back(parts);
-    restore(parts);
-    if (slower >= 8)
-      throw Error(what, ", with an eighth of the step too (", step_,
-                  " s); it is now at macro step ", state.steps, " and time ", state.time,
-                  " s, before that: look at its loads, and at laws that soften or cannot invert");
-    double const before = parts.schedule ? correction(parts) : 0;
-    own.slower = 2 * slower;
-    if (parts.schedule) own.first_energy += before - correction(parts);
+    detail::EnergyCheck const how{"LocalSteps",          "macro step",
+                                  "less safety",         options_.energy_growth,
+                                  options_.energy_drift, options_.check_interval};
+    Checked<Parts> const checked{*this, parts};
+    if (detail::check_energy(parts, how, checked)) return true;
     ++retries_;
-    own.next_check = state.steps + options_.check_interval;
-    own.next_refresh = own.next_watch = state.steps;
     return false;
   }
 

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <pliant/body/ledger.hpp>
+#include <pliant/body/set_state.hpp>
+
+// Whether the state of a run is good: finite, and with no more energy than it had and was given.
+namespace pliant::detail {
+
+/// How an integrator checks states, and the words for it.
+struct EnergyCheck {
+  char const* integrator;
+  char const* step_name;  // what it counts: steps
+  char const* cure;       // what to begin anew with
+  double growth, drift;   // see CentralDifferenceOptions
+  int interval;           // steps between checks
+};
+
+/// The energy of a state less what was booked, J: in all, and what the integrator's steps keep; NaN where they
+/// are not known.
+struct CheckedEnergy {
+  double total, kept;
+};
+
+/// The next check has nothing to compare with.
+inline void forget_energies(IntegratorState& own) {
+  own.first_energy = own.last_energy = std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Whether the state is good, and is kept as a checkpoint; if not, it is rolled back, to be done again with half
+/// the step, or an Error where that was tried thrice or there is no checkpoint. The integrator says the rest:
+///   energy(total, booked) -> CheckedEnergy      where the total energy and what was booked are these, J
+///   explains(total, most) -> bool               whether growth of the total by `most` is none
+///   step() -> double                            s, for the message
+///   go_back()                                   to the checkpoint
+///   halve()                                     the step
+template <class Parts, class Steps>
+bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
+  auto& state = parts.state;
+  auto& own = state.integrator;
+  double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
+  double const kinetic = kinetic_energy_of(parts), present = strain + kinetic;
+  double const booked = booked_energy(parts);
+  auto const [total, kept] = steps.energy(present + potential_energy_of(parts), booked);
+  bool const watched =
+      !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
+  // An unstable step lets the total grow while what the steps keep stays; a state that stiffens faster than the
+  // step follows adds to that too. Comparisons with NaN, before the first check, are false.
+  bool const grew =
+      watched && ((total > own.last_energy + check.growth * present &&
+                   !steps.explains(check.growth * present)) ||
+                  kept > own.first_energy + check.drift * std::max(own.scale, present));
+  if (std::isfinite(total) && !grew) {
+    own.scale = std::max(own.scale, present);
+    own.last_energy = total;
+    if (!std::isfinite(own.first_energy)) own.first_energy = kept;
+    own.next_check = state.steps + check.interval;
+    keep_checkpoint(parts);
+    return true;
+  }
+  std::string const what =
+      message({check.integrator, ": the body ", grew ? "gained energy" : "went non-finite",
+               " before ", check.step_name, " ", state.steps});
+  if (!parts.has_checkpoint)
+    throw Error(what,
+                ", and there is no earlier state to go back to since the mesh, a condition or the "
+                "state was changed by hand; start from a finite state, with ",
+                check.cure);
+  double const slower = own.slower, step = steps.step();
+  steps.go_back();
+  if (slower >= 8)
+    throw Error(what, ", with an eighth of the step too (", step, " s); it is now at ",
+                check.step_name, " ", state.steps, " and time ", state.time,
+                " s, before that: look at its loads, and at laws that soften or cannot invert");
+  steps.halve(2 * slower);
+  own.next_check = state.steps + check.interval;
+  own.next_refresh = own.next_watch = state.steps;
+  return false;
+}
+
+}  // namespace pliant::detail
