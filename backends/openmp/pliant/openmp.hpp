@@ -228,6 +228,12 @@ class OpenMP {
     std::array<double, Visitor::counters> counters{};
     auto const tally = [&](int k, double x) { counters[static_cast<std::size_t>(k)] += x; };
     detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
+      if constexpr (Selects<Visitor>) {
+        bool some = false;
+        for (int l = 0; l < m.count; ++l)
+          some = some || visitor.selects(m.element[l], static_cast<Tag>(group.value));
+        if (!some) return;
+      }
       auto const values =
           evaluate_at(visitor, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int l = 0; l < m.count; ++l) {

@@ -115,6 +115,8 @@ class Reference {
     require_visitor<Visitor, T, Again, Groups, OneElement, Values<nodes, Fields>...>();
     auto const tally = [&counters](int k, double x) { counters.data()[k] += x; };
     loop<Groups>(table, [&](auto group, Index e, Index const* row) {
+      if constexpr (Selects<Visitor>)
+        if (!visitor.selects(e, static_cast<Tag>(group.value))) return;
       auto const values = evaluate_at(visitor, group, OneElement{e}, gather<nodes>(fields, row)...);
       visitor.finish(group, e, values, Again{row, {fields...}}, tally);
     });
