@@ -1,11 +1,11 @@
 #pragma once
 
+#include <pliant/adaptation/element_check.hpp>
 #include <pliant/adaptation/estimator/discrepancy.hpp>
 #include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/force_costs.hpp>
 #include <pliant/adaptation/sleep_look.hpp>
 #include <pliant/adaptation/spending.hpp>
-#include <pliant/adaptation/switching.hpp>
 
 namespace pliant {
 
@@ -66,12 +66,11 @@ struct ChoiceLooks<TypeList<All...>, Fs...> {
 };
 
 /// What the kernels of a check are made of.
-template <class Table, int Dim, class List>
+template <class Table, class List>
 struct RulesOfChoice;
-template <class Table, int Dim, class... Rules>
-struct RulesOfChoice<Table, Dim, std::tuple<Rules...>> {
-  using Evaluated = TableRules<Table, Rules...>;
-  using Act = ActVisitor<Table, Dim, Rules...>;
+template <class Table, class... Rules>
+struct RulesOfChoice<Table, std::tuple<Rules...>> {
+  using type = TableRules<Table, Rules...>;
 };
 
 /// The costs of a choice's groups, in that of the last. Throws Error where they do not ascend.
@@ -92,22 +91,24 @@ template <class Parts, class Table, class Elements, class TheRule>
 class ChoiceCheck;
 
 template <class Parts, class Table, class Elements, class... Fs>
-class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>> {
-  using B = typename Parts::backend_type;
-  using T = typename Parts::T;
+class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
+    : private ElementCheck<Parts, Table, Elements> {
+  using Base = ElementCheck<Parts, Table, Elements>;
+  using Base::backend, Base::workspace, Base::target;
+  using Base::parts_, Base::table_;
+  using typename Base::T;
   static constexpr int count = sizeof...(Fs);
   static_assert(((Table::template group_of<Fs> < Table::groups) && ...),
                 "a choice names a formulation of which the body has no Group");
   using Of = ChoiceLooks<TypeList<Fs...>, Fs...>;
-  using Looks = typename RulesOfChoice<Table, Parts::dim, typename Of::Looks>::Evaluated;
-  using Moves = typename RulesOfChoice<Table, Parts::dim, typename Of::Moves>::Evaluated;
-  using Act = typename RulesOfChoice<Table, Parts::dim, typename Of::Moves>::Act;
+  using Looks = typename RulesOfChoice<Table, typename Of::Looks>::type;
+  using Moves = typename RulesOfChoice<Table, typename Of::Moves>::type;
 
  public:
   /// `evaluations`: the budget now; NaN: not known yet, nothing switches.
   ChoiceCheck(Parts& parts, Table& table, Elements& elements, ChoiceRule<Fs...> const& rule,
               double evaluations)
-      : parts_(parts), table_(table), elements_(elements), rule_(rule), evaluations_(evaluations) {}
+      : Base(parts, table, elements), rule_(rule), evaluations_(evaluations) {}
 
   void prepare() const {
     (void)choice();  // throws where costs do not ascend
@@ -127,15 +128,7 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>> {
                           c, rule_.limits_sums() ? ranking : nullptr, workspace().next.data()},
                       parts_.moves.data());
   }
-  void act() const {
-    backend().template visit<Table::groups>(
-        parts_.awake_in(table_),
-        Act{table_.laws, Moves{},
-            surroundings<T, Moves>(std::as_const(parts_), std::as_const(table_), workspace()),
-            workspace().next.data(), workspace().values.data(), table_.count(), target()},
-        elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
-        std::as_const(parts_).v());
-  }
+  void act() const { this->move_by(Moves{}); }
   /// What its elements cost in their present groups, in evaluations of the last, those that sleep aside.
   double evaluations_now() const {
     auto const c = choice();
@@ -143,33 +136,12 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>> {
   }
 
  private:
-  B const& backend() const { return parts_.backend; }
-  CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
-  SwitchTarget<T> target() const {
-    auto& statistics = elements_.statistics;
-    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
-            parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
-  }
   bool reserve() const {
-    auto& w = workspace();
-    auto const n = static_cast<std::size_t>(table_.count());
-    bool made = false;
-    auto const hold = [&](auto& array, std::size_t size) {
-      made = CriteriaWorkspace<B>::reserve(backend(), array, size) || made;
-    };
-    if (!elements_.statistics.open) {
-      elements_.statistics.start(backend(), table_.count(), parts_.state.record.born);
-      made = true;
-    }
-    if (w.number.size() < n) {
-      w.number = upload(backend(), table_.user_element);
-      made = true;
-    }
-    hold(w.next, n);
-    hold(w.values, static_cast<std::size_t>(Looks::rows) * n);
-    hold(w.rankings, 1);
-    hold(w.histogram, std::size_t{histogram_bins});
-    return made;
+    typename Base::Room room(*this);
+    room.hold_switching();
+    room.hold_ranking(1);
+    room.hold_values(Looks::rows);
+    return room.made;
   }
   ChoiceTable<Table::groups, count> places() const {
     ChoiceTable<Table::groups, count> made;
@@ -207,9 +179,6 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>> {
             !(evaluations_ == evaluations_)};
   }
 
-  Parts& parts_;
-  Table& table_;
-  Elements& elements_;
   ChoiceRule<Fs...> const& rule_;
   double evaluations_;
 };

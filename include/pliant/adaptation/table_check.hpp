@@ -1,9 +1,9 @@
 #pragma once
 
 #include <pliant/adaptation/decision.hpp>
+#include <pliant/adaptation/element_check.hpp>
 #include <pliant/adaptation/ranking.hpp>
 #include <pliant/adaptation/refinement.hpp>
-#include <pliant/adaptation/switching.hpp>
 
 namespace pliant::detail {
 
@@ -35,9 +35,13 @@ template <class Parts, class Table, class Elements, class Rules>
 class TableCheck;
 
 template <class Parts, class Table, class Elements, class... Rules>
-class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
-  using B = typename Parts::backend_type;
-  using T = typename Parts::T;
+class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
+    : private ElementCheck<Parts, Table, Elements> {
+  using Base = ElementCheck<Parts, Table, Elements>;
+  using Base::backend, Base::workspace, Base::target;
+  using Base::parts_, Base::table_, Base::elements_;
+  using typename Base::B;
+  using typename Base::T;
   using All = TableRules<Table, Rules...>;
   static constexpr bool switches = (SwitchingRule<Rules> || ...);
   static constexpr bool changes_mesh = (MeshRule<Rules> || ...);
@@ -48,7 +52,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
 
  public:
   TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules)
-      : parts_(parts), table_(table), elements_(elements), rules_{rules} {}
+      : Base(parts, table, elements), rules_{rules} {}
 
   /// Allocates what `decide` and `act` need, in the first check of a mesh.
   void prepare() const {
@@ -69,15 +73,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
     }
   }
   void act() const {
-    if constexpr (switches)
-      backend().template visit<Table::groups>(
-          parts_.awake_in(table_),
-          ActVisitor<Table, Parts::dim, Rules...>{
-              table_.laws, rules_,
-              surroundings<T, All>(std::as_const(parts_), std::as_const(table_), workspace()),
-              workspace().next.data(), workspace().values.data(), table_.count(), target()},
-          elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
-          std::as_const(parts_).v());
+    if constexpr (switches) this->move_by(rules_);
   }
 
   /// Adds a list of the elements that rules want refined, and one of those that rules would merge and none refines, by
@@ -119,13 +115,6 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   auto elements() const {
     return changes_mesh || ranks() ? active(table_.elements) : parts_.awake_in(table_);
   }
-  B const& backend() const { return parts_.backend; }
-  CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
-  SwitchTarget<T> target() const {
-    auto& statistics = elements_.statistics;
-    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
-            parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
-  }
   template <class Visit>
   void each_kept(Visit const& visit) const {
     if constexpr (switches) {
@@ -141,38 +130,22 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
   }
   /// Whether something was allocated.
   bool reserve() const {
-    using Workspace = CriteriaWorkspace<B>;
-    auto& w = workspace();
-    auto const n = static_cast<std::size_t>(table_.count());
-    bool made = false;
-    auto const hold = [&](auto& array, std::size_t size) {
-      made = Workspace::reserve(backend(), array, size) || made;
-    };
-    if constexpr (switches) {
-      hold(w.next, n);
-      if (!elements_.statistics.open) {
-        elements_.statistics.start(backend(), table_.count(), parts_.state.record.born);
-        made = true;
-      }
-    }
+    typename Base::Room room(*this);
+    if constexpr (switches) room.hold_switching();
     if constexpr (changes_mesh) {
-      hold(w.mesh_marks, n);
-      if (w.levels.size() < n) {
+      auto& w = workspace();
+      room.hold(w.mesh_marks, room.count());
+      if (w.levels.size() < room.count()) {
         w.levels = upload(backend(), internal_levels());
-        made = true;
+        room.made = true;
       }
     }
-    if (changes_mesh || ranks()) hold(w.values, static_cast<std::size_t>(All::rows) * n);
+    if (changes_mesh || ranks()) room.hold_values(All::rows);
     if (ranks()) {
-      if (w.number.size() < n) {
-        w.number = upload(backend(), table_.user_element);
-        made = true;
-      }
-      hold(w.candidates, n);
-      hold(w.rankings, std::size_t{count});
-      hold(w.histogram, std::size_t{histogram_bins});
+      room.hold_ranking(std::size_t{count});
+      room.hold(workspace().candidates, room.count());
     }
-    return made;
+    return room.made;
   }
 
   template <class U>
@@ -271,9 +244,6 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>> {
     return internal;
   }
 
-  Parts& parts_;
-  Table& table_;
-  Elements& elements_;
   All rules_;
 };
 

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <pliant/adaptation/switching.hpp>
+#include <pliant/body/criteria_workspace.hpp>
+
+namespace pliant::detail {
+
+/// What checks of the elements of one type have in common, whatever decides: what they read, change and allocate.
+/// None waits for the backend.
+template <class Parts, class Table, class Elements>
+class ElementCheck {
+ protected:
+  using B = typename Parts::backend_type;
+  using T = typename Parts::T;
+
+  ElementCheck(Parts& parts, Table& table, Elements& elements)
+      : parts_(parts), table_(table), elements_(elements) {}
+
+  B const& backend() const { return parts_.backend; }
+  CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
+  SwitchTarget<T> target() const {
+    auto& statistics = elements_.statistics;
+    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
+            parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
+  }
+  /// Moves the elements that are awake to their next groups, by the moves of some rules.
+  template <class... Rules>
+  void move_by(TableRules<Table, Rules...> const& rules) const {
+    backend().template visit<Table::groups>(
+        parts_.awake_in(table_),
+        ActVisitor<Table, Parts::dim, Rules...>{
+            table_.laws, rules,
+            surroundings<T, TableRules<Table, Rules...>>(std::as_const(parts_),
+                                                         std::as_const(table_), workspace()),
+            workspace().next.data(), workspace().values.data(), table_.count(), target()},
+        elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
+        std::as_const(parts_).v());
+  }
+
+  /// Allocates what is not there yet, and knows whether something was: recorded loops read it where it lies.
+  class Room {
+   public:
+    explicit Room(ElementCheck const& check) : check_(check) {}
+
+    bool made = false;
+    template <class U>
+    void hold(typename B::template Array<U>& array, std::size_t size) {
+      made = CriteriaWorkspace<B>::reserve(check_.backend(), array, size) || made;
+    }
+    /// For elements that change groups.
+    void hold_switching() {
+      hold(check_.workspace().next, count());
+      auto& statistics = check_.elements_.statistics;
+      if (statistics.open) return;
+      statistics.start(check_.backend(), check_.table_.count(), check_.parts_.state.record.born);
+      made = true;
+    }
+    /// For elements that are compared with each other.
+    void hold_ranking(std::size_t rankings) {
+      auto& w = check_.workspace();
+      if (w.number.size() < count()) {
+        w.number = upload(check_.backend(), check_.table_.user_element);
+        made = true;
+      }
+      hold(w.rankings, rankings);
+      hold(w.histogram, std::size_t{histogram_bins});
+    }
+    /// Rows of a value for each element.
+    void hold_values(int rows) {
+      hold(check_.workspace().values, static_cast<std::size_t>(rows) * count());
+    }
+    std::size_t count() const { return static_cast<std::size_t>(check_.table_.count()); }
+
+   private:
+    ElementCheck const& check_;
+  };
+
+  Parts& parts_;
+  Table& table_;
+  Elements& elements_;
+};
+
+}  // namespace pliant::detail
