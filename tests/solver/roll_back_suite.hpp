@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <pliant/law/decorators/viscosity.hpp>
+#include <pliant/solver/local_steps.hpp>
 
 #include "support/formulations.hpp"
 #include "support/repeatable.hpp"
@@ -341,6 +342,66 @@ TEST_CASE("a state that turns NaN is rolled back, or is an error that says where
     spoil();
     CHECK_THROWS_WITH(step(body), says("went non-finite") && says("no earlier state"));
   });
+}
+
+/// Spoils a body, lets an integrator roll back, and returns the times of its steps before, behind that, and when so many
+/// more have been good.
+template <class Integrator, class TheBody>
+std::array<double, 3> steps_around_trouble(TheBody& body, Integrator& integrate, int more) {
+  auto const step = [&] {
+    double const before = body.time();
+    integrate(body);
+    return body.time() - before;
+  };
+  integrate(body, 40);
+  double const first = step();
+  auto u = body.parts().layout.padded(body.displacements());
+  for (auto& x : u) x = NAN;
+  body.parts().state.u.upload(u);
+  forget_forces(body.parts());
+  integrate(body, 20);
+  CHECK(integrate.retries() == 1);
+  double const second = step();
+  integrate(body, more);
+  return {first, second, step()};
+}
+
+TEST_CASE("a step that was halved gets longer again when all has been well for long enough",
+          "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    auto const make = [&] {
+      auto body =
+          body_of<Linear>(backend, mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}}), gel);
+      body.clamp(body.mesh().boundary("left"));
+      body.set_gravity({0, -1});
+      return body;
+    };
+    for (int more : {40, 120}) {
+      CAPTURE(more);
+      auto body = make(), other = make();
+      CentralDifference step{{.check_interval = 16}};
+      LocalSteps local{{.check_interval = 16}};
+      for (auto const& [before, behind, later] :
+           {steps_around_trouble(body, step, more), steps_around_trouble(other, local, more)}) {
+        CHECK(behind == Approx(before / 2).epsilon(0.02));
+        CHECK(later == Approx(more < 64 ? behind : before).epsilon(0.02));
+      }
+      CHECK(step.retries() + local.retries() == 2);
+    }
+  });
+}
+
+TEST_CASE("longer steps that go wrong again are tried ever more seldom", "[solver]") {
+  MainBackend const backend;
+  auto body = body_of<Linear>(backend, mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}}), gel);
+  body.clamp(body.mesh().boundary("left"));
+  body.set_gravity({0, -1});
+  CentralDifference step{{.step = 1.5 * stable_step(body), .check_interval = 32}};
+  step(body, 8000);
+  CHECK(step.retries() >= 3);
+  CHECK(step.retries() <= 8);  // of 8000/128, were they tried at each opportunity
+  CHECK(std::isfinite(total_energy(body)));
+  CHECK(largest(body.displacements()) < 1);
 }
 
 }  // namespace pliant::test::roll_back_suite

@@ -47,8 +47,11 @@ struct IntegratorState {
   double step = 0;        // s
   double macro_step = 0;  // s: of level 0 of local steps, before `slower`; 0 without them
   double slower = 1;      // the step is this often smaller than the stable one asks
-  double distortion = 0;  // the largest when the step was chosen
-  double asked_step = 0;  // s, and the safety: what it was chosen by
+  std::int64_t slow_for =
+      0;  // steps: for how many it stays so after a roll-back; twice as many after the next
+  std::int64_t slow_until = 0;  // the step behind which a good check makes it longer again
+  double distortion = 0;        // the largest when the step was chosen
+  double asked_step = 0;        // s, and the safety: what it was chosen by
   double safety = 0;
   std::int64_t next_check = 0;    // steps
   std::int64_t next_refresh = 0;  // steps
@@ -66,6 +69,8 @@ struct IntegratorState {
     visit("step", r.step...);
     visit("macro step", r.macro_step...);
     visit("slower", r.slower...);
+    visit("steps that it stays slower", r.slow_for...);
+    visit("step until which it is slower", r.slow_until...);
     visit("distortion", r.distortion...);
     visit("step that was asked for", r.asked_step...);
     visit("safety", r.safety...);

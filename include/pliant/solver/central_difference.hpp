@@ -42,7 +42,8 @@ struct Advanced {
 /// damping. At intervals the state is checked: one that went non-finite, or whose energy grew by more
 /// than its loads and its adaptation explain, is rolled back to the last check and done again with half
 /// the step; after three halvings it throws Error, and the body is at the last good state. The smaller step
-/// stays, until another CentralDifference takes the body over. What a user set is not rolled back: gravity,
+/// stays for four check intervals, twice as long after each further roll-back, or until another
+/// CentralDifference takes the body over. What a user set is not rolled back: gravity,
 /// damping and loads act as they were set last. A call that is rolled back behind its own begin returns
 /// there, so that its caller can set what depends on time.
 class CentralDifference {
@@ -197,7 +198,7 @@ class CentralDifference {
     }
     double step() const { return parts.state.integrator.step; }
     void go_back() const { roll_back_motion(parts); }
-    void halve(double slower) const { parts.state.integrator.slower = slower; }
+    void set_slower(double slower) const { parts.state.integrator.slower = slower; }
   };
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
   template <class Parts>

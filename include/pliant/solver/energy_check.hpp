@@ -20,6 +20,9 @@ struct EnergyCheck {
   int interval;           // steps between checks
 };
 
+/// For how many steps a step stays shorter at the most.
+inline constexpr std::int64_t most_steps_slower = std::int64_t{1} << 40;
+
 /// The energy of a state less what was booked, J: in all, and what the integrator's steps keep; NaN where they
 /// are not known.
 struct CheckedEnergy {
@@ -37,7 +40,9 @@ inline void forget_energies(IntegratorState& own) {
 ///   explains(total, most) -> bool               whether growth of the total by `most` is none
 ///   step() -> double                            s, for the message
 ///   go_back()                                   to the checkpoint
-///   halve()                                     the step
+///   set_slower(factor)                          how often the step is smaller than the stable one asks
+/// After so many steps that were good the longer step is tried again: what made the body unstable, a stiff law or an
+/// impact, may have gone. Each roll-back doubles their number, so that those which fail cost little.
 template <class Parts, class Steps>
 bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
   auto& state = parts.state;
@@ -60,6 +65,11 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
     if (!std::isfinite(own.first_energy)) own.first_energy = kept;
     own.next_check = state.steps + check.interval;
     keep_checkpoint(parts);
+    if (own.slower > 1 && state.steps >= own.slow_until) {
+      steps.set_slower(own.slower / 2);
+      own.slow_until = state.steps + own.slow_for;
+      own.next_refresh = state.steps;
+    }
     return true;
   }
   std::string const what =
@@ -71,12 +81,15 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
                 "state was changed by hand; start from a finite state, with ",
                 check.cure);
   double const slower = own.slower, step = steps.step();
+  std::int64_t const slow_for = own.slow_for;
   steps.go_back();
   if (slower >= 8)
     throw Error(what, ", with an eighth of the step too (", step, " s); it is now at ",
                 check.step_name, " ", state.steps, " and time ", state.time,
                 " s, before that: look at its loads, and at laws that soften or cannot invert");
-  steps.halve(2 * slower);
+  steps.set_slower(2 * slower);
+  own.slow_for = std::clamp<std::int64_t>(2 * slow_for, 4 * check.interval, most_steps_slower);
+  own.slow_until = state.steps + own.slow_for;
   own.next_check = state.steps + check.interval;
   own.next_refresh = own.next_watch = state.steps;
   return false;

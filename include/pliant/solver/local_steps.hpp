@@ -188,7 +188,7 @@ class LocalSteps {
       roll_back(parts);
       integrator.restore(parts);
     }
-    void halve(double slower) const {
+    void set_slower(double slower) const {
       auto& own = parts.state.integrator;
       double const before = parts.schedule ? correction(parts) : 0;
       own.slower = slower;
