@@ -30,7 +30,7 @@ share(shared/state
 share(shared/switching
       adaptation/all_or_nothing adaptation/candidates adaptation/estimators_of_laws
       adaptation/folded_elements adaptation/recorded_looks adaptation/refinement_internal_variables
-      adaptation/switching body/groups body/state)
+      adaptation/stiffening adaptation/switching body/groups body/state)
 share(shared/groups
       adaptation/bounded_criteria adaptation/ledger adaptation/switching_agreement
       adaptation/switching_statistics body/embedding body/internal_variables law/user_law)

@@ -93,7 +93,7 @@ class Adaptation {
           throw;
         }
       }();
-      if (moved) parts.state.integrator.implicit.a.clear();
+      if (moved) follow_moves(parts);
       if (plan) tell_listeners(parts, *plan);
     } else if constexpr (switches) {
       switch_groups(parts);
@@ -164,14 +164,14 @@ class Adaptation {
 
     int interval() const { return adapt_.interval_; }
     std::shared_ptr<void const> const& identity() const { return adapt_.identity_; }
-    /// Changes of the mesh, sleep and budgets in milliseconds pass through the host, means at nodes allocate, timers do not run in
-    /// recordings; on the host nothing would be gained.
+    /// Changes of the mesh, sleep and budgets in milliseconds pass through the host, means at nodes allocate, timers do
+    /// not run in recordings, the host has to know of moves to stiffer laws; on the host nothing would be gained.
     template <class Parts>
     bool can_record(Parts const& parts) const {
       return !changes_mesh && !takes_means && !sleeps &&
              !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
              !parts.timers.criteria.timer && !parts.timers.migration.timer &&
-             !adapt_.limits_milliseconds();
+             !adapt_.limits_milliseconds() && !adapt_.may_stiffen(parts);
     }
     template <class Parts>
     void prepare(Parts& parts) const {
@@ -249,18 +249,50 @@ class Adaptation {
   }
   template <class Parts>
   void switch_groups(Parts& parts) const {
-    if (asks_whether_to_switch(parts) && !something_moves(parts)) return;
+    bool const asks = asks_whether_to_switch(parts);
+    if (asks && !something_moves(parts)) return;
     move_elements(parts);
+    if (asks) follow_moves(parts);
+  }
+  /// What integrators keep follows the new groups. (Where the host does not know of moves, the integrator
+  /// looks for stiffer elements when it looks at the distortion.)
+  template <class Parts>
+  static void follow_moves(Parts& parts) {
     parts.state.integrator.implicit.a.clear();
+    follow_switch(parts);
   }
   /// Between the steps of leapfrog, and where no integrator has a step or accelerations, nothing follows from a
-  /// switch but the elements' own: on a backend that looks at each tag as it goes, the host need not know
-  /// of it.
+  /// switch at once but the elements' own: where the host would wait for the answer, and loops look at each
+  /// tag as they go, it need not know, unless the integrator may have to follow before the next step.
   template <class Parts>
-  static bool asks_whether_to_switch(Parts const& parts) {
-    return Parts::backend_type::orders_by_group || parts.forces_current ||
-           !parts.state.integrator.implicit.empty() ||
+  bool asks_whether_to_switch(Parts const& parts) const {
+    using B = typename Parts::backend_type;
+    return B::orders_by_group || std::same_as<typename B::Recording, HostRecording> ||
+           parts.forces_current || !parts.state.integrator.implicit.empty() || may_stiffen(parts) ||
            (parts.state.pending_half_kick == 0 && parts.state.integrator.step > 0);
+  }
+  /// Whether rules go to a law that is stiffer at rest by more than the safety of the step covers.
+  template <class Parts>
+  bool may_stiffen(Parts const& parts) const {
+    auto const allowance = step_allowance(parts);
+    if (!allowance) return false;
+    auto const is_stiffer = [&]<class... From, class... To>(detail::TypeList<From...>,
+                                                            detail::TypeList<To...>) {
+      auto const young = [&]<class F>(Group<F> const& group) {
+        return detail::young_at_rest(parts.template law_of<F>(), group);
+      };
+      return std::max({young(std::get<Group<To>>(parts.groups))...}) >
+             allowance->growth * std::min({young(std::get<Group<From>>(parts.groups))...});
+    };
+    auto const stiffens = [&]<class R>(R const&) {
+      if constexpr (SwitchingRule<R>)
+        return is_stiffer(detail::TypeList<typename R::from>{}, detail::TypeList<typename R::to>{});
+      else if constexpr (ChoosingRule<R>)
+        return is_stiffer(typename R::groups{}, typename R::groups{});
+      else
+        return false;
+    };
+    return std::apply([&](auto const&... rule) { return (stiffens(rule) || ...); }, rules_);
   }
   template <class Parts>
   static bool something_moves(Parts const& parts) {
@@ -268,13 +300,17 @@ class Adaptation {
   }
   template <class Parts>
   void move_elements(Parts& parts) const {
+    auto const allowance = step_allowance(parts);
     book_switching(parts, [&] {
       {
         auto const measured = parts.timers.criteria.measure();
+        if (allowance) for_each_check(parts, [](auto const& check) { check.bound_movers(); });
         for_each_check(parts, [](auto const& check) { check.act(); });
       }
       regroup(parts);
     });
+    if (allowance)
+      for_each_check(parts, [&](auto const& check) { check.count_stiffened(*allowance); });
   }
   /// Call after tags changed.
   template <class Parts>

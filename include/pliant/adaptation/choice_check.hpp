@@ -129,6 +129,10 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
                       parts_.moves.data());
   }
   void act() const { this->move_by(Moves{}); }
+  void bound_movers() const { this->bound_those_that_move(); }
+  void count_stiffened(StepAllowance const& allowance) const {
+    this->count_those_stiffened(allowance);
+  }
   /// What its elements cost in their present groups, in evaluations of the last, those that sleep aside.
   double evaluations_now() const {
     auto const c = choice();

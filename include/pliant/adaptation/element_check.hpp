@@ -2,6 +2,7 @@
 
 #include <pliant/adaptation/switching.hpp>
 #include <pliant/body/criteria_workspace.hpp>
+#include <pliant/solver/stiffening.hpp>
 
 namespace pliant::detail {
 
@@ -37,6 +38,13 @@ class ElementCheck {
         std::as_const(parts_).v());
   }
 
+  /// Before and after moves: how stiff the elements are that they concern.
+  void bound_those_that_move() const { bound_movers(parts_, table_, workspace().next.data()); }
+  void count_those_stiffened(StepAllowance const& allowance) const {
+    count_stiffened(parts_, table_, allowance, elements_.statistics.since.data(),
+                    parts_.clock.data());
+  }
+
   /// Allocates what is not there yet, and knows whether something was: recorded loops read it where it lies.
   class Room {
    public:
@@ -50,6 +58,7 @@ class ElementCheck {
     /// For elements that change groups.
     void hold_switching() {
       hold(check_.workspace().next, count());
+      hold(check_.table_.scratch, count());
       auto& statistics = check_.elements_.statistics;
       if (statistics.open) return;
       statistics.start(check_.backend(), check_.table_.count(), check_.parts_.state.record.born);

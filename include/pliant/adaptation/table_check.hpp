@@ -76,6 +76,13 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (switches) this->move_by(rules_);
   }
 
+  void bound_movers() const {
+    if constexpr (switches) this->bound_those_that_move();
+  }
+  void count_stiffened(StepAllowance const& allowance) const {
+    if constexpr (switches) this->count_those_stiffened(allowance);
+  }
+
   /// Adds a list of the elements that rules want refined, and one of those that rules would merge and none refines, by
   /// the user's number; `max_level` grows to the rules'.
   void mark(MarkedElements& marked, int& max_level) const {

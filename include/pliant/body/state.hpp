@@ -18,7 +18,8 @@ namespace pliant {
 /// Work that is summed where loops run, J: of changes of loads, of mass damping, of driven nodes, of
 /// pressures; of changes of group, what no element knows alone (see book_switching); and of patches that fall asleep or
 /// wake. `unbooked` counts the
-/// changes of loads whose work is not finite, and so is in no sum.
+/// changes of loads whose work is not finite, and so is in no sum; `stiffened` the moves since the step was chosen
+/// to groups in which elements are stiffer than it allows.
 enum class Work : int {
   changed_loads,
   damping,
@@ -27,6 +28,7 @@ enum class Work : int {
   switching,
   sleep,
   unbooked,
+  stiffened,
   count
 };
 

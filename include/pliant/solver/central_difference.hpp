@@ -10,6 +10,7 @@
 #include <pliant/solver/energy_check.hpp>
 #include <pliant/solver/leapfrog.hpp>
 #include <pliant/solver/stable_step.hpp>
+#include <pliant/solver/stiffening.hpp>
 
 namespace pliant {
 
@@ -147,7 +148,8 @@ class CentralDifference {
     auto& own = parts.state.integrator;
     own.next_watch = parts.state.steps + options_.watch_interval;
     double const distortion = largest_distortion(parts);
-    if (!(std::abs(distortion - own.distortion) <= 0.1 * (1 + own.distortion)))
+    if (!(std::abs(distortion - own.distortion) <= 0.1 * (1 + own.distortion)) ||
+        is_stiffened(parts))
       own.next_refresh = parts.state.steps;
   }
 
@@ -161,6 +163,7 @@ class CentralDifference {
     // Nothing throws from here on: a step that could not be chosen is asked for again.
     own.next_refresh = parts.state.steps + options_.refresh_interval;
     own.distortion = distortion;
+    forget_stiffened(parts);
     own.asked_step = options_.step;
     own.safety = options_.safety;
     if (step == own.step) return;
