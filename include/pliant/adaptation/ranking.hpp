@@ -1,11 +1,10 @@
 #pragma once
 
 #include <pliant/adaptation/marking.hpp>
-#include <pliant/body/criteria_workspace.hpp>
+#include <pliant/adaptation/radix_search.hpp>
 
-// Which elements a rule by share, bulk, budget or fraction of the largest marks: a radix search, most
-// significant digit first, over the ordered bits of the values and, among equal values, over the
-// elements' numbers. Each digit is one histogram and a kernel of one thread; nothing comes to the host.
+// Which elements a rule by share, bulk, budget or fraction of the largest marks: a search for the digits of the last
+// value that is marked and, among equal values, of the last element's number.
 namespace pliant::detail {
 
 /// The values that one rule compares with each other: those of the elements that it may mark.
@@ -25,14 +24,6 @@ enum class Search {
   count,    ///< so many of the largest values
   tie       ///< among values equal to the last that `count` takes: so many by number
 };
-
-/// The digit of a key at a shift, with what it weighs; nothing where the digits before are not `prefix`.
-template <class Key>
-PLIANT_HOST_DEVICE Bin digit_of(Key key, Key prefix, int shift, bool first, std::int64_t weight) {
-  constexpr int bits = 8 * int{sizeof(Key)};
-  bool const candidate = first || shift + 8 >= bits || (key >> (shift + 8)) == prefix;
-  return candidate ? Bin{static_cast<int>(key >> shift & 255), weight} : Bin{-1, 0};
-}
 
 /// The digit of an element's value or number, and what it weighs.
 template <class T>
@@ -70,51 +61,9 @@ struct Digit {
   }
 };
 
-/// The power of two by which no sum of so many values up to the largest reaches 2⁶².
-template <class T>
-PLIANT_HOST_DEVICE double scale_for(OrderedBits<T> largest, Index elements) {
-  using Key = OrderedBits<T>;
-  constexpr int mantissa = std::numeric_limits<T>::digits - 1;
-  constexpr int most = std::numeric_limits<T>::max_exponent - 1;  // the bias of exponents
-  constexpr Key sign = Key{1} << (8 * sizeof(T) - 1);
-  if ((largest & sign) == 0) return 1;  // nothing is positive, and weighs
-  int const exponent = static_cast<int>((largest ^ sign) >> mantissa) - most + 1;
-  if (exponent > most + 1) return 0;
-  int bits = 62;
-  for (Index n = elements; n > 0; n /= 2) --bits;
-  // Of double, whatever T is: small values of float need a scale beyond its range.
-  constexpr int bias = std::numeric_limits<double>::max_exponent - 1;
-  int const power = min(bits - exponent, bias);
-  return std::bit_cast<double>(static_cast<std::uint64_t>(power + bias) << 52);
-}
-
-/// Finds the digit at which `r.remaining` is reached among those of a histogram, from the largest or the smallest on,
-/// and clears that. Returns the weight at this digit.
-template <class T>
-PLIANT_HOST_DEVICE std::int64_t take_digit(Ranking<T>& r, std::int64_t* histogram, bool ascending) {
-  constexpr int bins = histogram_bins;
-  std::int64_t left = r.remaining, weight = 0;
-  int found = -1;
-  for (int k = 0; k < bins; ++k) {
-    int const bin = ascending ? k : bins - 1 - k;
-    std::int64_t const here = histogram[bin];
-    bool const reaches = found < 0 && here >= left;
-    found = reaches ? bin : found;
-    weight = reaches ? here : weight;
-    left = found < 0 ? left - here : left;
-  }
-  for (int k = 0; k < bins; ++k) histogram[k] = 0;
-  if (r.state == Ranking<T>::searching) {
-    r.remaining = left;
-    r.prefix = static_cast<OrderedBits<T>>(r.prefix << 8 | static_cast<OrderedBits<T>>(found));
-  }
-  return weight;
-}
-
 /// Finds the next digit of the value that is searched from the histogram, and clears that.
 template <class T>
 struct NarrowRanking {
-  using Key = OrderedBits<T>;
   MarkingKind kind;
   double amount;
   std::int64_t budget;
@@ -136,8 +85,7 @@ struct NarrowRanking {
   PLIANT_HOST_DEVICE void begin(Ranking<T>& r) const {
     r.prefix = 0;
     if (search == Search::tie) return;
-    std::int64_t total = 0;
-    for (int k = 0; k < histogram_bins; ++k) total += histogram[k];
+    std::int64_t const total = total_of(histogram);
     r.remaining = 1;
     if (search == Search::count) {
       r.remaining = budget;
@@ -161,7 +109,7 @@ struct NarrowRanking {
     if (r.state == Ranking<T>::none) {
       r.cut = Cut<T>::none();
     } else if (search == Search::largest) {
-      r.scale = scale_for<T>(static_cast<Key>(((r.prefix + 1) << shift) - 1), elements);
+      set_scale(r, shift, elements);
     } else if (search == Search::highest) {
       constexpr T most = std::numeric_limits<T>::max();  // what is infinite counts as this
       T const largest = max(-most, min(from_ordered_bits<T>(r.prefix), most));
@@ -174,13 +122,6 @@ struct NarrowRanking {
       r.cut.tighten({r.key, static_cast<Index>(r.prefix)});
     }
   }
-};
-
-template <class T>
-struct StartRanking {
-  Ranking<T>* ranking;
-  Cut<T> cut;
-  PLIANT_HOST_DEVICE void operator()(Index) const { ranking->cut = cut; }
 };
 
 /// The cut that a marking makes among values, given in the backend's memory; nothing waits for it.
@@ -199,7 +140,7 @@ void find_cut(B const& backend, Marking const& m, RankedValues<T> const& ranked,
                                            shift, shift == from, shift == to, histogram, ranking});
     }
   };
-  constexpr int top = 8 * int{sizeof(T)} - 8;
+  constexpr int top = top_digit<T>;
   if (m.kind == MarkingKind::fraction_of_largest) find(Search::highest, top, 0);
   if (m.kind == MarkingKind::bulk) {
     find(Search::largest, top, top - 8);  // sign and exponent
@@ -207,9 +148,7 @@ void find_cut(B const& backend, Marking const& m, RankedValues<T> const& ranked,
   }
   if (m.kind == MarkingKind::top_share || m.budget < ranked.elements) {
     find(Search::count, top, 0);
-    int index_top = 0;
-    while (index_top < 24 && (ranked.elements - 1) >> (index_top + 8) > 0) index_top += 8;
-    find(Search::tie, index_top, 0);
+    find(Search::tie, top_digit_of_numbers(ranked.elements), 0);
   }
 }
 

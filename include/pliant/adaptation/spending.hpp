@@ -1,9 +1,9 @@
 #pragma once
 
 #include <pliant/adaptation/choice_of_element.hpp>
-#include <pliant/adaptation/ranking.hpp>
+#include <pliant/adaptation/radix_search.hpp>
 
-// Which offers a budget or a limit of the error takes: a search like that of ranking.hpp, over what offers are worth,
+// Which offers a budget or a limit of the error takes: a search like that of ranking.hpp (see radix_search.hpp), over what offers are worth,
 // where each weighs what it costs or the error that it takes away. Sums are whole numbers, exact in any order; nothing
 // comes to the host. Other actions, of the mesh say, would join as further offers.
 namespace pliant::detail {
@@ -67,7 +67,6 @@ struct SpendingDigit {
 /// Finds the next digit from the histogram, and clears that.
 template <class T>
 struct NarrowSpending {
-  using Key = OrderedBits<T>;
   Weigh weigh;
   double limit;  // J, or evaluations
   double units;  // of cost
@@ -109,8 +108,7 @@ struct NarrowSpending {
   PLIANT_HOST_DEVICE void begin(Ranking<T>& r) const {
     r.prefix = 0;
     if (search == Spending::tie) return;
-    std::int64_t total = 0;
-    for (int k = 0; k < histogram_bins; ++k) total += histogram[k];
+    std::int64_t const total = total_of(histogram);
     if (search == Spending::largest) {
       r.remaining = 1;
       r.state = total == 0 ? Ranking<T>::none : Ranking<T>::searching;
@@ -120,7 +118,7 @@ struct NarrowSpending {
   }
   PLIANT_HOST_DEVICE void finish(Ranking<T>& r, std::int64_t weight) const {
     if (search == Spending::largest) {
-      r.scale = scale_for<T>(static_cast<Key>(((r.prefix + 1) << shift) - 1), elements);
+      set_scale(r, shift, elements);
     } else if (search == Spending::worth) {
       r.key = r.prefix;
       if (r.state == Ranking<T>::none) r.cut = Cut<T>::none();
@@ -151,15 +149,13 @@ void find_spending(B const& backend, ChoiceOfElement<T, Groups, Count> const& ch
                                shift == from, shift == to, histogram, ranking});
     }
   };
-  constexpr int top = 8 * int{sizeof(T)} - 8;
-  int number_top = 0;
-  while (number_top < 24 && (choice.elements - 1) >> (number_top + 8) > 0) number_top += 8;
+  constexpr int top = top_digit<T>;
   auto const find = [&](Weigh weigh, double limit) {
     if (weigh == Weigh::error)
       pass(weigh, limit, Spending::largest, top, top - 8);  // sign and exponent
     pass(weigh, limit, Spending::total, 0, 0);
     pass(weigh, limit, Spending::worth, top, 0);
-    pass(weigh, limit, Spending::tie, number_top, 0);
+    pass(weigh, limit, Spending::tie, top_digit_of_numbers(choice.elements), 0);
   };
   if (error < std::numeric_limits<double>::infinity()) find(Weigh::error, error);
   if (cost < std::numeric_limits<double>::infinity()) find(Weigh::cost, cost);
