@@ -142,6 +142,7 @@ TEST_CASE("the host asks for moves to stiffer laws, and for no others", "[adapta
   CHECK(step.step() == Approx(0.25 * before).epsilon(0.2));
   step(body, 2000, to_stiff);
   CHECK(step.retries() == 0);
+  CHECK_FALSE(body.parts().recorded_with_look);  // a GPU would not wait in it
 
   // Where it does not know, the step follows with the distortion.
   auto other = resting_body(Unasked{});
@@ -150,6 +151,7 @@ TEST_CASE("the host asks for moves to stiffer laws, and for no others", "[adapta
   auto to_softer = rule<Stiff, Gel>(2).every(4);
   other.template assign<Stiff>({4});
   watching(other, 28, to_softer);
+  CHECK(other.parts().recorded_with_look);
   auto& work = other.parts().state.work;
   CHECK(is_stiffened(other.parts()) == false);
   other.parts().backend.for_each(
