@@ -21,7 +21,8 @@
 //                              upload and download come after what was asked of the backend before,
 //                              and wait for that
 //
-// Node loops    f is a functor marked for host and device, called once for each i in [0, n).
+// Node loops    f is a functor marked for host and device, called once for each i in [0, n). They take no list of
+//               patches; body/velocities.hpp says how nodes of sleeping ones are passed over.
 //   for_each(n, f)             f(i); f may tell what it reads apart from what it writes: see ReadsFirst in
 //                              backend/kernel.hpp
 //   sum(n, f) maximum(n, f)    double; of f(i)

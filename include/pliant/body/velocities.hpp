@@ -20,7 +20,11 @@ bool has_added_terms(Parts const& parts) {
 
 namespace detail {
 
-/// loop(f) over the nodes, or over those that may move, where the forces of the others are zero.
+/// loop(f) over the nodes, or over those that may move, where the forces of the others are zero. Loops over nodes take
+/// no list of patches, as those over elements do: a node may belong to several, of several types. They are told
+/// by one byte a node (AwakeSet::nodes) instead, so that f reads and writes nothing of a node around which all sleeps: of the
+/// 48 bytes or more that Advance moves for a node in single precision, one is left. Where that counts, lists need nodes
+/// numbered by the first patch that they belong to, so that each patch owns a run of them as it does of elements.
 template <class Parts, class F, class Loop>
 void over_moving_nodes(Parts const& parts, F const& f, Loop const& loop) {
   if (parts.awake && !has_added_terms(parts) && !parts.forces_complete)
