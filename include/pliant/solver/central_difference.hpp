@@ -43,8 +43,8 @@ struct Advanced {
 /// damping. At intervals the state is checked: one that went non-finite, or whose energy grew by more
 /// than its loads and its adaptation explain, is rolled back to the last check and done again with half
 /// the step; after three halvings it throws Error, and the body is at the last good state. The smaller step
-/// stays for four check intervals, twice as long after each further roll-back, or until another
-/// CentralDifference takes the body over. What a user set is not rolled back: gravity,
+/// stays for four check intervals, twice as long after each further roll-back; one that was given in options
+/// stays halved until another CentralDifference takes the body over. What a user set is not rolled back: gravity,
 /// damping and loads act as they were set last. A call that is rolled back behind its own begin returns
 /// there, so that its caller can set what depends on time.
 class CentralDifference {

@@ -41,8 +41,9 @@ inline void forget_energies(IntegratorState& own) {
 ///   step() -> double                            s, for the message
 ///   go_back()                                   to the checkpoint
 ///   set_slower(factor)                          how often the step is smaller than the stable one asks
-/// After so many steps that were good the longer step is tried again: what made the body unstable, a stiff law or an
-/// impact, may have gone. Each roll-back doubles their number, so that those which fail cost little.
+/// After so many steps that were good a step that was chosen from the stable one is tried in full again: what made the
+/// body unstable, a stiff law or an impact, may have gone. Each roll-back doubles their number, so that those which
+/// fail cost little. One that was given is not tried again: nothing says that it is stable.
 template <class Parts, class Steps>
 bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
   auto& state = parts.state;
@@ -65,7 +66,7 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
     if (!std::isfinite(own.first_energy)) own.first_energy = kept;
     own.next_check = state.steps + check.interval;
     keep_checkpoint(parts);
-    if (own.slower > 1 && state.steps >= own.slow_until) {
+    if (own.slower > 1 && own.asked_step == 0 && state.steps >= own.slow_until) {
       steps.set_slower(own.slower / 2);
       own.slow_until = state.steps + own.slow_for;
       own.next_refresh = state.steps;
