@@ -36,7 +36,7 @@ void errors(Table& table, int n, double in_u, double in_gradient) {
                 within(1e-4 * in_gradient, in_gradient));
 }
 
-void tables(Table& table) {
+void tables_of_planes(Table& table) {
   forces<SaintVenantKirchhoff>(table, "SaintVenantKirchhoff", printed("0.540055446031"),
                                printed("0.785115844458"));
   forces<NeoHookean>(table, "NeoHookean", printed("0.531531413923"), printed("0.881428099783"));
@@ -56,6 +56,6 @@ void tables(Table& table) {
 
 int main(int argc, char** argv) {
   pliant::verification::Table table("Manufactured solutions, plane (9)", argc, argv);
-  pliant::verification::tables(table);
+  pliant::verification::tables_of_planes(table);
   return table.finish();
 }

@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   verification::membrane<Tri6>(table, {8, 16, 32, 64});
   verification::plate<Hex20>(table, {4, 6, 8});
   verification::plate<Hex27>(table, {4, 6, 8});
-  if (table.full()) verification::plate<Tet10>(table, {4, 8, 12});
+  if constexpr (verification::has_full_form)
+    if (table.full()) verification::plate<Tet10>(table, {4, 8, 12});
   return table.finish();
 }

@@ -24,30 +24,33 @@ void hang(Table& table, Printed const& ux, Printed const& uy, Printed const& ene
     table.compare({"10, energy", name_of<F>(), "graded n x n/4"}, runs, 2, energy);
 }
 
-void tables(Table& table) {
-  Printed const zero = within(1e-11, 0), none{};
+void cantilevers_at_rest(Table& table) {
+  Printed const zero = within(1e-11, 0);
+  [[maybe_unused]] Printed const none{};
   std::vector<int> const sizes{28, 56, 112};
   hang<Quad9, Hooke>(table, zero, printed("-0.687337"), printed("138.3506"), sizes, 3);
   // With 3 x 3 points, the smallest elements at the corners find folds that the points do not see.
   hang<Quad9, NeoHookean, Gauss<4>>(table, printed("-0.17452"), printed("-0.53101"),
                                     printed("97.3146"), sizes, 3);
-  auto const svk = [&]<Element E>(E, std::vector<int> const& n) {
+  auto const svk = [&]<Element E>(E, std::vector<int> const& n) -> void {
     // This law softens in compression: no strong grading at the corners, where it has no answer (section 0).
     hang<E, SaintVenantKirchhoff>(table, printed("-0.1764"), printed("-0.5307(1)"), printed("97.2"),
                                   n, 1.5);
   };
   svk(Quad9{}, {16, 32, 64});
-  if (!table.full()) return;
-  hang<Quad8, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {16, 32, 64}, 3);
-  hang<Tri6, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {24, 48, 96}, 3);
-  svk(Quad8{}, {16, 32, 64});
-  svk(Tri6{}, {24, 48, 96});
+  if constexpr (has_full_form) {
+    if (!table.full()) return;
+    hang<Quad8, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {16, 32, 64}, 3);
+    hang<Tri6, NeoHookean>(table, printed("-0.17452"), printed("-0.53101"), none, {24, 48, 96}, 3);
+    svk(Quad8{}, {16, 32, 64});
+    svk(Tri6{}, {24, 48, 96});
+  }
 }
 
 }  // namespace pliant::verification
 
 int main(int argc, char** argv) {
   pliant::verification::Table table("Cantilever of 10 to 1 (10)", argc, argv);
-  pliant::verification::tables(table);
+  pliant::verification::cantilevers_at_rest(table);
   return table.finish();
 }

@@ -113,6 +113,7 @@ int main(int argc, char** argv) {
   tapered<Quad9>(table, {12, 24, 40});
   tapered<Quad8>(table, {12, 24, 40});
   vibrating_plate<Hex20>(table, {8, 12});
-  if (table.full()) vibrating_plate<Hex27>(table, {8, 12});
+  if constexpr (has_full_form)
+    if (table.full()) vibrating_plate<Hex27>(table, {8, 12});
   return table.finish();
 }

@@ -6,6 +6,7 @@
 
 #include <pliant/adaptation/estimator/recovered_stress.hpp>
 
+#include "verification/support/form.hpp"
 #include "verification/support/statics.hpp"
 
 // Estimates of errors beside true ones, in the energy norm.
@@ -98,7 +99,7 @@ class EffectivityTable {
   }
 
  private:
-  bool full_ = true;
+  bool full_ = has_full_form;
   int rows_ = 0, missed_ = 0;
 };
 

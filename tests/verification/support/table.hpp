@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "verification/support/form.hpp"
 #include "verification/support/printed.hpp"
 
 namespace pliant::verification {
@@ -135,7 +136,7 @@ class Table {
   }
 
   std::string title_;
-  bool full_ = true;
+  bool full_ = has_full_form;
   std::ofstream csv_;
   int rows_ = 0, missed_ = 0;
 };
