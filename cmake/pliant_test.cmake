@@ -24,7 +24,7 @@ function(pliant_test)
   # Most tests take longer to optimise than to run. What the optimiser makes of kernels is looked at by
   # those that compare backends, thoroughly for the linear elements.
   set(level -O0)
-  if(arg_NAME MATCHES "^(adaptation/(marking|endurance|sleep)|solver/(linear|local_steps))$")
+  if(arg_NAME MATCHES "^(adaptation/(marking|endurance|sleep)|openmp/threads|solver/(linear|local_steps))$")
     set(level -O1)
   elseif(arg_NAME MATCHES "^(backend|openmp)/" AND NOT arg_NAME MATCHES "^backend/agreement_")
     set(level -O3)
