@@ -6,6 +6,7 @@
 #include <pliant/solver/local_steps.hpp>
 
 #include "support/formulations.hpp"
+#include "support/repeatable.hpp"
 
 // The step follows the groups of elements: it is asked for where they get stiffer, before the next one.
 namespace pliant::test::stiffening_suite {
@@ -187,9 +188,9 @@ TEST_CASE("a run that is saved behind a switch asks for its step all the same",
     advance(whole, steps[0], locals[0], 50);
     advance(next, steps[2], locals[2], 50);
 
-    CHECK(whole.displacements() == next.displacements());
-    CHECK(whole.time() == next.time());
-    CHECK(first_difference(whole.state(), next.state()) == "");
+    CHECK(difference(whole.displacements(), next.displacements()) <= between_runs(1e-9));
+    CHECK(whole.time() == Approx(next.time()).epsilon(between_runs(1e-6)));
+    if (between_runs(1) == 0) CHECK(first_difference(whole.state(), next.state()) == "");
   });
 }
 

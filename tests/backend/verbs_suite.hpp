@@ -14,17 +14,6 @@ struct AddOne {
   T* data;
   PLIANT_HOST_DEVICE void operator()(Index i) const { data[i] += T(i + 1); }
 };
-/// The same in two parts.
-template <class T>
-struct AddOneToRead {
-  T* data;
-  PLIANT_HOST_DEVICE T read(Index i) const { return data[i]; }
-  PLIANT_HOST_DEVICE void write(Index i, T value) const { data[i] = value + T(i + 1); }
-  PLIANT_HOST_DEVICE void operator()(Index i) const { write(i, read(i)); }
-};
-static_assert(ReadsFirst<AddOneToRead<double>>);
-static_assert(!ReadsFirst<AddOne<double>>);
-
 struct Triangular {
   PLIANT_HOST_DEVICE double operator()(Index i) const { return i; }
 };
@@ -164,24 +153,6 @@ TEST_CASE("node loops see every node once", "[backend]") {
     }
     CHECK(backend.maximum(0, Peak{}) == -std::numeric_limits<double>::infinity());
     CHECK(backend.maximum(5, Peak{}) == -774);
-  });
-}
-
-TEST_CASE("node loops that read before they write see every node once", "[backend]") {
-  on_each_backend<AllPairs>([]<class B>(B const& backend) {
-    constexpr Index many = 1 << 17;  // a GPU takes two to a thread from there
-    for (Index n : {1, 300, many - 1, many, many + 1, many + 300}) {
-      INFO(n << " nodes");
-      auto seen = upload(backend, std::vector<double>(static_cast<std::size_t>(n) + 1000, 0.5));
-
-      backend.for_each(n, AddOneToRead<double>{seen.data()});
-
-      auto const values = download<double>(seen);
-      Index wrong = 0;
-      for (Index i = 0; i < n + 1000; ++i)
-        wrong += values[static_cast<std::size_t>(i)] != (i < n ? i + 1.5 : 0.5);
-      CHECK(wrong == 0);
-    }
   });
 }
 

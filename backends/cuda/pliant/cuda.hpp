@@ -30,19 +30,6 @@ __global__ void __launch_bounds__(node_threads)
   Index const i = static_cast<Index>(blockIdx.x * node_threads + threadIdx.x);
   if (i < n) f(i);
 }
-/// Two to a thread, so that the loads of both overlap: a compiler must take what one writes for what the other reads.
-template <ReadsFirst F>
-__global__ void __launch_bounds__(node_threads)
-    call_for_each_pair(Index n, __grid_constant__ F const f) {
-  begin_after_previous_kernel();
-  Index const first = static_cast<Index>(2 * blockIdx.x * node_threads + threadIdx.x);
-  Index const second = first + node_threads;
-  decltype(f.read(first)) one{}, other{};
-  if (first < n) one = f.read(first);
-  if (second < n) other = f.read(second);
-  if (first < n) f.write(first, one);
-  if (second < n) f.write(second, other);
-}
 }  // namespace detail
 
 /// One NVIDIA GPU. Verbs are queued on a stream; those that return a value wait for it and for no
@@ -79,10 +66,6 @@ class Cuda {
   template <class F>
   void for_each(Index n, F const& f) const {
     if (n <= 0) return;
-    if constexpr (ReadsFirst<F> && sizeof(T) == 4)
-      if (n >= detail::node_pairs_from)
-        return launch("for_each", {blocks(n, 2 * detail::node_threads), detail::node_threads},
-                      detail::call_for_each_pair<F>, n, f);
     launch("for_each", {blocks(n, detail::node_threads), detail::node_threads},
            detail::call_for_each<F>, n, f);
   }

@@ -23,8 +23,7 @@
 //
 // Node loops    f is a functor marked for host and device, called once for each i in [0, n). They take no list of
 //               patches; body/velocities.hpp says how nodes of sleeping ones are passed over.
-//   for_each(n, f)             f(i); f may tell what it reads apart from what it writes: see ReadsFirst in
-//                              backend/kernel.hpp
+//   for_each(n, f)             f(i)
 //   sum(n, f) maximum(n, f)    double; of f(i)
 //   add_sum(n, f, to)          *to += the sum of f(i), where `to` is in the backend's memory; waits for
 //                              nothing

@@ -6,15 +6,10 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/field.hpp>
 
-// What verbs ask of the functors they are given. Of those over elements, S is the scalar of the element loop, T
+// What verbs over elements ask of the functors they are given. S is the scalar of the element loop, T
 // the plain one, V are the values of the fields at the nodes of an element, Matrix<S, Nodes,
 // Components>, and Own gives values per element.
 namespace pliant {
-
-/// A functor of a loop over nodes in two parts: f(i) is f.write(i, f.read(i)), and read loads all that f(i) needs.
-/// A backend may read at several i before it writes, so nothing that one of them writes is read at another.
-template <class F>
-concept ReadsFirst = requires(F const& f, Index i) { f.write(i, f.read(i)); };
 
 namespace detail {
 

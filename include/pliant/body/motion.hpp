@@ -52,31 +52,27 @@ struct Advance {
   HalfKick<T> lag, kick;
   T drift;  // s
 
-  struct Node {
-    Vector<T, Dim> velocity, displacement, force, load;
-    T mass;
-    DirectionMask held;
-  };
-  PLIANT_HOST_DEVICE Node read(Index i) const {
-    Node node{v.at(i), u.at(i), f.at(i), Vector<T, Dim>::zero(), mass[i], held[i]};
-    if (external.load) node.load = NodeField<T const, Dim>{external.load}.at(i);
-    return node;
-  }
-  PLIANT_HOST_DEVICE void write(Index i, Node node) const {
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    // All is read before the first write, which the compiler must take for one of what is read.
+    auto const force = f.at(i);
+    auto velocity = v.at(i), displacement = u.at(i);
+    T const m = mass[i];
+    DirectionMask const mask = held[i];
+    auto load = Vector<T, Dim>::zero();
+    if (external.load) load = NodeField<T const, Dim>{external.load}.at(i);
     if (drift != T(0)) f.set(i, Vector<T, Dim>::zero());
-    if (!(node.mass > T(0))) return;  // slaves follow their masters
-    T const inverse_mass = T(1) / node.mass;
+    if (!(m > T(0))) return;  // slaves follow their masters
+    T const inverse_mass = T(1) / m;
     for (int k = 0; k < Dim; ++k) {
-      if (node.held >> k & 1) continue;
-      T const a = acceleration_in(node.force[k] + node.load[k], inverse_mass, external.gravity[k]);
-      T const speed = kick(lag(node.velocity[k], a), a);
-      node.velocity[k] = speed;
-      node.displacement[k] += drift * speed;
+      if (mask >> k & 1) continue;
+      T const a = acceleration_in(force[k] + load[k], inverse_mass, external.gravity[k]);
+      T const speed = kick(lag(velocity[k], a), a);
+      velocity[k] = speed;
+      displacement[k] += drift * speed;
     }
-    v.set(i, node.velocity);
-    u.set(i, node.displacement);
+    v.set(i, velocity);
+    u.set(i, displacement);
   }
-  PLIANT_HOST_DEVICE void operator()(Index i) const { write(i, read(i)); }
 };
 
 /// The acceleration of a node of mass m > 0, zero in directions that are held; without `f`, by what is external.

@@ -11,11 +11,6 @@ inline constexpr int warp_size = 32;
 inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 128,
                      scatter_threads = 128;
 
-/// Nodes from which a loop in single precision that reads before it writes takes two of them to a thread: an
-/// explicit step of 176,000 nodes takes 24.0 µs so, and 26.6 one by one. Fewer nodes, and double precision, were not
-/// measured.
-inline constexpr Index node_pairs_from = 1 << 17;
-
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
 /// where an element computes much per node; patches are faster elsewhere, and where there are no
 /// vector adds (double precision).
