@@ -81,11 +81,11 @@ struct CriteriaWorkspace {
   Array<T> found;   // (slots, elements): the values of those
   Array<Tag> next;  // (elements): the group after the check
   Array<std::uint32_t> mesh_marks;  // (elements): bit r: rule r refines it, or would merge it
-  Array<Index> number;            // (elements): the user's
-  Array<Candidate> candidates;    // (elements): of the rule whose cut is searched
-  Array<int> levels;              // (elements): how often each was refined
-  Array<std::int64_t> histogram;  // (histogram_bins), zero between searches
-  Array<Ranking<T>> rankings;     // (rules)
+  Array<Index> number;              // (elements): the user's
+  Array<Candidate> candidates;      // (elements): of the rule whose cut is searched
+  Array<int> levels;                // (elements): how often each was refined
+  Array<std::int64_t> histogram;    // (histogram_bins), zero between searches
+  Array<Ranking<T>> rankings;       // (rules)
   /// Copies of what a check changes, to be put back when refinement throws.
   struct Kept {
     Array<Tag> tags;
