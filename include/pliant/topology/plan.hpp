@@ -262,6 +262,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto const refine = detail::cells_of(before->mesh, *old_tree, "refine", marked.refine);
   auto families =
       old_tree->families(detail::cells_of(before->mesh, *old_tree, "coarsen", marked.coarsen));
+  if (families.empty() && refine.empty()) return std::nullopt;
   auto changed = detail::change_cells(*old_tree, families, refine, limits);
   for (;;) {
     auto const keep = detail::families_to_keep(*old_tree, families, changed, kept);
