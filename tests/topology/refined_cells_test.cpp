@@ -1,6 +1,7 @@
 #include <map>
 #include <set>
 
+#include <pliant/constraint/interpolation.hpp>
 #include <pliant/formulation/mass.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
@@ -272,6 +273,23 @@ TEST_CASE("behind the middle of a tetrahedron's side the coarser neighbour is re
     CHECK(trial.refine(std::vector<Index>{c}).parents == std::vector<Index>{1, c});
   }
   CHECK(behind == 1);
+}
+
+TEST_CASE("masses of nodes that hang go by magnitudes, and move at their masters' mean speed",
+          "[topology]") {
+  Interpolation const quadratic({{3, {{0, 3. / 8}, {1, 3. / 4}, {2, -1. / 8}}}});
+  CHECK(quadratic.magnitude() == 1.25);
+  std::vector<double> mass{1, 2, 3, 10};
+  quadratic.hand_masses([&](Index i, int) -> double& { return mass[at(i)]; }, 1);
+  CHECK(mass == std::vector<double>{4, 8, 4, 0});
+  std::vector<double> speed{1, 2, 4, 99};
+  quadratic.apply_masses([&](Index i, int) -> double& { return speed[at(i)]; }, 1);
+  CHECK(speed[3] == Approx(0.3 * 1 + 0.6 * 2 + 0.1 * 4).epsilon(1e-15));
+  Interpolation const linear({{2, {{0, 0.25}, {1, 0.75}}}});
+  CHECK(linear.magnitude() == 1);
+  std::vector<double> other{1, 2, 8};
+  linear.hand_masses([&](Index i, int) -> double& { return other[at(i)]; }, 1);
+  CHECK(other == std::vector<double>{3, 8, 0});
 }
 
 TEST_CASE("a family stays where a child is not marked or a neighbour is too fine", "[topology]") {
