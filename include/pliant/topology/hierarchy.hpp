@@ -12,23 +12,15 @@
 #include <vector>
 
 #include <pliant/config.hpp>
-#include <pliant/element/linear.hpp>
-#include <pliant/element/quadratic_simplex.hpp>
-#include <pliant/element/quadratic_tensor.hpp>
 #include <pliant/error.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/compose.hpp>
+#include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
 
 namespace pliant {
 
-/// Which nodes the elements of a type have.
-template <Element E>
-inline constexpr CellNodes nodes_on_cell =
-    E::degree == 1                                                 ? CellNodes::corners
-    : TensorCell<typename E::cell> && E::lumping == Lumping::nodal ? CellNodes::all
-                                                                   : CellNodes::edges;
 /// The elements that can be refined: of the catalogue's shape functions, on all cells but pyramids.
 template <class E>
 concept Refinable = Element<E> && has_pattern<typename E::cell> &&
@@ -298,43 +290,10 @@ class Hierarchy {
     return nodes;
   }
 
-  template <Element E>
-  static Masters weights(CellTree::NodeList const& nodes, std::array<double, 3> const& place) {
-    Vector<double, E::dim> xi;
-    for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
-    auto const shape = E::shape(xi);
-    Masters list;
-    for (int a = 0; a < E::nodes; ++a)
-      if (shape[a] != 0) list.emplace_back(nodes[static_cast<std::size_t>(a)], shape[a]);
-    return list;
-  }
-  /// The weights of an element's nodes in the value at a place on its cell; dyadic numbers, without rounding, so
-  /// that they are the same from all elements around.
-  static Masters weights(CellKind kind, CellNodes has, CellTree::NodeList const& nodes,
-                         std::array<double, 3> const& place) {
-    auto const choose = [&]<Element Linear, Element Edges, Element All>(
-                            std::type_identity<std::tuple<Linear, Edges, All>>) {
-      if (has == CellNodes::corners) return weights<Linear>(nodes, place);
-      if (has == CellNodes::edges) return weights<Edges>(nodes, place);
-      return weights<All>(nodes, place);
-    };
-    switch (kind) {
-      case CellKind::triangle:
-        return choose(std::type_identity<std::tuple<Tri3, Tri6, Tri6>>{});
-      case CellKind::quadrilateral:
-        return choose(std::type_identity<std::tuple<Quad4, Quad8, Quad9>>{});
-      case CellKind::tetrahedron:
-        return choose(std::type_identity<std::tuple<Tet4, Tet10, Tet10>>{});
-      case CellKind::hexahedron:
-        return choose(std::type_identity<std::tuple<Hex8, Hex20, Hex27>>{});
-      case CellKind::wedge:
-        break;
-    }
-    return weights<Wedge6>(nodes, place);
-  }
   NewNode interpolated(PlacedNode const& node) const {
     auto const& parent = cell(node.cell);
-    return {node.node, weights(parent.kind, parent.has, tree_.nodes_of(node.cell), node.place)};
+    return {node.node,
+            detail::shape_weights(parent.kind, parent.has, tree_.nodes_of(node.cell), node.place)};
   }
   Point<Dim> mean_of_parents(NewNode const& n) const {
     // Equal weights as a sum and a division: the mean does not depend on how the sum is rounded.
@@ -363,7 +322,8 @@ class Hierarchy {
     if (side.has == CellNodes::all && quad) nodes.push_back(side.centre);
     auto const kind = quad ? CellKind::quadrilateral : CellKind::triangle;
     auto const add = [&](Index node, std::array<double, 3> const& place) {
-      hanging.push_back({side.level, {node, sorted(weights(kind, side.has, nodes, place))}});
+      hanging.push_back(
+          {side.level, {node, sorted(detail::shape_weights(kind, side.has, nodes, place))}});
     };
     if (quad && side.has != CellNodes::all) add(side.centre, p.place[at(p.centre)]);
     if (side.has == CellNodes::corners) return;
@@ -455,7 +415,7 @@ class Hierarchy {
           for (std::size_t b = 0; b < at(p.corners); ++b)
             for (std::size_t k = 0; k < 3; ++k)
               place[k] += places[a][b] * p.place[at(corners[b])][k];
-          found[list[a]] = {list[a], weights(own.kind, own.has, nodes, place)};
+          found[list[a]] = {list[a], detail::shape_weights(own.kind, own.has, nodes, place)};
         }
       }
     }

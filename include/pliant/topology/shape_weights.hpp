@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pliant/element/linear.hpp>
+#include <pliant/element/quadratic_simplex.hpp>
+#include <pliant/element/quadratic_tensor.hpp>
+#include <pliant/topology/cell_tree.hpp>
+
+// Elements by the cell they are on, and their shape functions.
+namespace pliant {
+
+/// Which nodes the elements of a type have.
+template <Element E>
+inline constexpr CellNodes nodes_on_cell =
+    E::degree == 1                                                 ? CellNodes::corners
+    : TensorCell<typename E::cell> && E::lumping == Lumping::nodal ? CellNodes::all
+                                                                   : CellNodes::edges;
+namespace detail {
+
+template <Element E>
+std::vector<std::pair<Index, double>> shape_weights(CellTree::NodeList const& nodes,
+                                                    std::array<double, 3> const& place) {
+  Vector<double, E::dim> xi;
+  for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
+  auto const shape = E::shape(xi);
+  std::vector<std::pair<Index, double>> list;
+  for (int a = 0; a < E::nodes; ++a)
+    if (shape[a] != 0) list.emplace_back(nodes[static_cast<std::size_t>(a)], shape[a]);
+  return list;
+}
+/// The weights of an element's nodes in the value at a place on its cell; dyadic numbers, without rounding, so
+/// that they are the same from all elements around.
+inline std::vector<std::pair<Index, double>> shape_weights(CellKind kind, CellNodes has,
+                                                           CellTree::NodeList const& nodes,
+                                                           std::array<double, 3> const& place) {
+  auto const choose = [&]<Element Linear, Element Edges, Element All>(
+                          std::type_identity<std::tuple<Linear, Edges, All>>) {
+    if (has == CellNodes::corners) return shape_weights<Linear>(nodes, place);
+    if (has == CellNodes::edges) return shape_weights<Edges>(nodes, place);
+    return shape_weights<All>(nodes, place);
+  };
+  switch (kind) {
+    case CellKind::triangle:
+      return choose(std::type_identity<std::tuple<Tri3, Tri6, Tri6>>{});
+    case CellKind::quadrilateral:
+      return choose(std::type_identity<std::tuple<Quad4, Quad8, Quad9>>{});
+    case CellKind::tetrahedron:
+      return choose(std::type_identity<std::tuple<Tet4, Tet10, Tet10>>{});
+    case CellKind::hexahedron:
+      return choose(std::type_identity<std::tuple<Hex8, Hex20, Hex27>>{});
+    case CellKind::wedge:
+      break;
+  }
+  return shape_weights<Wedge6>(nodes, place);
+}
+
+}  // namespace detail
+}  // namespace pliant

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/topology/refinement_pattern.hpp>
+
+// What a CellTree is made of.
+namespace pliant {
+
+/// Which nodes the element on a cell has: its corners; those and one per edge; or one more in each side
+/// with four corners and in the middle too.
+enum class CellNodes : std::uint8_t { corners, edges, all };
+
+/// A cell of a CellTree. A refined cell has its children at first_child, first_child + 1, ...
+struct TreeCell {
+  CellKind kind = CellKind::triangle;
+  CellNodes has = CellNodes::corners;
+  bool mirrored = false;  ///< its element has the last two corners in the other order
+  int level = 0;          ///< 0 for the cells of the initial mesh
+  Index parent = -1;
+  Index first_child = -1;                                      ///< -1 for a leaf
+  Index centre = -1;                                           ///< the node in the middle
+  std::array<Index, 8> nodes{-1, -1, -1, -1, -1, -1, -1, -1};  ///< at the corners
+  std::array<Index, 12> edges{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  std::array<Index, 6> sides{-1, -1, -1, -1, -1, -1};  ///< in 3D
+
+  [[nodiscard]] RefinementPattern const& pattern() const { return pattern_of(kind); }
+  [[nodiscard]] std::size_t corners() const { return static_cast<std::size_t>(pattern().corners); }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("kind", r.kind...);
+    visit("nodes it has", r.has...);
+    visit("mirrored", r.mirrored...);
+    visit("level", r.level...);
+    visit("parent", r.parent...);
+    visit("first child", r.first_child...);
+    visit("centre", r.centre...);
+    visit("nodes", r.nodes...);
+    visit("edges", r.edges...);
+    visit("sides", r.sides...);
+  }
+};
+
+struct TreeEdge {
+  std::array<Index, 2> nodes{-1, -1};
+  Index middle = -1;      ///< the node in its middle, or -1
+  Index parent = -1;      ///< the edge of which it is a half
+  Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
+  int leaves = 0;         ///< of how many leaves it is a whole edge
+  int refined = 0;        ///< of how many refined cells
+  int level = 0;          ///< of the cells of which it is a whole edge
+  CellNodes has = CellNodes::corners;
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("nodes", r.nodes...);
+    visit("middle", r.middle...);
+    visit("parent", r.parent...);
+    visit("first half", r.first_half...);
+    visit("leaves", r.leaves...);
+    visit("refined cells", r.refined...);
+    visit("level", r.level...);
+    visit("nodes of its cells", r.has...);
+  }
+};
+
+/// The side of solid cells, refined as a triangle or quadrilateral is.
+struct TreeSide {
+  std::array<Index, 4> nodes{-1, -1, -1, -1};
+  std::array<Index, 4> edges{-1, -1, -1, -1};  ///< edge k begins at corner k
+  std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side
+  Index centre = -1;                           ///< the node in its middle, or -1
+  Index parent = -1;                           ///< the side of which it is a part
+  Index first_child = -1;                      ///< of four
+  Index first_inner_edge = -1;                 ///< of three in a triangle, four in a quadrilateral
+  int level = 0;
+  CellNodes has = CellNodes::corners;
+
+  [[nodiscard]] std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
+  /// Its outline as a plane cell.
+  [[nodiscard]] RefinementPattern const& pattern() const {
+    return pattern_of(corners() == 3 ? CellKind::triangle : CellKind::quadrilateral);
+  }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("nodes", r.nodes...);
+    visit("edges", r.edges...);
+    visit("cells", r.cells...);
+    visit("centre", r.centre...);
+    visit("parent", r.parent...);
+    visit("first child", r.first_child...);
+    visit("first inner edge", r.first_inner_edge...);
+    visit("level", r.level...);
+    visit("nodes of its cells", r.has...);
+  }
+};
+
+/// A node that a split made: where it lies on the cell that was split.
+struct PlacedNode {
+  Index node = -1;
+  Index cell = -1;
+  std::array<double, 3> place{};
+};
+
+/// New numbers by old ones; −1: gone. What stays keeps its order.
+struct Renumbering {
+  std::vector<Index> nodes, cells;
+};
+
+}  // namespace pliant
