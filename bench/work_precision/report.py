@@ -29,7 +29,7 @@ LEVELS = {
     "plate with a square hole": (0.03, None),
     "smooth field, finite strain": (0.02, None),
 }
-ELEMENTS = ["Tri3", "Quad4"]
+ELEMENTS = ["Tri3", "Quad4", "Tri6", "Quad9"]
 
 
 def interpolated(points, error):
@@ -121,6 +121,8 @@ def static_rows(problem):
     error, bar = level_of(problem)
     for element in ELEMENTS:
         name = f"{element}, {DEFAULT}"
+        if name not in problem.contestants:
+            continue
         row = problem.first_within(name, error)
         if not row:
             yield [problem.name, percent(error), element, "not reached"] + [""] * 7
@@ -144,6 +146,8 @@ def rule_rows(problem, rules):
     error, _ = level_of(problem)
     for element in ELEMENTS:
         cells = []
+        if f"{element}, {DEFAULT}" not in problem.contestants:
+            continue
         own, beyond_own, _ = problem.uniform(error, element)
         for rule in rules:
             points = problem.points(f"{element}, {rule}")
