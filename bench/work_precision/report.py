@@ -154,7 +154,8 @@ def rule_rows(problem, rules):
             seconds, beyond = interpolated(points, error)
             # Too far from the error to say.
             far = not points or min(points)[0] > 1.5 * error
-            cells.append("not reached" if far else ratio(seconds / own, beyond or beyond_own))
+            cells.append("" if f"{element}, {rule}" not in problem.contestants else "not reached" if far
+                         else ratio(seconds / own, beyond or beyond_own))
         yield [problem.name, percent(error), element, *cells]
 
 
