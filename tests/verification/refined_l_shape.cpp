@@ -49,38 +49,6 @@ bool on_outer(Point<Dim> const& p) {
   return on_outer_l_shape({p[0], p[1]});
 }
 
-/// The energy norm of the error.
-template <Element E, class TheBody>
-double error_of(TheBody& body) {
-  static constexpr auto points = tabulate<E, Gauss<(E::dim == 2 ? 6 : 4)>, double>();
-  auto const law = Hooke<double>::from(l_shape_material);
-  auto const& mesh = body.mesh();
-  auto const u = body.displacements();
-  double squares = 0;
-  for (auto const& element : mesh.template elements<E>()) {
-    auto const rest = nodal(mesh, element);
-    Nodal<E, double> own;
-    for (int a = 0; a < E::nodes; ++a)
-      for (int k = 0; k < E::dim; ++k)
-        own(a, k) = u[static_cast<std::size_t>(element[static_cast<std::size_t>(a)])]
-                     [static_cast<std::size_t>(k)];
-    auto const x = Coefficients<E, double>::of(rest), v = Coefficients<E, double>::of(own);
-    for (int q = 0; q < points.count; ++q) {
-      auto const map = RestMap<E, double>::at(x, points, q);
-      Point<2> place{};
-      for (int a = 0; a < E::nodes; ++a)
-        for (int k = 0; k < 2; ++k)
-          place[static_cast<std::size_t>(k)] += points.shape[q][a] * rest(a, k);
-      auto off = map.gradient(v, points, q);
-      auto const exact = gradient_in_l_shape(place);
-      for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 2; ++k) off(i, k) = off(i, k) - exact(i, k);
-      squares += 2 * energy_density(law, off) * map.volume * points.weight[q];
-    }
-  }
-  return std::sqrt(squares);
-}
-
 /// Rounds of refinement until there are so many unknowns: of each round, how many there were, and the error.
 template <Element E>
 Runs refined(int n, long most, double share) {
@@ -104,7 +72,7 @@ Runs refined(int n, long most, double share) {
     }
     body.set_displacements(u);
     auto const report = solve_static(body, where_forces_cancel);
-    runs.push_back({static_cast<int>(report.unknowns), {error_of<E>(body)}});
+    runs.push_back({static_cast<int>(report.unknowns), {error_in_l_shape<E>(body)}});
     if (report.unknowns > most) return runs;
     adapt.now(body);
   }
