@@ -126,6 +126,7 @@ TEST_CASE("a stiff element that gets less stiff asks for no step", "[adaptation]
 
 /// Waits for no answer, as a GPU does: the host does not know of moves.
 struct Unasked : Reference<double> {
+  static constexpr char const* name() { return "Unasked"; }
   struct Recording : HostRecording {
     using HostRecording::HostRecording;
     Recording(HostRecording other) : HostRecording(std::move(other)) {}
@@ -165,7 +166,8 @@ TEST_CASE("the host asks for moves to stiffer laws, and for no others", "[adapta
 
 TEST_CASE("a run that is saved behind a switch asks for its step all the same",
           "[adaptation][solver][state]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  using Backends = decltype(std::tuple_cat(DoubleBackends{}, std::tuple<Unasked>{}));
+  on_each_backend<Backends>([]<class B>(B const& backend) {
     bool const local = GENERATE(false, true);
     auto whole = resting_body(backend), part = resting_body(backend), next = resting_body(backend);
     auto const advance = [&](auto& body, CentralDifference& step, LocalSteps& by_element, int n) {

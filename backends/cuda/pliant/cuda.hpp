@@ -97,12 +97,12 @@ class Cuda {
           detail::scatter_elements<Groups, nodes, T, C, Kernel, Fields...>;
       launch("accumulate",
              {blocks(element_count(active), detail::scatter_threads), detail::scatter_threads},
-             scatter, active.elements.view({active.list}), kernel, out, fields...);
+             scatter, active.elements.view({active.list, active.most}), kernel, out, fields...);
     } else {
       using Memory = detail::PatchMemory<T, nodes, C, (Fields::components + ... + 0)>;
       void (*const by_patch)(detail::PatchView<nodes>, Kernel, NodeField<T, C>, Fields...) =
           detail::accumulate_patches<Groups, nodes, T, C, Kernel, Fields...>;
-      auto const patches = active.elements.patch_view({active.list});
+      auto const patches = active.elements.patch_view({active.list, active.most});
       int const bytes =
           Memory::bytes(patches.diagonal_capacity, patches.node_capacity, patches.patch_size);
       launch("accumulate", {active.most, active.elements.threads(), bytes}, by_patch, patches,
@@ -115,9 +115,10 @@ class Cuda {
     require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();
     auto const active = detail::active(table);
     if (active.most <= 0) return 0;
-    return reduce<detail::Sum>("sum_elements", element_count(active),
-                               detail::ElementTerm<Groups, nodes, Kernel, Fields...>{
-                                   active.elements.view({active.list}), kernel, {fields...}});
+    return reduce<detail::Sum>(
+        "sum_elements", element_count(active),
+        detail::ElementTerm<Groups, nodes, Kernel, Fields...>{
+            active.elements.view({active.list, active.most}), kernel, {fields...}});
   }
   template <int Groups, class Table, class Visitor, class... Fields>
   void visit(Table const& table, Visitor const& visitor, DeviceArray<double>& counters,
@@ -131,7 +132,7 @@ class Cuda {
         detail::visit_elements<Groups, nodes, Visitor, Fields...>;
     constexpr int in_block = detail::visit_threads * detail::visits_per_thread<Visitor>;
     launch("visit", {blocks(element_count(active), in_block), detail::visit_threads}, visit_kernel,
-           active.elements.view({active.list}), visitor, counters.data(), fields...);
+           active.elements.view({active.list, active.most}), visitor, counters.data(), fields...);
   }
   template <class F>
   void histogram(Index n, F const& f, std::int64_t* bins) const {

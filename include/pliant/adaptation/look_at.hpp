@@ -126,7 +126,7 @@ class LookAt {
     auto const& state = parts_.state;
     return B::orders_by_group || std::same_as<typename B::Recording, HostRecording> ||
            parts_.forces_current || !state.integrator.implicit.empty() ||
-           rules_.may_stiffen(parts_) ||
+           rules_.may_stiffen(parts_) || state.integrator.macro_step > 0 ||
            (state.pending_half_kick == 0 && state.integrator.step > 0);
   }
   bool something_moves() const {

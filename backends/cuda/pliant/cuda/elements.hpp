@@ -21,11 +21,12 @@ namespace detail {
 /// Which patches of a table a kernel looks at.
 struct ActiveList {
   Index const* list = nullptr;  // how many, then their numbers; null: all
+  Index most = 0;               // how many the list has room for
 
   /// The patch of number k among these; negative behind the last one.
   __device__ __forceinline__ Index patch(Index k) const {
     if (list == nullptr) return k;
-    return k < list[0] ? list[k + 1] : -1;
+    return k < most && k < list[0] ? list[k + 1] : -1;
   }
 };
 
