@@ -40,7 +40,7 @@ share(shared/elements
       formulation/coefficients mesh/check mesh/generators mesh/loads mesh/middles
       topology/transfer)
 share(shared/statics
-      body/pressure solver/assemble solver/newmark solver/newmark_state solver/static solver/static_loads
+      body/pressure solver/assemble solver/implicit solver/implicit_state solver/static solver/static_loads
       solver/static_report)
 share(shared/laws
       law/closed_forms law/derivatives law/fibres law/invariance law/inversion law/limits

@@ -1,4 +1,4 @@
-#include <pliant/solver/newmark.hpp>
+#include <pliant/solver/implicit.hpp>
 
 #include "verification/support/grading.hpp"
 #include "verification/support/statics.hpp"
@@ -15,7 +15,7 @@ void same_steps(Table& table) {
   auto body = body_of<Beam>(mesh, {1.4e6, 0.4, 1000});
   body.clamp(mesh.boundary("left"));
   body.set_gravity({0, -2});
-  Newmark step{{.step = 2e-3}};
+  Implicit step{Newmark{}, {.step = 2e-3}};
   struct Instant {
     int steps;
     double ux, uy;
@@ -49,7 +49,7 @@ void first_swing(Table& table, int n, double dt, Printed const& uy, Printed cons
     body.clamp(mesh.boundary("left"));
     body.set_gravity({0, -2});
     auto const a = node_at(mesh, {0.6, 0.2});
-    Newmark step{{.step = dt, .tolerance = 1e-8}};
+    Implicit step{Newmark{}, {.step = dt, .tolerance = 1e-8}};
     step(body, static_cast<int>(0.43 / dt));
     double before = 0, now = body.displacements()[a][1];
     for (;;) {
@@ -92,7 +92,7 @@ void column(Table& table) {
   };
   table.compare({"7, column, energy at first, J", name_of<F>(), "2 x 2 x 12"}, kinetic(),
                 within(1e-4, 1.1e5));
-  Newmark step{{.step = 4e-3, .tolerance = 1e-8}};
+  Implicit step{Newmark{}, {.step = 4e-3, .tolerance = 1e-8}};
   struct Instant {
     int steps;
     char const* ux;

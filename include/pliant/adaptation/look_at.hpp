@@ -125,8 +125,8 @@ class LookAt {
     using B = typename Parts::backend_type;
     auto const& state = parts_.state;
     return B::orders_by_group || std::same_as<typename B::Recording, HostRecording> ||
-           parts_.forces_current || !state.integrator.implicit.empty() ||
-           rules_.may_stiffen(parts_) || state.integrator.macro_step > 0 ||
+           parts_.forces_current || !state.implicit.empty() || rules_.may_stiffen(parts_) ||
+           state.integrator.macro_step > 0 ||
            (state.pending_half_kick == 0 && state.integrator.step > 0);
   }
   bool something_moves() const {
@@ -155,7 +155,7 @@ class LookAt {
   /// What integrators keep follows the new groups. (Where the host does not know of moves, the integrator
   /// looks for stiffer elements when it looks at the distortion.)
   void follow_moves() const {
-    parts_.state.integrator.implicit.a.clear();
+    parts_.state.implicit.balanced = false;
     follow_switch(parts_);
   }
 

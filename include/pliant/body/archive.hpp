@@ -17,7 +17,7 @@ namespace pliant {
 namespace detail {
 
 inline constexpr std::string_view archive_magic{"PLIANT\r\n", 8};
-inline constexpr std::uint32_t archive_version = 6;
+inline constexpr std::uint32_t archive_version = 7;
 
 /// Writes members of a state. The first mesh is not written: the body has it.
 template <class M>
@@ -80,12 +80,8 @@ void check_sizes(State const& state, Layout const& layout) {
   demand(state.u.size() == rows && state.v.size() == rows);
   demand(state.load.size() == 0 || state.load.size() == rows);
   demand(state.work.size() == static_cast<std::size_t>(Work::count));
-  auto const& implicit = state.integrator.implicit;
-  std::size_t const entries =
-      implicit.empty() ? 0 : static_cast<std::size_t>(layout.nodes) * State::dim;
-  for (auto const* values : {&implicit.u, &implicit.v, &implicit.external})
-    demand(values->size() == entries);
-  demand(implicit.a.empty() || implicit.a.size() == entries);
+  for (auto const* field : {&state.implicit.a, &state.implicit.d_before, &state.implicit.v_before})
+    demand(field->size() == 0 || field->size() == rows);
   auto const types = std::tuple_size_v<decltype(layout.tables)>;
   demand(state.record.totals.empty() || state.record.totals.size() == types);
   std::size_t type = 0;

@@ -133,6 +133,7 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.recorded_stretch.reset();
   parts.recorded_with_look.reset();
   parts.schedule.reset();
+  parts.solver.reset();
   parts.patch_nodes = std::move(next.patch_nodes);
   parts.awake = std::move(next.awake);
   parts.checkpoint.reset();
@@ -230,7 +231,7 @@ ChangedTopology<Parts> change_topology(
   });
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
-  state.integrator.implicit = {};
+  state.implicit = {};
   return changed;
 }
 

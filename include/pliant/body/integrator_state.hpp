@@ -2,7 +2,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
+
+#include <pliant/backend/backend.hpp>
 
 namespace pliant {
 
@@ -17,26 +18,30 @@ struct FrequencyBounds {
   }
 };
 
-/// What an implicit integrator keeps from call to call: the motion over (node, direction) in the user's order, with
-/// digits beyond the body's precision and the velocities of driven nodes, which the body does not keep, and what
-/// the accelerations are in balance with. Empty where something else moved the body last; without
-/// accelerations where its forces became others.
+/// What implicit integrators keep from call to call, by internal numbers: arrays are empty where something else moved
+/// the body last, or a scheme does not need them.
+template <Backend B>
 struct ImplicitState {
-  std::vector<double> u, v, a;   // m, m/s, m/s²
-  std::vector<double> external;  // N: gravity and loads
-  double damping = 0;            // 1/s
-  std::int32_t mass = 0;         // which MassMatrix
+  using Field = typename B::template Array<typename B::scalar>;
+  Field a;  // (nodes, 4), m/s²: accelerations, those of held nodes zero
+  Field d_before,
+      v_before;           // (nodes, 4), m and m/s: the last step, and the velocities where it began
+  bool balanced = false;  // whether a is in balance with the present forces
+  std::int32_t mass = 0;  // by which MassMatrix it is
+  double step = 0;        // s: the size of the last step; 0: there was none
+  double next_step = 0;   // s: which its error asks for
 
-  bool empty() const { return u.empty(); }
+  bool empty() const { return step == 0; }
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
-    visit("displacements", r.u...);
-    visit("velocities", r.v...);
     visit("accelerations", r.a...);
-    visit("loads", r.external...);
-    visit("damping", r.damping...);
+    visit("last step", r.d_before...);
+    visit("velocities before it", r.v_before...);
+    visit("balance of accelerations", r.balanced...);
     visit("masses", r.mass...);
+    visit("size of the last step", r.step...);
+    visit("size of the next step", r.next_step...);
   }
 };
 
@@ -61,7 +66,6 @@ struct IntegratorState {
   double last_energy = std::numeric_limits<double>::quiet_NaN();
   double scale = 0;     // the largest of strain and kinetic energy so far, J
   double unbooked = 0;  // changes that were not booked up to the last check
-  ImplicitState implicit{};
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -81,7 +85,6 @@ struct IntegratorState {
     visit("last energy", r.last_energy...);
     visit("scale", r.scale...);
     visit("unbooked changes", r.unbooked...);
-    visit("implicit motion", r.implicit...);
   }
 };
 

@@ -9,6 +9,7 @@
 #include <pliant/body/awake_set.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/body/looker.hpp>
+#include <pliant/body/solver_arrays.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/body/step_schedule.hpp>
 #include <pliant/body/timers.hpp>
@@ -94,6 +95,7 @@ struct Parts {
     Array<T> u, du, f;
   };
   std::optional<Scratch> scratch{};
+  std::optional<SolverArrays<B>> solver{};  // made when a solver first runs on the backend
   Array<T> without_energy{};    // (nodes, 4) and scratch rows, N: of terms that have no energy
   Array<double> moves{};        // (1): how many elements a look moves between groups
   Array<std::int64_t> clock{};  // (1): the number of steps at that look

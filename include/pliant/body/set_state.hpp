@@ -53,6 +53,7 @@ void change_loads(Parts& parts, Change const& change) {
   auto const before = present_energy(parts);
   change();
   ++parts.revision;
+  parts.state.implicit.balanced = false;
   double const added =
       parts.watched_energy ? watched_change(parts, before) : potential_energy_of(parts) - potential;
   if (!std::isfinite(added)) return;
@@ -75,6 +76,7 @@ void set_damping(Parts& parts, double per_mass) {
   detail::check_number<typename Parts::T>("body.set_damping", per_mass);
   synchronize_velocities(parts);
   parts.state.damping = per_mass;
+  parts.state.implicit.balanced = false;
   ++parts.revision;
 }
 
@@ -130,6 +132,7 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
                                                            parts.layout.internal_of(node),
                                                            detail::vector_of<T>(force),
                                                            parts.state.work.data()});
+  parts.state.implicit.balanced = false;
   parts.loads_current = false;
 }
 

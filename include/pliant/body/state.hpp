@@ -92,6 +92,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   FrequencyBounds bounds;       // of all that was awake when the step was chosen last
   AdaptationRecord<dim> record;
   IntegratorState integrator;
+  ImplicitState<B> implicit;
 
   /// visit(name, member of each state...).
   template <class Visit, class... S>
@@ -126,6 +127,7 @@ struct State<B, Mesh<Es...>, Fs...> {
     visit("bounds of frequencies", s.bounds...);
     AdaptationRecord<dim>::for_each_member(visit, s.record...);
     visit("integrator", s.integrator...);
+    ImplicitState<B>::for_each_member(visit, s.implicit...);
   }
 };
 

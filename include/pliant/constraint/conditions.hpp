@@ -114,7 +114,7 @@ void change_by_hand(Parts& parts, Change const& change) {
   forget_forces(parts);
   parts.state.energy_by_hand += watched_change(parts, before);
   parts.has_checkpoint = false;
-  parts.state.integrator.implicit = {};
+  parts.state.implicit = {};
   parts.state.integrator.next_refresh = parts.state.steps;  // it may have made the body stiffer
 }
 

@@ -24,6 +24,26 @@ PLIANT_HOST_DEVICE S volume(Nodal<E, S> const& rest) {
 template <Element E>
 using MassQuadrature = Gauss<SimplexCell<typename E::cell> ? 2 * E::degree : E::degree + 1>;
 
+/// ∫ N_a Σ_b N_b x_b dV: the consistent mass of unit density times values at nodes.
+template <Element E, class S>
+PLIANT_HOST_DEVICE Nodal<E, S> volume_product(Nodal<E, S> const& rest, Nodal<E, S> const& x) {
+  using T = builtin_scalar<S>;
+  static constexpr auto table = tabulate<E, MassQuadrature<E>, T>();
+  auto const c = Coefficients<E, S>::of(rest);
+  auto product = Nodal<E, S>::zero();
+  for (int q = 0; q < table.count; ++q) {
+    S const v = RestMap<E, S>::at(c, table, q).volume * T(table.weight[q]);
+    for (int k = 0; k < E::dim; ++k) {
+      S value = S(0);
+      for (int b = 0; b < E::nodes; ++b) value = value + T(table.shape[q][b]) * x(b, k);
+      value = v * value;
+      for (int a = 0; a < E::nodes; ++a)
+        product(a, k) = product(a, k) + T(table.shape[q][a]) * value;
+    }
+  }
+  return product;
+}
+
 /// The share of the element's volume that each node carries: positive, and exact in total.
 template <Element E, class S>
 PLIANT_HOST_DEVICE Vector<S, E::nodes> nodal_volumes(Nodal<E, S> const& rest) {

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <pliant/formulation/mass.hpp>
 #include <pliant/solver/assemble.hpp>
+#include <pliant/solver/mass_product.hpp>
 
 namespace pliant {
-
-/// How inertia is spread: over the nodes that share an element, ∫ ρ N_a N_b dV, or to each node alone,
-/// as explicit integration needs it (Body::add_lumped_mass).
-enum class MassMatrix { consistent, lumped };
 
 namespace detail {
 

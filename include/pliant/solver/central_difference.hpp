@@ -137,6 +137,7 @@ class CentralDifference {
     }
     parts.integrator = identity_;
     parts.has_checkpoint = false;
+    parts.state.implicit = {};
     own = IntegratorState{.active = true, .step = own.step};  // refresh books a change of the step
     own.next_check = own.next_refresh = own.next_watch = now;
   }

@@ -109,6 +109,7 @@ class LocalSteps {
     if (mine || resumed) return;
     parts.has_checkpoint = false;
     parts.schedule.reset();
+    parts.state.implicit = {};
     own = IntegratorState{.active = true};
     own.next_check = own.next_refresh = own.next_watch = parts.state.steps;
   }

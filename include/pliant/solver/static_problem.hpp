@@ -59,6 +59,19 @@ class StaticProblem {
     interpolate_slaves(body_, u);
   }
 
+  /// Which entries are held, driven or of slaves, or of nodes of no element.
+  static std::vector<bool> fixed_entries(TheBody const& body) {
+    std::vector<bool> fixed(static_cast<std::size_t>(dim * body.nodes()), false);
+    for (auto const& condition : body.state().prescribed->conditions)
+      for (Index node : condition.nodes)
+        for (int k = 0; k < dim; ++k)
+          if (condition.directions >> k & 1) fixed[at(dim * node + k)] = true;
+    for (Index i = 0; i < body.nodes(); ++i)
+      if (!(body.parts().layout.mass_list[at(i)] > 0))  // slaves, and nodes of no element
+        for (int k = 0; k < dim; ++k) fixed[at(dim * i + k)] = true;
+    return fixed;
+  }
+
   /// Values per node as one vector, and back.
   static Eigen::VectorXd flat(std::vector<Point<dim>> const& points) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(dim * points.size()));
@@ -79,17 +92,6 @@ class StaticProblem {
   template <class I>
   static std::size_t at(I i) {
     return static_cast<std::size_t>(i);
-  }
-  static std::vector<bool> fixed_entries(TheBody const& body) {
-    std::vector<bool> fixed(static_cast<std::size_t>(dim * body.nodes()), false);
-    for (auto const& condition : body.state().prescribed->conditions)
-      for (Index node : condition.nodes)
-        for (int k = 0; k < dim; ++k)
-          if (condition.directions >> k & 1) fixed[at(dim * node + k)] = true;
-    for (Index i = 0; i < body.nodes(); ++i)
-      if (!(body.parts().layout.mass_list[at(i)] > 0))  // slaves, and nodes of no element
-        for (int k = 0; k < dim; ++k) fixed[at(dim * i + k)] = true;
-    return fixed;
   }
   void hand_to_masters(Eigen::VectorXd& f) const {
     body_.state().topology->interpolation.apply_transpose(

@@ -7,15 +7,9 @@
 
 #include <Eigen/Core>
 
-namespace pliant::detail {
+#include <pliant/solver/linear/krylov_report.hpp>
 
-struct KrylovReport {
-  int iterations = 0;
-  double residual = 0;  // |b − A x|, by the recurrence
-  bool converged = false;
-  bool indefinite =
-      false;  // a direction p with pᵀ A p ≤ 0 was met, or a residual r with rᵀ M r ≤ 0
-};
+namespace pliant::detail {
 
 /// Solves A x = b for a symmetric positive definite A, from x = 0, until |b − A x| ≤ tolerance |b|, and the same holds of the
 /// error in the norm of A, as far as the last few steps tell it (Hestenes and Stiefel 1952; Strakoš and Tichý, Electronic

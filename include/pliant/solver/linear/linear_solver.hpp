@@ -15,7 +15,8 @@ namespace pliant {
 enum class LinearMethod {
   automatic,  // by the number of unknowns and what the matrix turns out to be
   direct,     // by a factorisation
-  multilevel  // by conjugate gradients with smoothed aggregation, as long as the matrix is positive definite
+  multilevel,  // by conjugate gradients with smoothed aggregation, as long as the matrix is positive definite
+  matrix_free  // by conjugate gradients on the body's backend, on products of the tangent and inverse blocks of nodes
 };
 
 /// What the linear systems of a solve took.
@@ -54,6 +55,13 @@ class LinearSolver {
     return report;
   }
 
+  /// What follows does not depend on what was solved so far: factors and hierarchies serve for their own matrix alone.
+  void begin_anew() {
+    serves_ = false;
+    iterations_per_digit_ = 0;
+    failures_ = 0;
+  }
+
   /// x with |r − A x| ≤ tolerance |r| over the unknowns, and 0 elsewhere; at least as accurate where it factorises.
   /// Throws Error where the matrix is singular.
   Eigen::VectorXd solve(HostTasks const& tasks, LinearSystem<Dim> const& system, Eigen::VectorXd r,
@@ -67,7 +75,8 @@ class LinearSolver {
     }
     report_.method = LinearMethod::direct;
     reached_ = 0;
-    if (system.symmetric && by_kept_factors(tasks, system, r, tolerance, x)) return x;
+    if (serves_ && system.symmetric && by_kept_factors(tasks, system, r, tolerance, x)) return x;
+    serves_ = true;
     return system.unknowns.expand(direct_.solve(system.unknowns.restrict(system.matrix),
                                                 system.unknowns.restrict(r), system.symmetric));
   }
@@ -89,7 +98,10 @@ class LinearSolver {
     BlockMatrix<Dim, Dim> a = system.matrix;
     system.unknowns.isolate_others(a);
     for (bool const fresh : {false, true}) {
-      if (!fresh && (!multilevel_ || multilevel_->matrix().rows() != a.rows())) continue;
+      if (!fresh && (!multilevel_ || multilevel_->matrix().rows() != a.rows() ||
+                     !(serves_ || multilevel_->matrix().values == a.values)))
+        continue;
+      serves_ = true;
       if (fresh) {
         multilevel_ =
             std::make_unique<Multilevel<Dim>>(tasks, a, system.nodes, system.unknowns.fixed());
@@ -152,6 +164,7 @@ class LinearSolver {
   LinearReport report_;
   double iterations_per_digit_ = 0, reached_ = 0;
   int failures_ = 0;
+  bool serves_ = false;  // whether what is kept is of a matrix that this one follows
 };
 
 }  // namespace detail

@@ -3,12 +3,12 @@
 #include <sstream>
 
 #include <pliant/body/compare.hpp>
-#include <pliant/solver/newmark.hpp>
+#include <pliant/solver/implicit.hpp>
 
 #include "adaptation/plane_bodies.hpp"
 
-// What Newmark keeps of a run stands in the body's state; steps that fold are told.
-namespace pliant::test::newmark_state_suite {
+// What implicit integrators keep of a run stands in the body's state; steps that fold are told.
+namespace pliant::test::implicit_state_suite {
 
 /// A refined body that swings, is drawn at its left side, pulled and damped.
 template <class B>
@@ -26,7 +26,7 @@ auto swinging_body(B const& backend) {
   body.set_damping(2);
   return body;
 }
-constexpr NewmarkOptions options{.step = 4e-3};
+constexpr ImplicitOptions options{.step = 4e-3};
 
 template <class A, class B>
 void check_same(A const& a, B const& b) {
@@ -39,7 +39,7 @@ TEST_CASE("a run that is saved and loaded goes on with the same bits", "[solver]
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto whole = swinging_body(backend), first = swinging_body(backend),
          second = swinging_body(backend);
-    Newmark step{options}, other{options}, anew{options};
+    Implicit step{Newmark{}, options}, other{Newmark{}, options}, anew{Newmark{}, options};
     step(whole, 3);
     other(first, 3);
     REQUIRE(!whole.state().topology->interpolation.empty());
@@ -58,7 +58,7 @@ TEST_CASE("a run that is saved and loaded goes on with the same bits", "[solver]
 TEST_CASE("a run that is rolled back goes on with the same bits", "[solver][state]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto whole = swinging_body(backend), body = swinging_body(backend);
-    Newmark step{options}, other{options};
+    Implicit step{Newmark{}, options}, other{Newmark{}, options};
     step(whole, 3);
     other(body, 3);
     keep_checkpoint(body.parts());
@@ -74,22 +74,21 @@ TEST_CASE("a run that is rolled back goes on with the same bits", "[solver][stat
 TEST_CASE("a copied state has what goes on", "[solver][state]") {
   MainBackend const backend;
   auto body = swinging_body(backend);
-  Newmark step{options};
+  Implicit step{Newmark{}, options};
   step(body, 2);
   typename decltype(body)::parts_type::state_type copy;
   copy_state(backend, body.state(), copy);
   CHECK(same_state(copy, body.state()));
   step(body);
-  CHECK(first_difference(copy.integrator.implicit, body.state().integrator.implicit) ==
-        "displacements");
+  CHECK(first_difference(copy.implicit, body.state().implicit) == "accelerations");
 }
 
 TEST_CASE("changes by hand and of the mesh leave nothing to go on with", "[solver][state]") {
   MainBackend const backend;
   auto body = swinging_body(backend);
-  Newmark step{options};
+  Implicit step{Newmark{}, options};
   auto const goes_on = [&] {
-    bool const goes = !body.state().integrator.implicit.empty();
+    bool const goes = !body.state().implicit.empty();
     step(body);
     return goes;
   };
@@ -120,7 +119,7 @@ TEST_CASE("accelerations follow loads, damping and groups", "[solver][state]") {
     };
     auto body = make(), twin = make();
     for (auto* each : {&body, &twin}) {
-      Newmark{options}(*each, 10);
+      Implicit{Newmark{}, options}(*each, 10);
       if (each == &twin)  // what begins anew knows what there is
         each->set_velocities(each->velocities());
       if (change == 1) each->set_gravity({0, 10});
@@ -129,7 +128,7 @@ TEST_CASE("accelerations follow loads, damping and groups", "[solver][state]") {
       if (change == 4)
         Adaptation{when<QuadRubber>(AreaRatio{}).above(-1.0).template become<QuadLinear>()}.now(
             *each);
-      Newmark{options}(*each);
+      Implicit{Newmark{}, options}(*each);
     }
     double const size = largest(body.velocities());
     CHECK(difference(body.velocities(), twin.velocities()) < 1e-8 * size);
@@ -152,11 +151,11 @@ auto pressed_block(double speed = 60) {
 TEST_CASE("a step that folds the body is refused, and it stays as it was", "[solver]") {
   using Folding = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
   auto body = pressed_block<Folding>();
-  NewmarkOptions coarse{.step = 5e-3};
+  ImplicitOptions coarse{.step = 5e-3};
   int good = 0;
   FieldOf<2> before;
   auto const run = [&] {
-    Newmark step{coarse};
+    Implicit step{Newmark{}, coarse};
     for (; good < 100; ++good) {
       before = body.displacements();
       auto const report = step(body);
@@ -171,7 +170,7 @@ TEST_CASE("a step that folds the body is refused, and it stays as it was", "[sol
   CHECK(body.displacements() == before);
 
   coarse.accept_folded = true;
-  auto const report = Newmark{coarse}(body, 2);
+  auto const report = Implicit{Newmark{}, coarse}(body, 2);
   CHECK(report.steps == 2);
   CHECK_FALSE(report.least_J.value > 0);
   CHECK(report.least_J.number >= 0);
@@ -179,14 +178,14 @@ TEST_CASE("a step that folds the body is refused, and it stays as it was", "[sol
 
   // What many steps come to counts, not the last alone.
   auto again = pressed_block<Folding>();
-  auto const whole = Newmark{coarse}(again, good + 2);
+  auto const whole = Implicit{Newmark{}, coarse}(again, good + 2);
   CHECK(whole.least_J.value == report.least_J.value);
 }
 
 TEST_CASE("the least det F is that of all steps of a call", "[solver]") {
   using Folding = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
   auto body = pressed_block<Folding>(0.5), twin = pressed_block<Folding>(0.5);
-  Newmark step{{.step = 5e-2}}, single{{.step = 5e-2}};
+  Implicit step{Newmark{}, {.step = 5e-2}}, single{Newmark{}, {.step = 5e-2}};
   auto const whole = step(body, 30);
   double least = 1, last = 1;
   for (int k = 0; k < 30; ++k) {
@@ -200,7 +199,7 @@ TEST_CASE("the least det F is that of all steps of a call", "[solver]") {
 
 TEST_CASE("a fold is nothing to a linear law, and is told all the same", "[solver]") {
   auto body = pressed_block<Formulation<Quad4, Gauss<2>, Hooke>>();
-  auto const report = Newmark{{.step = 5e-3}}(body, 6);
+  auto const report = Implicit{Newmark{}, {.step = 5e-3}}(body, 6);
   CHECK(report.steps == 6);
   CHECK(report.least_J.value < 0);
   CHECK(report.iterations >= 6);
@@ -208,4 +207,4 @@ TEST_CASE("a fold is nothing to a linear law, and is told all the same", "[solve
   CHECK(report.residual < 1e-6);
 }
 
-}  // namespace pliant::test::newmark_state_suite
+}  // namespace pliant::test::implicit_state_suite
