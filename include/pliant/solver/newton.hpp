@@ -5,45 +5,29 @@
 
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
+#include <pliant/solver/static_matrix_free.hpp>
 #include <pliant/solver/static_problem.hpp>
 
 namespace pliant {
 
-/// How solve_static looks for equilibrium.
-struct NewtonOptions {
-  int load_steps = 1;       // gravity, loads, pressures and motions grow in so many equal steps
-  int max_iterations = 50;  // per load step
-  double tolerance =
-      1e-11;  // of the residual, relative to the external forces and reactions; below 1
-  /// On which masses gravity acts. Consistent, ∫ ρ N g, is as accurate as the elements are; lumped is the
-  /// gravity of explicit dynamics, whose rest it finds.
-  MassMatrix gravity = MassMatrix::consistent;
-  LinearMethod linear = LinearMethod::automatic;  // for the linear systems
-  bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
-};
-
-/// What solve_static found, and at what cost.
-struct NewtonReport {
-  Index unknowns = 0;
-  int iterations = 0;                           // in all
-  int factorisations = 0;                       // of the stiffness
-  LinearReport linear;                          // what the linear systems took
-  int assemblies = 0;                           // of the stiffness
-  double residual = 0;                          // N, the last
-  double energy = 0;                            // strain energy, J
-  MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
-  LeastJacobian least_J{};  // det F where it is least, at points of elements and between them
-};
-
 namespace detail {
 
 inline void check_options(NewtonOptions const& options) {
-  if (options.load_steps < 1 || options.max_iterations < 1)
-    throw Error("solve_static: load_steps ", options.load_steps, " and max_iterations ",
-                options.max_iterations, "; give 1 or more");
+  if (options.load_steps < 1 || options.max_iterations < 1 || options.max_linear_iterations < 1)
+    throw Error("solve_static: load_steps ", options.load_steps, ", max_iterations ",
+                options.max_iterations, " and max_linear_iterations ",
+                options.max_linear_iterations, "; give 1 or more");
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw Error("solve_static: a tolerance of ", options.tolerance,
                 "; give a number between 0 and 1, relative to the forces");
+}
+
+inline void refuse_folds(NewtonOptions const& options, LeastJacobian const& folded) {
+  if (!options.accept_folded && !(folded.value > 0))
+    throw Error("solve_static: the answer is folded: det F comes to ", folded.value, " in ",
+                folded.element, " element ", folded.number,
+                ", perhaps between the points of its quadrature; take more points, a finer mesh "
+                "there or more load_steps, or accept it by accept_folded");
 }
 
 /// Newton's method on one body: see solve_static.
@@ -87,12 +71,7 @@ class StaticNewton {
     report_.linear = linear_.report();
     report_.factorisations = report_.linear.factorisations;
     report_.least_J = least_jacobian_at(body_.parts(), u_, true);
-    auto const folded = least_jacobian_at(body_.parts(), u_, false);
-    if (!options_.accept_folded && !(folded.value > 0))
-      throw Error("solve_static: the answer is folded: det F comes to ", folded.value, " in ",
-                  folded.element, " element ", folded.number,
-                  ", perhaps between the points of its quadrature; take more points, a finer mesh "
-                  "there or more load_steps, or accept it by accept_folded");
+    refuse_folds(options_, least_jacobian_at(body_.parts(), u_, false));
     return u_;
   }
   NewtonReport const& report() const { return report_; }
@@ -219,11 +198,41 @@ class StaticNewton {
   NewtonReport report_;
 };
 
+/// The displacements in equilibrium, found without a matrix.
+template <DeformableBody TheBody>
+NewtonReport solve_static_matrix_free(TheBody& body, NewtonOptions const& options) {
+  auto& parts = body.parts();
+  if (!is_conservative(body))
+    throw Error(
+        "solve_static: pressures that follow a surface have no symmetric tangent, which conjugate "
+        "gradients ask for; take LinearMethod::automatic");
+  WithStepSize<typename TheBody::parts_type> const at_rest(parts,
+                                                           std::numeric_limits<double>::infinity());
+  MatrixFreeStatics<typename TheBody::parts_type> statics(parts, options,
+                                                          place_before_drives(parts));
+  auto const report = statics.solve();
+  refuse_folds(options, least_jacobian_on(parts, {statics.displacements().data()}, false));
+  change_by_hand(parts, [&] {
+    copy_values(parts.backend, statics.displacements().data(), parts.state.u.data(),
+                parts.state.u.size());
+  });
+  return report;
+}
+/// Whether a body is better solved where its arrays lie.
+template <DeformableBody TheBody>
+bool lies_better_on_backend(TheBody const& body) {
+  using Parts = typename TheBody::parts_type;
+  constexpr Index many = 20000;  // unknowns
+  return !std::same_as<typename Parts::backend_type::Recording, HostRecording> &&
+         sizeof(typename Parts::T) == sizeof(double) && is_conservative(body) &&
+         TheBody::dim * body.nodes() >= many;
+}
+
 }  // namespace detail
 
 /// Brings a body into static equilibrium with its gravity, loads and conditions: Newton's method on
-/// the assembled matrix, in double precision whatever the body's own, with load steps and a line
-/// search: on the potential energy, or, as pressures that follow a surface have none, on the work of
+/// the assembled matrix, in double precision whatever the body's own, or without a matrix where the body's arrays lie
+/// (NewtonOptions::linear), with load steps and a line search: on the potential energy, or, as pressures that follow a surface have none, on the work of
 /// the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
 /// Engineering 14 (1979) 1613). The first linear solve of a load step carries its increment of driven
 /// nodes. Load steps lead from where the body is, in balance with what it then bears, to all of its
@@ -234,12 +243,27 @@ class StaticNewton {
 template <DeformableBody TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
   detail::check_options(options);
-  detail::StaticNewton<TheBody> newton(body, options);
-  body.set_displacements(detail::StaticProblem<TheBody>::per_node(newton.solve()));
+  NewtonReport report;
+  bool solved = false;
+  if (options.linear == LinearMethod::matrix_free) {
+    report = detail::solve_static_matrix_free(body, options);
+    solved = true;
+  } else if (options.linear == LinearMethod::automatic && detail::lies_better_on_backend(body)) {
+    try {
+      report = detail::solve_static_matrix_free(body, options);
+      solved = true;
+    } catch (Error const&) {  // factors can do more; nothing has changed
+    }
+  }
+  if (!solved) {
+    detail::StaticNewton<TheBody> newton(body, options);
+    body.set_displacements(detail::StaticProblem<TheBody>::per_node(newton.solve()));
+    report = newton.report();
+  }
   body.parts().before_drives.clear();
   if constexpr (TheBody::has_internal_variables)
     change_by_hand(body.parts(), [&] { equilibrate(body.parts()); });
-  return newton.report();
+  return report;
 }
 
 }  // namespace pliant

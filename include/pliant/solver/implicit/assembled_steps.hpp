@@ -1,7 +1,7 @@
 #pragma once
 
-#include <pliant/solver/assemble_mass.hpp>
 #include <pliant/body/solver_arrays.hpp>
+#include <pliant/solver/assemble_mass.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
 #include <pliant/solver/linear/shifted_tangent.hpp>
 #include <pliant/solver/static_problem.hpp>

@@ -24,11 +24,16 @@ struct TakeHeld {
       if (held[i] >> k & 1) to(i, k) = from(i, k);
   }
 };
+/// Subtracts them there.
 template <class T, int Dim>
-struct AddTo {
+struct LessHeld {
   NodeField<T, Dim> to;
   NodeField<T const, Dim> from;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { to.set(i, to.at(i) + from.at(i)); }
+  DirectionMask const* held;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < Dim; ++k)
+      if (held[i] >> k & 1) to(i, k) -= from(i, k);
+  }
 };
 template <class T, int Dim>
 struct DivideByMass {
@@ -72,15 +77,22 @@ class Balance {
       parts.solver.emplace(parts.backend, parts.layout.rest.size(), parts.layout.f.size(), dim);
     else if (parts.solver->force.size() != parts.layout.f.size())
       parts.solver.emplace(parts.backend, parts.layout.rest.size(), parts.layout.f.size(), dim);
-    weigh();
+    weigh(field(arrays().residual));
+    weight_ = norm(arrays().residual);
   }
   Arrays& arrays() { return *parts_.solver; }
   Field field(typename Parts::template Array<T>& array) const { return {array.data()}; }
   double norm(typename Parts::template Array<T>& array) const {
     return norm_of(parts_.backend, nodes_, field(array));
   }
-  MassMatrix mass() const { return mass_; }
-  double stiffness_damping() const { return stiffness_damping_; }
+  /// Weight and loads of the unknowns, N.
+  void weigh(Field out) {
+    auto const w = field(arrays().acceleration);
+    clear_rows(parts_, field(arrays().force));
+    clear_rows(parts_, w);
+    (void)sum_up(w);
+    set_sum(parts_.backend, nodes_, out, scaled(1, field(arrays().residual)));
+  }
 
   /// The matrix −∂r/∂d.
   ShiftedTangent<Parts> matrix(StepRule const& rule) {
@@ -178,17 +190,6 @@ class Balance {
     keep_unknowns(parts_, r);
     return {norm(own.residual), std::max({weight_, norm(own.force), norm(own.inert)})};
   }
-  /// The norm of weight and loads, N.
-  void weigh() {
-    auto& own = arrays();
-    auto const w = field(own.acceleration);
-    clear_rows(parts_, field(own.force));
-    clear_rows(parts_, w);
-    weight_ = 0;
-    (void)sum_up(w);
-    weight_ = norm(own.residual);
-  }
-
   Parts& parts_;
   MassMatrix mass_;
   double stiffness_damping_;

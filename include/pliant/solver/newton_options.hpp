@@ -1,0 +1,38 @@
+#pragma once
+
+#include <pliant/solver/least_jacobian.hpp>
+#include <pliant/solver/linear/linear_method.hpp>
+#include <pliant/solver/mass_product.hpp>
+
+namespace pliant {
+
+/// How solve_static looks for equilibrium.
+struct NewtonOptions {
+  int load_steps = 1;       // gravity, loads, pressures and motions grow in so many equal steps
+  int max_iterations = 50;  // per load step
+  double tolerance =
+      1e-11;  // of the residual, relative to the external forces and reactions; below 1
+  /// On which masses gravity acts. Consistent, ∫ ρ N g, is as accurate as the elements are; lumped is the
+  /// gravity of explicit dynamics, whose rest it finds.
+  MassMatrix gravity = MassMatrix::consistent;
+  /// For the linear systems: automatic takes a matrix, or none on a GPU in double precision where there are many
+  /// unknowns and all forces have a potential. Without one all goes on in the body's precision.
+  LinearMethod linear = LinearMethod::automatic;
+  int max_linear_iterations = 10000;  // without a matrix, per iteration
+  bool accept_folded = false;         // an answer that is folded somewhere, instead of an Error
+};
+
+/// What solve_static found, and at what cost.
+struct NewtonReport {
+  Index unknowns = 0;
+  int iterations = 0;                           // in all
+  int factorisations = 0;                       // of the stiffness
+  LinearReport linear;                          // what the linear systems took
+  int assemblies = 0;                           // of the stiffness
+  double residual = 0;                          // N, the last
+  double energy = 0;                            // strain energy, J
+  MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
+  LeastJacobian least_J{};  // det F where it is least, at points of elements and between them
+};
+
+}  // namespace pliant

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <pliant/law/decorators/viscosity.hpp>
+#include <pliant/solver/newton.hpp>
+
+#include "adaptation/plane_bodies.hpp"
+
+// Static equilibrium without a matrix, beside that on the assembled one.
+namespace pliant::test::without_matrix_suite {
+
+using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+using Solid = Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>;
+using Viscous = Formulation<Quad4, Gauss<2>, Prony<NeoHookean, 1>::law>;
+
+template <class B, class F>
+auto clamped_sheet(B const& backend, Group<F> group) {
+  Body body{backend, mesh::rectangle({.size = {1, 0.5}, .cells = {6, 3}}), Elastic{2e5, 0.3, 1000},
+            group};
+  body.clamp(body.mesh().boundary("left"));
+  return body;
+}
+template <class B>
+constexpr double digits = sizeof(typename B::scalar) == 8 ? 1e-9 : 2e-4;
+
+/// Solves two bodies, one without a matrix, and compares them.
+template <class B, class Make>
+NewtonReport compare(Make const& make, NewtonOptions options = {}) {
+  auto with = make(), without = make();
+  auto const direct = solve_static(with, options);
+  if (sizeof(typename B::scalar) == 4) options.tolerance = 1e-5;
+  options.linear = LinearMethod::matrix_free;
+  auto const report = solve_static(without, options);
+  double const size = largest(with.displacements());
+  CHECK(size > 1e-3);
+  CHECK(difference(with.displacements(), without.displacements()) < digits<B> * size);
+  CHECK(report.energy == Approx(direct.energy).epsilon(10 * digits<B>));
+  CHECK(report.least_J.value == Approx(direct.least_J.value).epsilon(10 * digits<B>));
+  CHECK(report.least_J.element == std::string(direct.least_J.element));
+  CHECK(report.linear.iterations > 0);
+  CHECK(report.factorisations == 0);
+  return report;
+}
+
+TEST_CASE("rest without a matrix is rest with one", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    for (int load_steps : {1, 3})
+      for (auto gravity : {MassMatrix::consistent, MassMatrix::lumped})
+        compare<B>(
+            [&] {
+              auto body = clamped_sheet(backend, Group<Rubber>{});
+              body.set_gravity({2, -4});
+              body.set_load(3, {100, -300});
+              return body;
+            },
+            {.load_steps = load_steps, .gravity = gravity});
+  });
+}
+
+TEST_CASE("driven nodes and hanging ones are where they are with a matrix", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    for (int load_steps : {1, 2}) {
+      auto const report = compare<B>(
+          [&] {
+            Body body{backend, mesh::rectangle({.size = {1, 0.5}, .cells = {4, 2}}),
+                      Elastic{2e5, 0.3, 1000}, Group<QuadRubber>{}, Group<QuadLinear>{}};
+            refine(body, {{2, 5}});
+            body.clamp(body.mesh().boundary("left"));
+            body.set_gravity({0, -3});
+            body.drive(body.mesh().boundary("right"), [](double) { return Point<2>{-0.2, 0.1}; });
+            return body;
+          },
+          {.load_steps = load_steps});
+      CHECK(report.iterations >= 2 * load_steps);
+    }
+  });
+}
+
+TEST_CASE("curved solids rest without a matrix", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    compare<B>([&] {
+      Body body{backend, mesh::box<Tet10>({.size = {1, 0.5, 0.5}, .cells = {2, 1, 1}}),
+                Elastic{2e5, 0.3, 1000}, Group<Solid>{}};
+      body.clamp(body.mesh().boundary("left"));
+      body.set_gravity({0, 0, -3});
+      return body;
+    });
+  });
+}
+
+TEST_CASE("viscous laws rest without a matrix as after all time", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Group<Viscous> const group{
+        Prony<NeoHookean, 1>::law<double>{NeoHookean<double>::from({2e5, 0.3, 1000}), {0.5}, {1}}};
+    compare<B>([&] {
+      auto body = clamped_sheet(backend, group);
+      body.set_gravity({0, -4});
+      return body;
+    });
+  });
+}
+
+TEST_CASE("what cannot be solved without a matrix is told, and the body stays", "[solver]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    NewtonOptions const without{.linear = LinearMethod::matrix_free};
+    auto body = clamped_sheet(backend, Group<Rubber>{});
+    body.set_gravity({0, -4});
+    CHECK_THROWS_WITH(
+        solve_static(body, {.max_iterations = 1, .linear = LinearMethod::matrix_free}),
+        says("no convergence in load step 1"));
+    CHECK_THROWS_WITH(
+        solve_static(body, {.linear = LinearMethod::matrix_free, .max_linear_iterations = 0}),
+        says("max_linear_iterations 0"));
+    CHECK(largest(body.displacements()) == 0);
+    body.press(body.mesh().boundary("right"), 100);
+    CHECK_THROWS_WITH(solve_static(body, without), says("follow a surface"));
+
+    // Drawn over itself: Saint Venant-Kirchhoff's law lets it fold.
+    using Folding = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+    auto folded = clamped_sheet(backend, Group<Folding>{});
+    folded.drive(folded.mesh().boundary("right"), [](double) { return Point<2>{-1.5, 0}; });
+    CHECK_THROWS_AS(solve_static(folded, without), Error);
+  });
+}
+
+}  // namespace pliant::test::without_matrix_suite
