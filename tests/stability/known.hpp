@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <regex>
+#include <string>
+
+// Defects that are known and not mended yet: they do not fail the suite, others do.
+namespace pliant::stability {
+
+struct Known {
+  char const* keys;  // a regular expression: see Case::key
+  char const* reason;
+};
+
+inline constexpr std::array known{
+    Known{R"(^stretch\|10\|.*\|NeoHookean\|CentralDifference\|)",
+          "CentralDifference looks for values that are not finite every 256 steps; a call that "
+          "ends in between hands "
+          "them back without a word"},
+    Known{R"(^stretch\|0\.05\|.*\|NeoHookean\|static\|)",
+          "solve_static takes an unstable equilibrium for rest, and does not say that the "
+          "stiffness is indefinite"},
+};
+
+/// Null where a defect is new.
+inline char const* reason_why_known(std::string const& key) {
+  for (auto const& one : known)
+    if (std::regex_search(key, std::regex(one.keys))) return one.reason;
+  return nullptr;
+}
+
+}  // namespace pliant::stability
