@@ -37,6 +37,23 @@ class Maker {
       }
     return std::move(cases_);
   }
+  /// Of special_bodies.
+  std::vector<Case> all_special() {
+    for (auto const method : all_methods) {
+      method_ = method;
+      law_ = bodies_.laws[0];
+      if (!statics()) {
+        for (auto const toggle : all_toggles) toggled(toggle);
+        compressed(Toggle::protective);
+      }
+      compressed(Toggle::none);
+      law_ = bodies_.laws[1];
+      if (!statics()) toggled(Toggle::mesh);
+      law_ = bodies_.laws[2];
+      hard_and_soft();
+    }
+    return std::move(cases_);
+  }
 
  private:
   bool statics() const { return method_ == Method::statics; }
@@ -124,6 +141,11 @@ class Maker {
     Demands demands{.drift = 0.02, .momentum = true, .spin = law_.objective && is_explicit()};
     if (implicit()) demands = {.growth = 0.02, .momentum = false};
     add("free spin", "", s, demands);
+    bool const long_too = law_.name == "SaintVenantKirchhoff" || law_.name == "NeoHookean";
+    if (quick_ || implicit() || bodies_.degree > 1 || !long_too) return;
+    s.cells = {2, 2, 2};
+    s.steps = 1000000;
+    add("free spin", "1e6 steps", s, demands);
   }
 
   void turned() {
@@ -330,6 +352,50 @@ class Maker {
     }
   }
 
+  /// Changed before every step.
+  void toggled(Toggle toggle) {
+    auto s = scene();
+    s.toggle = toggle;
+    s.held = {"left"};
+    s.gravity = {0, -300, 0};
+    take_steps(s, 0.25, 300);
+    s.samples = s.steps;
+    add("toggled every step", name_of(toggle), s, close_or_kept());
+  }
+
+  /// Far below 0.58, where Saint Venant-Kirchhoff's law softens.
+  void compressed(Toggle toggle) {
+    auto s = scene();
+    s.toggle = toggle;
+    s.held = {"left"};
+    s.driven = "right";
+    if (statics()) {
+      s.motion = [](Vec const&, double) -> Vec { return {-0.6, 0, 0}; };
+      s.load_steps = 20;
+    } else {
+      s.motion = [](Vec const&, double t) -> Vec {
+        double const share = std::min(t / 0.2, 1.0);
+        return {-0.6 * share * share * (3 - 2 * share), 0, 0};
+      };
+    }
+    s.duration = 0.2;
+    s.samples = 100;
+    s.safety = 0.1;
+    if (implicit()) s.stable_steps = 0.1;
+    auto demands = close_or_kept();
+    demands.unfolded = toggle == Toggle::protective;
+    add("compression to 0.4", toggle == Toggle::none ? "unprotected" : "switched at 0.85", s,
+        demands);
+  }
+
+  void hard_and_soft() {
+    auto s = scene();
+    s.held = {"left"};
+    s.gravity = {0, -50, 0};
+    take_steps(s, 0.5, 60);
+    add("stiffness ratio 1e6", "", s, {.close = true});
+  }
+
   bool quick_;
   Bodies const &bodies_, &reference_;
   Vec middle_;
@@ -342,10 +408,14 @@ class Maker {
 
 std::vector<Case> all_cases(bool quick) {
   std::vector<Case> cases;
-  for (auto const& bodies : all_bodies())
-    for (auto const& reference : all_bodies())
-      if (reference.reference && reference.element == bodies.element)
-        for (auto& one : Maker(quick, bodies, reference).all()) cases.push_back(std::move(one));
+  auto const add = [&](std::vector<Bodies> const& list, auto const& make) {
+    for (auto const& bodies : list)
+      for (auto const& reference : list)
+        if (reference.reference && reference.element == bodies.element)
+          for (auto& one : make(Maker(quick, bodies, reference))) cases.push_back(std::move(one));
+  };
+  add(all_bodies(), [](Maker&& maker) { return maker.all(); });
+  add(special_bodies(), [](Maker&& maker) { return maker.all_special(); });
   return cases;
 }
 

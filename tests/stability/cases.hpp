@@ -17,6 +17,7 @@ struct Demands {
   bool calm = false;         // in the end 1e-3 of the energy at the start is kinetic, at the most
   bool still = false;        // nothing moves but by rounding
   bool rest = false;         // statics: close, or an equilibrium that is unfolded and stable
+  bool unfolded = false;     // det F is positive in the end
   bool must_report = false;  // nothing but a report is honest
 };
 

@@ -155,6 +155,7 @@ Verdict judge(Case const& one) {
     auto const &first = record.samples.front(), &last = record.samples.back();
     if (demands.calm)
       found.within("kinetic", last.kinetic / std::max(first.strain + first.kinetic, 1e-300), 1e-3);
+    if (demands.unfolded) found.within("-det F", -record.least_J, 0);
     if (demands.still)
       found.within("kinetic", last.kinetic / one.scene.material.young, in_double ? 1e-26 : 1e-10);
     if (demands.rest) {

@@ -31,6 +31,13 @@ Point<Dim> lowered(Vec const& v) {
   return p;
 }
 
+/// Puts NaN into an array, wherever it is.
+template <class T>
+struct Poke {
+  T* place;
+  PLIANT_HOST_DEVICE void operator()(Index) const { *place = std::numeric_limits<T>::quiet_NaN(); }
+};
+
 template <Element E>
 Mesh<E> mesh_of(Scene const& scene) {
   using Linear = test::LinearOf<E>;
@@ -57,8 +64,9 @@ class Run {
   static constexpr int dim = TheBody::dim;
   using Points = std::vector<Point<dim>>;
 
-  Run(TheBody& body, Scene const& scene, Record& record)
-      : body_(body), scene_(scene), record_(record) {}
+  /// `between(k)` is called before the stretch to sample k.
+  Run(TheBody& body, Scene const& scene, Record& record, std::function<void(int)> between)
+      : body_(body), scene_(scene), record_(record), between_(std::move(between)) {}
 
   void prepare() {
     auto const& mesh = body_.mesh();
@@ -106,10 +114,11 @@ class Run {
     auto& state = body_.parts().state;
     auto const at = static_cast<std::size_t>(body_.nodes()) * dim / 2;
     using T = typename TheBody::scalar;
+    auto const& backend = body_.backend();
     if (scene_.poison == Poison::state_of_displacements)
-      state.u.data()[at] = std::numeric_limits<T>::quiet_NaN();
+      backend.for_each(1, Poke<T>{state.u.data() + at});
     if (scene_.poison == Poison::state_of_velocities)
-      state.v.data()[at] = std::numeric_limits<T>::quiet_NaN();
+      backend.for_each(1, Poke<T>{state.v.data() + at});
   }
 
   void go(Replay const& replay) {
@@ -121,6 +130,10 @@ class Run {
       follow(replay);
     else
       advance();
+  }
+
+  void look_for_folds() {
+    record_.least_J = detail::least_jacobian_at(body_.parts(), flat_displacements(), true).value;
   }
 
   void sample() {
@@ -199,6 +212,7 @@ class Run {
     Stepper stepper(scene_.method, scene_.safety, step);
     Progress last;
     for (int k = 1; k <= scene_.samples; ++k) {
+      between_(k);
       if (scene_.steps > 0) {
         auto const goal = static_cast<std::int64_t>(scene_.steps) * k / scene_.samples;
         while (body_.steps() < goal) {
@@ -244,6 +258,7 @@ class Run {
               : 1;
       auto const steps = std::max(least, replay.times * (samples[k].steps - samples[k - 1].steps));
       if (!(length > 0)) break;
+      between_(static_cast<int>(k));
       // Local steps at a quarter are steps of the finest element.
       auto const method =
           scene_.method == Method::local_steps ? Method::explicit_steps : scene_.method;
@@ -262,13 +277,18 @@ class Run {
     judge_equilibrium();
   }
 
-  /// By other means than Newton's method: forces on all nodes, and the inertia of the stiffness.
-  void judge_equilibrium() {
+  Eigen::VectorXd flat_displacements() const {
     auto const u = body_.displacements();
     Eigen::VectorXd flat(static_cast<Eigen::Index>(dim * u.size()));
     for (std::size_t i = 0; i < u.size(); ++i)
       for (std::size_t k = 0; k < dim; ++k) flat[static_cast<Eigen::Index>(dim * i + k)] = u[i][k];
-    auto const sum = assemble(body_, flat);
+    return flat;
+  }
+
+  /// By other means than Newton's method: forces on all nodes, and the inertia of the stiffness.
+  void judge_equilibrium() {
+    auto const u = body_.displacements();
+    auto const sum = assemble(body_, flat_displacements());
     std::vector<bool> fixed(u.size());
     for (Index node : fixed_) fixed[static_cast<std::size_t>(node)] = true;
     std::vector<Eigen::Index> free;
@@ -305,20 +325,58 @@ class Run {
     using T = typename TheBody::scalar;
     auto const n = static_cast<std::size_t>(body_.nodes()) * dim;
     auto u = zeros<T>(body_.backend(), n), f = zeros<T>(body_.backend(), n);
-    u.data()[n / 2] = std::numeric_limits<T>::quiet_NaN();
+    body_.backend().for_each(1, Poke<T>{u.data() + n / 2});
     body_.add_force(u.data(), f.data());
     sample();
     bool through = !std::isfinite(body_.energy(u.data()));
     bool in_force = false;
-    for (std::size_t i = 0; i < n; ++i) in_force = in_force || std::isnan(f.data()[i]);
+    for (T const value : download<T>(f)) in_force = in_force || std::isnan(value);
     if (through && in_force) throw Error("suite: energies and forces of NaN are NaN");
   }
 
   TheBody& body_;
   Scene const& scene_;
   Record& record_;
+  std::function<void(int)> between_;
   std::vector<Index> fixed_;
 };
+
+/// A scene on the body that `make(material)` makes; `between(body, k)` is called before the stretch to sample k.
+template <class Make, class Between>
+Record run_scene(Scene const& scene, Replay const& replay, Make const& make,
+                 Between const& between) {
+  Record record;
+  try {
+    Elastic material = scene.material;
+    if (scene.poison == Poison::young) material.young = not_a_number;
+    auto body = make(material);
+    Run run(body, scene, record, [&](int k) { between(body, k); });
+    try {
+      run.prepare();
+      run.go(replay);
+      if (scene.method != Method::statics) run.look_for_folds();
+    } catch (Error const& error) {
+      record.error = error.what();
+      // The state that it left is as before or a good one, poison apart.
+      if (scene.poison == Poison::none) {
+        run.sample();
+        record.finite_after = record.samples.back().in_place;
+        record.samples.pop_back();
+      }
+    }
+  } catch (Error const& error) {
+    record.error = error.what();
+  } catch (std::exception const& stranger) {
+    record.stranger = stranger.what();
+  }
+  return record;
+}
+template <Element E, class TheBody>
+std::vector<Index> all_elements(TheBody const& body) {
+  std::vector<Index> all(body.mesh().template elements<E>().size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
+  return all;
+}
 
 /// "NeoHookean"
 template <class F>
@@ -336,36 +394,16 @@ std::string law_name() {
 /// A scene on bodies of one element on one backend, whose laws are groups.
 template <class B, class E, class... Fs>
 Record run_on_bodies(Scene const& scene, Replay const& replay) {
-  Record record;
-  try {
-    Elastic material = scene.material;
-    if (scene.poison == Poison::young) material.young = not_a_number;
+  auto const make = [&](Elastic const& material) {
     Body body{B{}, mesh_of<E>(scene), material, Group<Fs>{}...};
-    std::vector<Index> all(body.mesh().template elements<E>().size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
+    auto const all = all_elements<E>(body);
     auto const assign = [&]<class F>() {
       if (law_name<F>() == scene.law) body.template assign<F>(all);
     };
     (assign.template operator()<Fs>(), ...);
-    Run run(body, scene, record);
-    try {
-      run.prepare();
-      run.go(replay);
-    } catch (Error const& error) {
-      record.error = error.what();
-      // The state that it left is as before or a good one, poison apart.
-      if (scene.poison == Poison::none) {
-        run.sample();
-        record.finite_after = record.samples.back().in_place;
-        record.samples.pop_back();
-      }
-    }
-  } catch (Error const& error) {
-    record.error = error.what();
-  } catch (std::exception const& stranger) {
-    record.stranger = stranger.what();
-  }
-  return record;
+    return body;
+  };
+  return run_scene(scene, replay, make, [](auto&, int) {});
 }
 
 template <class B, class E, class... Fs>

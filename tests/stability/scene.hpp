@@ -43,6 +43,12 @@ enum class Poison {
 
 /// What a case changes before every sample.
 enum class Toggle { none, law, quadrature, mesh, sleep, protective };
+inline constexpr std::array all_toggles{Toggle::law, Toggle::quadrature, Toggle::mesh,
+                                        Toggle::sleep};
+inline char const* name_of(Toggle toggle) {
+  constexpr std::array names{"none", "law", "quadrature", "mesh", "sleep", "protective"};
+  return names[static_cast<std::size_t>(toggle)];
+}
 
 struct Scene {
   // The mesh: a rectangle or box of so many cells along each direction, whose nodes are then placed.
@@ -131,6 +137,11 @@ struct Bodies {
 };
 /// All that are compiled into this program.
 inline std::vector<Bodies>& all_bodies() {
+  static std::vector<Bodies> list;
+  return list;
+}
+/// Those that change on the way, or are of materials that differ between elements: see special.hpp.
+inline std::vector<Bodies>& special_bodies() {
   static std::vector<Bodies> list;
   return list;
 }
