@@ -15,6 +15,7 @@ struct Demands {
   bool momentum = false;     // linear, kept to rounding
   bool spin = false;         // angular, kept to rounding
   bool calm = false;         // in the end 1e-3 of the energy at the start is kinetic, at the most
+  bool returns = false;      // displacements shrink to 1e-3 of those at the start
   bool still = false;        // nothing moves but by rounding
   bool rest = false;         // statics: close, or an equilibrium that is unfolded and stable
   bool unfolded = false;     // det F is positive in the end

@@ -91,6 +91,12 @@ class Findings {
     if (!good) missed_ += (missed_.empty() ? "" : ", ") + std::string(name);
     return good;
   }
+  /// Tells what is not judged.
+  void note(char const* name, double value) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s%s=%.2g", figures_.empty() ? "" : " ", name, value);
+    figures_ += text;
+  }
   void miss(std::string const& what) { missed_ += (missed_.empty() ? "" : ", ") + what; }
   std::string const& figures() const { return figures_; }
   std::string const& missed() const { return missed_; }
@@ -118,8 +124,8 @@ Verdict judge(Case const& one) {
   bool finite = true;
   for (auto const& s : record.samples) finite = finite && s.finite;
   if (!finite)
-    found.miss(record.late.empty() ? "not finite, and nothing says so later"
-                                   : "not finite, and said only in a later call: " + record.late);
+    found.miss("not finite in the end; in later calls: " +
+               (record.late.empty() ? std::string("no Error") : record.late));
 
   auto const compare = [&](Findings& f) {
     Record const reference = one.reference->run(one.scene, {.of = &record});
@@ -155,7 +161,13 @@ Verdict judge(Case const& one) {
     auto const &first = record.samples.front(), &last = record.samples.back();
     if (demands.calm)
       found.within("kinetic", last.kinetic / std::max(first.strain + first.kinetic, 1e-300), 1e-3);
-    if (demands.unfolded) found.within("-det F", -record.least_J, 0);
+    if (demands.returns) {
+      found.within("left", norm_of(last) / norm_of(first), 1e-3);
+    }
+    if (demands.unfolded)
+      found.within("-det F", -record.least_J, 0);
+    else if (!(record.least_J > 0))
+      found.note("det F", record.least_J);
     if (demands.still)
       found.within("kinetic", last.kinetic / one.scene.material.young, in_double ? 1e-26 : 1e-10);
     if (demands.rest) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes RESULTS.md and its maps from the lines that the program stability appended (needs matplotlib).
 
-    tests/stability/report.py FOLDER results.tsv
+    tests/stability/report.py FOLDER results.tsv CASES
 """
 import collections
 import re
@@ -12,7 +12,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-folder, source = sys.argv[1:]
+folder, source, expected = sys.argv[1:]
 OUTCOMES = ["works", "reports", "SILENTLY WRONG", "HANGS", "CRASHES"]
 COLOURS = ["#4c9f70", "#e3b23c", "#c1292e", "#7b2d8b", "#111111"]
 INTEGRATORS = ["CentralDifference", "LocalSteps", "implicit", "static"]
@@ -117,8 +117,10 @@ with open(f"{folder}/RESULTS.md", "w") as out:
     say("*works* when what its scene asks in cases.cpp holds: displacements within 1% of Reference in double at a quarter of")
     say("the step, or an invariant kept to the bound that stands in cases.cpp; values are finite always. It *reports* when an Error")
     say("says in words what failed and the body that is left is finite, or when a roll-back is told and what is asked does not hold.")
-    say("Else it is silently wrong, hangs or crashes. Each case is a process of its own.\n")
-    say(f"{len(rows)} cases, {sum(row.seconds for row in rows) / 60:.0f} minutes: "
+    say("Else it is silently wrong, hangs or crashes. Each case is a process of its own.")
+    say("*det F* tells of explicit steps whose body is folded somewhere in the end, which they do not look for: laws that take")
+    say("inversion go on. Steps are half the stable one, after sudden starts a tenth; implicit ones half of these.\n")
+    say(f"{len(rows)} of {expected} cases, {sum(row.seconds for row in rows) / 60:.0f} minutes: "
         + ", ".join(f"{total[outcome]} {outcome.lower()}" for outcome in OUTCOMES) + ".\n")
     for name, backend in pictures:
         say(f"![{backend}]({name})\n")

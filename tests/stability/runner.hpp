@@ -112,9 +112,11 @@ class Run {
     }
     // What no setter lets through: arrays that a simulator writes itself.
     auto& state = body_.parts().state;
-    auto const at = static_cast<std::size_t>(body_.nodes()) * dim / 2;
     using T = typename TheBody::scalar;
     auto const& backend = body_.backend();
+    auto const free =
+        static_cast<std::size_t>(body_.parts().layout.internal_of(nearest(scene_.size)));
+    auto const at = std::size_t{node_stride} * free;
     if (scene_.poison == Poison::state_of_displacements)
       backend.for_each(1, Poke<T>{state.u.data() + at});
     if (scene_.poison == Poison::state_of_velocities)
@@ -237,11 +239,13 @@ class Run {
   void go_on(Stepper& stepper) {
     auto const ended = body_.steps();
     try {
-      while (body_.steps() < ended + 1100)
-        if (stepper(body_, 16).rolled_back) {
-          record_.late = "rolled back later";
+      while (body_.steps() < ended + 1100) {
+        auto const progress = stepper(body_, 16);
+        if (progress.rolled_back || progress.retries > record_.retries) {
+          record_.late = "rolled back";
           return;
         }
+      }
     } catch (Error const& error) {
       record_.late = error.what();
     }
