@@ -42,6 +42,7 @@ class Maker {
     for (auto const method : all_methods) {
       method_ = method;
       law_ = bodies_.laws[0];
+      if (method_ == Method::backward_euler) continue;
       if (!statics()) {
         for (auto const toggle : all_toggles) toggled(toggle);
         compressed(Toggle::protective);
@@ -98,6 +99,7 @@ class Maker {
   }
 
   void for_law_and_method() {
+    if (method_ == Method::backward_euler) return long_steps();
     sag();
     spin();
     turned();
@@ -118,6 +120,19 @@ class Maker {
     for (double const share : {0.1, 1.0, 10.0}) pressed(share);
     reversed();
     poisoned();
+  }
+
+  /// A hundred times the stable step.
+  void long_steps() {
+    auto s = scene();
+    s.held = {"left"};
+    s.gravity = {0, -50, 0};
+    s.stable_steps = 100;
+    s.steps = 120;
+    add("long steps", "sag", s, {.growth = 1e-3, .calm = true});
+    s.gravity = {};
+    s.velocity = [](Vec const& X) -> Vec { return {0, 20 * X[0] * X[0], 5 * X[0]}; };
+    add("long steps", "thrown", s, {.growth = 1e-3, .calm = true});
   }
 
   void sag() {

@@ -12,9 +12,10 @@ struct Demands {
   double or_growth = -1;  // as growth
   double drift = -1;   // of the energy less booked work, over the largest strain and kinetic energy
   double growth = -1;  // the same, upwards alone
-  bool momentum = false;     // linear, kept to rounding
-  bool spin = false;         // angular, kept to rounding
-  bool calm = false;         // in the end 1e-3 of the energy at the start is kinetic, at the most
+  bool momentum = false;  // linear, kept to rounding
+  bool spin = false;      // angular, kept to rounding
+  bool calm =
+      false;  // in the end 1e-3 of the energy at the start, or of the strain energy, is kinetic, at the most
   bool returns = false;      // displacements shrink to 1e-3 of those at the start
   bool still = false;        // nothing moves but by rounding
   bool rest = false;         // statics: close, or an equilibrium that is unfolded and stable

@@ -12,9 +12,22 @@
 // All that the suite knows of integrators.
 namespace pliant::stability {
 
+/// The trapezoidal rule or backward Euler, chosen while the program runs: bodies compile one scheme.
+struct ChosenScheme {
+  bool is_euler = false;
+  static constexpr int order = 2;
+  static constexpr bool looks_back = false;
+  static constexpr char const* name = "Implicit";
+  void check() const {}
+  StepRule rule(double h, double h_before) const {
+    return is_euler ? BackwardEuler{}.rule(h, h_before) : Newmark{}.rule(h, h_before);
+  }
+};
+
 struct Progress {
   double step = 0;
   bool rolled_back = false;
+  bool vouched = true;  // whether the last state was looked at
   int retries = 0;
 };
 
@@ -28,22 +41,23 @@ class Stepper {
       central_.emplace(CentralDifferenceOptions{.safety = safety, .step = step});
     else if (method == Method::local_steps)
       local_.emplace(LocalStepsOptions{.safety = std::min(safety, 0.8), .macro_step = step});
-    else if (method == Method::implicit_steps)
-      implicit_.emplace(NewmarkOptions{.step = step, .mass = MassMatrix::lumped});
+    else if (method != Method::statics)
+      implicit_.emplace(ChosenScheme{method == Method::backward_euler},
+                        ImplicitOptions{.step = step, .mass = MassMatrix::lumped});
   }
 
   template <class TheBody>
   Progress operator()(TheBody& body, int steps) {
     if (central_) {
       auto const done = (*central_)(body, steps);
-      return {done.step, done.rolled_back, central_->retries()};
+      return {done.step, done.rolled_back, done.checked == body.steps(), central_->retries()};
     }
     if (local_) {
       auto const done = (*local_)(body, steps);
-      return {done.step, done.rolled_back, local_->retries()};
+      return {done.step, done.rolled_back, done.checked == body.steps(), local_->retries()};
     }
     (*implicit_)(body, steps);
-    return {step_, false, 0};
+    return {.step = step_};
   }
 
  private:
@@ -51,13 +65,16 @@ class Stepper {
   double step_;
   std::optional<CentralDifference> central_;
   std::optional<LocalSteps> local_;
-  std::optional<Newmark> implicit_;
+  std::optional<Implicit<ChosenScheme>> implicit_;
 };
 
-/// Static equilibrium.
+/// Static equilibrium. A saddle, which the report tells of, counts as told.
 template <class TheBody>
 double solve_for_rest(TheBody& body, int load_steps) {
-  return solve_static(body, {.load_steps = load_steps}).least_J.value;
+  auto const report = solve_static(body, {.load_steps = load_steps});
+  if (report.indefinite)
+    throw Error("suite: the report of solve_static tells of a saddle; take other load steps");
+  return report.least_J.value;
 }
 
 }  // namespace pliant::stability

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 folder, source, expected = sys.argv[1:]
 OUTCOMES = ["works", "reports", "SILENTLY WRONG", "HANGS", "CRASHES"]
 COLOURS = ["#4c9f70", "#e3b23c", "#c1292e", "#7b2d8b", "#111111"]
-INTEGRATORS = ["CentralDifference", "LocalSteps", "implicit", "static"]
+INTEGRATORS = ["CentralDifference", "LocalSteps", "implicit", "BackwardEuler", "static"]
 SHORT = ["C", "L", "I", "S"]
 
 
@@ -84,7 +84,7 @@ for backend in distinct(row.backend for row in rows):
     for scene, axis in zip(scenes, axes.flat):
         paint(axis, scene, laws, across, lambda law, c: worst(table[scene, law, *c]), names)
     name = "map_" + re.sub(r"\W+", "_", backend.lower()) + ".png"
-    finish(figure, name, f"{backend}: law by element and integrator (C CentralDifference, L LocalSteps, I implicit, S static)")
+    finish(figure, name, f"{backend}: law by element and integrator (C CentralDifference, L LocalSteps, I implicit, B BackwardEuler, S static)")
     pictures.append((name, backend))
 
 # Poisson's ratio x mesh x step, the worst of all laws, elements of a dimension and backends.

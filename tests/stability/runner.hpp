@@ -207,6 +207,7 @@ class Run {
     record_.step = progress.step;
     record_.rolled_back = record_.rolled_back || progress.rolled_back;
     record_.retries += progress.retries;
+    record_.vouched = progress.vouched;
   }
 
   void advance() {

@@ -15,11 +15,13 @@ namespace pliant::stability {
 
 using Vec = std::array<double, 3>;  // z is zero in the plane
 
-enum class Method { explicit_steps, local_steps, implicit_steps, statics };
+enum class Method { explicit_steps, local_steps, implicit_steps, backward_euler, statics };
 inline constexpr std::array all_methods{Method::explicit_steps, Method::local_steps,
-                                        Method::implicit_steps, Method::statics};
+                                        Method::implicit_steps, Method::backward_euler,
+                                        Method::statics};
 inline char const* name_of(Method method) {
-  constexpr std::array names{"CentralDifference", "LocalSteps", "implicit", "static"};
+  constexpr std::array names{"CentralDifference", "LocalSteps", "implicit", "BackwardEuler",
+                             "static"};
   return names[static_cast<std::size_t>(method)];
 }
 
@@ -104,6 +106,7 @@ struct Record {
   std::string
       late{};  // what was said of values that are not finite, steps after they were handed back
   bool rolled_back = false;
+  bool vouched = true;  // whether the integrator looked at the last state
   int retries = 0;
   bool finite_after = true;  // the state that an Error left
   double stable_step = 0;    // s, at the start

@@ -235,7 +235,13 @@ Mesh<E> raised(Mesh<Linear> const& from) {
       facets[key_of(facet)] = facet;
     }
   for (auto const& [name, list] : from.boundaries)
-    for (auto const& facet : list) to.boundaries[name].push_back(facets.at(key_of(facet)));
+    for (auto const& facet : list) {
+      auto const found = facets.find(key_of(facet));
+      if (found == facets.end())
+        throw Error("mesh::raised: a facet of the boundary \"", name,
+                    "\" is no side of an element; name the boundaries of the present elements");
+      to.boundaries[name].push_back(found->second);
+    }
   return to;
 }
 

@@ -37,7 +37,18 @@ struct Advanced {
   double step = 0;         // s: the size of the last step
   bool rolled_back =
       false;  // to a time before the call: set anew what depends on the time that it is now
+  /// The last step at which the state was found good, which is where a roll-back would go; −1 where it was not looked at
+  /// since it was changed by hand. What came after may turn out not to be finite.
+  std::int64_t checked = -1;
 };
+
+namespace detail {
+template <class Parts>
+Advanced advanced(Parts const& parts, std::int64_t begun, double step, bool rolled_back) {
+  return {parts.state.steps - begun, parts.state.time, step, rolled_back,
+          parts.has_checkpoint ? parts.checkpoint->steps : -1};
+}
+}  // namespace detail
 
 /// Explicit time integration by central differences (leapfrog, velocity Verlet), with lumped masses and mass
 /// damping. At intervals the state is checked: one that went non-finite, or whose energy grew by more
@@ -107,7 +118,7 @@ class CentralDifference {
       if (due && checked != state.steps) {
         // A step is chosen for a good state only.
         if (check(parts)) checked = state.steps;
-        if (state.steps < begun) return {state.steps - begun, state.time, own.step, true};
+        if (state.steps < begun) return detail::advanced(parts, begun, own.step, true);
         if (checked != state.steps) continue;
       }
       if (state.steps >= own.next_refresh) refresh(parts);
@@ -117,7 +128,7 @@ class CentralDifference {
                                       parts.awake ? state.rest_until : goal}) -
                             state.steps));
     }
-    return {state.steps - begun, state.time, own.step, false};
+    return detail::advanced(parts, begun, own.step, false);
   }
 
   /// Takes over a state that another integrator, or none, has advanced so far.

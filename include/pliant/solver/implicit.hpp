@@ -239,7 +239,9 @@ class Implicit {
       ask_motions(parts_, state.time + h, h);
       set_step_size(parts_, rule_.force_weight * h);
       linear_.begin_anew();
+      why_not_.clear();
       bool const converged = iterate(h, false) || iterate(h, true);
+      if (!converged && !why_not_.empty()) throw NotTaken{why_not_};
       if (!converged)
         throw NotTaken{detail::message({Scheme::name, ": no convergence in the step to time ",
                                         state.time + h, " s after ", options_.max_iterations,
@@ -256,13 +258,15 @@ class Implicit {
       double const eps = 45 * double{std::numeric_limits<T>::epsilon()};
       double const size = detail::norm_of(parts_.backend, parts_.layout.nodes, parts_.u()) +
                           h * detail::norm_of(parts_.backend, parts_.layout.nodes, parts_.v());
+      constexpr double nothing = 1e6 * double{std::numeric_limits<T>::min()};  // N: without digits
       double forcing = 1e-3;
       bool settled = false;
       for (int iteration = 0;; ++iteration) {
         report_.residual = now.residual;
         if (!std::isfinite(now.residual)) return false;
         // Where forces cancel to rounding, the displacement tells.
-        if (now.residual <= options_.tolerance * now.scale || settled) return true;
+        if (now.residual <= std::max(options_.tolerance * now.scale, nothing) || settled)
+          return true;
         if (iteration == options_.max_iterations) return false;
         double const enough =
             std::clamp(0.1 * options_.tolerance * now.scale / now.residual, 1e-12, 0.1);
@@ -334,13 +338,23 @@ class Implicit {
       auto const r = balance_.field(own.residual), kept = balance_.field(own.trial);
       detail::set_sum(parts_.backend, parts_.layout.nodes, kept, balance_.scaled(1, r));
       if (assembled_) {
-        assembled_->solve(own, matrix, rule_.force_weight * h, tolerance);
+        try {
+          assembled_->solve(own, matrix, rule_.force_weight * h, tolerance);
+        } catch (Error const& error) {
+          why_not_ = error.what();
+          return false;
+        }
       } else {
         auto const cg = detail::solve_matrix_free(parts_, own, matrix, tolerance,
                                                   options_.max_linear_iterations);
         gradients_ += cg.iterations;
         // Along a direction of negative curvature the iteration stops where it is: still a way down.
-        if (cg.iterations == 0 && cg.indefinite) return false;
+        if (cg.iterations == 0 && cg.indefinite) {
+          why_not_ = detail::message({Scheme::name,
+                                      ": the tangent is not positive definite; take smaller steps, "
+                                      "or LinearMethod::direct"});
+          return false;
+        }
       }
       start_work_ = parts_.backend.sum(
           parts_.layout.nodes, detail::DotAt<T, dim>{{own.solution.data()}, {own.trial.data()}});
@@ -427,6 +441,7 @@ class Implicit {
     StepRule rule_{};
     LeastJacobian least_{};
     int gradients_ = 0;
+    std::string why_not_;    // the linear system of a step was not solved; empty where it was
     double start_work_ = 0;  // J: of the residual along the solution, where that begins
   };
 

@@ -82,7 +82,7 @@ class LocalSteps {
           !parts.has_checkpoint || state.steps >= std::min(own.next_check, own.next_refresh);
       if (due && checked != state.steps) {
         if (check(parts)) checked = state.steps;  // levels are chosen for a good state only
-        if (state.steps < begun) return {state.steps - begun, state.time, step_, true};
+        if (state.steps < begun) return detail::advanced(parts, begun, step_, true);
         if (checked != state.steps) continue;
       }
       if (state.steps >= own.next_refresh) refresh(parts);
@@ -92,7 +92,7 @@ class LocalSteps {
           static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch}) -
                            state.steps));
     }
-    return {state.steps - begun, state.time, step_, false};
+    return detail::advanced(parts, begun, step_, false);
   }
 
  private:

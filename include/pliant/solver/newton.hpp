@@ -68,6 +68,7 @@ class StaticNewton {
       if (step == options_.load_steps) target_ = to;
       iterate();
     }
+    report_.indefinite = conservative_ && linear_.indefinite();
     report_.linear = linear_.report();
     report_.factorisations = report_.linear.factorisations;
     report_.least_J = least_jacobian_at(body_.parts(), u_, true);
@@ -139,7 +140,8 @@ class StaticNewton {
           tasks_, {sum_.stiffness, problem_.unknowns, body_.mesh().nodes, conservative_}, pull,
           std::min(enough, 0.1));
       double const factor = search(now, residual, du, prescribed, driving);
-      settled = factor == 1 && !driving && du.norm() <= 1e-14 * u_.norm();
+      largest_ = std::max(largest_, u_.norm());
+      settled = factor == 1 && !driving && du.norm() <= 1e-14 * largest_;
       double const shrunk = out_of_balance(now).norm() / pull.norm();
       double const surprise = std::abs(shrunk - linear_.reached());
       forcing = std::clamp(surprise, 0.0, first_forcing);
@@ -194,6 +196,7 @@ class StaticNewton {
   AssembledBlocks<TheBody::dim> sum_;
   Vector u_, load_, target_;
   double share_ = 1;
+  double largest_ = 0;  // m: of all displacements so far
   int step_ = 1;
   NewtonReport report_;
 };

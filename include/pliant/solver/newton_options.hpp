@@ -32,6 +32,9 @@ struct NewtonReport {
   double residual = 0;                          // N, the last
   double energy = 0;                            // strain energy, J
   MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
+  /// Of the last stiffness: where it has a negative pivot, or conjugate gradients met a direction of negative curvature.
+  /// The answer is a saddle then, in balance but not stable. Not told where forces have no potential.
+  bool indefinite = false;
   LeastJacobian least_J{};  // det F where it is least, at points of elements and between them
 };
 

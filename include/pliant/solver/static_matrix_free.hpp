@@ -141,6 +141,7 @@ class MatrixFreeStatics {
       auto const cg =
           solve_matrix_free(parts_, own, a, std::min(enough, 0.1), options_.max_linear_iterations);
       report_.linear.iterations += cg.iterations;
+      report_.indefinite = cg.indefinite;
       if (cg.indefinite && cg.iterations == 0)
         throw Error("solve_static: the stiffness is not positive definite in load step ", step,
                     "; use more load_steps, or LinearMethod::direct");

@@ -27,6 +27,8 @@ class DirectSolver {
   int solves_worth_a_factorisation() const {
     return has_factors_ && by_symmetric_ ? solves_worth_ : 0;
   }
+  /// Whether the last matrix that was factorised is symmetric with a negative pivot.
+  bool indefinite() const { return has_factors_ && by_symmetric_ && negative_pivots_; }
   bool fits(Eigen::Index rows) const { return has_factors_ && matrix_.rows() == rows; }
   /// k⁻¹ r for the last k that was factorised.
   Eigen::VectorXd apply(Eigen::VectorXd const& r) const { return symmetric_.solve(r); }
@@ -66,6 +68,7 @@ class DirectSolver {
         // Rounding makes a pivot that should be zero some 1e-16 of the others.
         if (pivots.size() > 0 && pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) refuse();
         by_symmetric_ = has_factors_ = true;
+        negative_pivots_ = symmetric_.vectorD().size() > 0 && symmetric_.vectorD().minCoeff() < 0;
         count_operations();
         return;
       }
@@ -116,6 +119,7 @@ class DirectSolver {
   Eigen::SimplicialLDLT<Matrix> symmetric_;
   Eigen::SparseLU<Matrix> general_;
   bool has_matrix_ = false, has_factors_ = false, by_symmetric_ = false, is_symmetric_ = false;
+  bool negative_pivots_ = false;
   bool symmetric_analysed_ = false, general_analysed_ = false;
   int analyses_ = 0, factorisations_ = 0, solves_worth_ = 0;
 };

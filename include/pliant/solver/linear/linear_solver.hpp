@@ -34,6 +34,8 @@ class LinearSolver {
 
   /// |r − A x| / |r| of the last solve; 0 by factors.
   double reached() const { return reached_; }
+  /// Whether the last matrix is known to be indefinite.
+  bool indefinite() const { return report_.method == LinearMethod::direct && direct_.indefinite(); }
   LinearReport report() const {
     auto report = report_;
     report.factorisations = direct_.factorisations();
