@@ -29,7 +29,7 @@ share(shared/state
       solver/roll_back)
 share(shared/switching
       adaptation/all_or_nothing adaptation/candidates adaptation/estimators_of_laws
-      adaptation/folded_elements adaptation/recorded_looks adaptation/refinement_internal_variables
+      adaptation/folded_elements adaptation/lost_ellipticity adaptation/recorded_looks adaptation/refinement_internal_variables
       adaptation/stiffening adaptation/switching body/groups body/state)
 share(shared/groups
       adaptation/bounded_criteria adaptation/ledger adaptation/switching_agreement
@@ -46,3 +46,8 @@ share(shared/laws
       law/closed_forms law/derivatives law/fibres law/invariance law/inversion law/limits
       law/plane_stress law/plane_stress_tangents law/plane_stress_values law/precision
       law/printed_energies law/ranges law/stretches law/tangents)
+share(shared/points
+      body/copy_values body/numbering element/cell math/dual math/functions math/matrix math/spectrum
+      mesh/hilbert quadrature/exactness)
+share(shared/elements_alone
+      formulation/inversion formulation/mass formulation/modes)
