@@ -21,9 +21,9 @@ target_compile_options(
 # warns of overlaps in its own strings.
 target_compile_options(
   pliant_program INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized;-Wno-restrict>")
-# A collector of garbage that comes later makes g++ a tenth faster, for up to a fourth more memory.
+# A collector of garbage that comes late, or never, makes g++ a tenth to a fifth faster, for up to a third more memory.
 target_compile_options(
-  pliant_program INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=400000>")
+  pliant_program INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1500000>")
 # nvcc warns of calls in Eigen's SparseLU, which only the host makes.
 target_compile_options(
   pliant_program INTERFACE "$<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:--diag-suppress=20014>")

@@ -1,6 +1,6 @@
 # Tests that make the same bodies, which take longest to compile, share a program on the CPU. Each is still
 # run by itself, except those over all formulations. Tests that are not named here have a program of their
-# own. A program should fit into 3 GB of the compiler's memory.
+# own. A program should fit into 4 GB of the compiler's memory.
 
 # share(<program> <area>/<name>...)
 function(share program)
@@ -29,8 +29,8 @@ share(shared/state
       solver/roll_back)
 share(shared/switching
       adaptation/all_or_nothing adaptation/candidates adaptation/estimators_of_laws
-      adaptation/folded_elements adaptation/recorded_looks adaptation/refinement_internal_variables
-      adaptation/stiffening adaptation/switching body/groups body/state)
+      adaptation/folded_elements adaptation/lost_ellipticity adaptation/recorded_looks
+      adaptation/refinement_internal_variables adaptation/stiffening adaptation/switching body/groups body/state)
 share(shared/groups
       adaptation/bounded_criteria adaptation/ledger adaptation/switching_agreement
       adaptation/switching_statistics body/embedding body/internal_variables law/user_law)
@@ -46,3 +46,8 @@ share(shared/laws
       law/closed_forms law/derivatives law/fibres law/invariance law/inversion law/limits
       law/plane_stress law/plane_stress_tangents law/plane_stress_values law/precision
       law/printed_energies law/ranges law/stretches law/tangents)
+share(shared/points
+      body/copy_values body/numbering element/cell math/dual math/functions math/matrix math/spectrum
+      mesh/hilbert quadrature/exactness)
+share(shared/elements_alone
+      formulation/inversion formulation/mass formulation/modes)

@@ -16,7 +16,7 @@ struct Constant {
 };
 
 TEST_CASE("a check whose refinement exceeds the capacity changes nothing", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(5);
     auto const elements = mesh.elements<Quad4>().size();
     auto const make = [&] {
@@ -73,7 +73,7 @@ TEST_CASE("a check whose refinement exceeds the capacity changes nothing", "[ada
 }
 
 TEST_CASE("a check that moves no element keeps no copy of the body", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(5);
     Body body{backend, mesh, soft, Group<QuadRubber>{}, Group<QuadLinear>{}};
     auto const kept = [&] {
@@ -96,7 +96,7 @@ TEST_CASE("a check that moves no element keeps no copy of the body", "[adaptatio
 }
 
 TEST_CASE("internal variables too are as before a check that throws", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using First = Formulation<Quad4, Gauss<2>, Prony<SaintVenantKirchhoff>::law>;
     using Second = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
     auto const mesh = distorted_mesh<Quad4>(5);

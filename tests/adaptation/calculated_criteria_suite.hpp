@@ -50,7 +50,7 @@ TEST_CASE("criteria are calculated with element by element", "[adaptation]") {
 }
 
 TEST_CASE("conditions hold where all or any of their comparisons do", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     using Soft = Formulation<Quad4, Gauss<2>, Hooke>;
     using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
     auto const mesh = distorted_mesh<Quad4>(6);
@@ -90,7 +90,7 @@ TEST_CASE("conditions hold where all or any of their comparisons do", "[adaptati
 }
 
 TEST_CASE("a region limits a criterion to its elements", "[adaptation]") {
-  on_each_element<AllBackends>([]<class B, class E>(B const& backend, E) {
+  on_each_element<FewBackends>([]<class B, class E>(B const& backend, E) {
     auto const mesh = distorted_mesh<E>(4);
     auto const u = Random(4).field<E::dim>(mesh.nodes.size(), 0.02);
     auto const whole = values_at<E>(backend, mesh, u, StrainNorm{});
@@ -133,7 +133,7 @@ TEST_CASE("a region limits a criterion to its elements", "[adaptation]") {
 }
 
 TEST_CASE("a rule with a region refines there alone, by its own bulk", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, Hooke>;
     auto const mesh = mesh::rectangle<Tri3>({.size = {2, 1}, .cells = {8, 4}});
     auto body = body_of<F>(backend, mesh);

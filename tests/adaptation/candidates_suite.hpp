@@ -25,7 +25,7 @@ long in_rubber(TheBody const& body) {
 }
 
 TEST_CASE("elements at the finest level take nothing of a budget, share or bulk", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const look = when<QuadLinear>(BeginOfElement{});
     auto const refine_all = [&](auto const& rule) {
       auto body = linear_square(backend, 4);
@@ -40,7 +40,7 @@ TEST_CASE("elements at the finest level take nothing of a budget, share or bulk"
 }
 
 TEST_CASE("elements that have to stay take nothing of a budget", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = linear_square(backend, 4);
     Adaptation there{
         when<QuadLinear>(BeginOfElement{}).above(-10).budget(2).template become<QuadRubber>()};
@@ -66,7 +66,7 @@ TEST_CASE("elements that have to stay take nothing of a budget", "[adaptation]")
 }
 
 TEST_CASE("elements that an earlier rule takes are left out by later ones", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = linear_square(backend, 4);
     auto const look = when<QuadLinear>(BeginOfElement{});
     Adaptation adapt{look.above(-10).budget(2).template become<QuadRubber>(),
@@ -79,7 +79,7 @@ TEST_CASE("elements that an earlier rule takes are left out by later ones", "[ad
 }
 
 TEST_CASE("elements that two rules refine count for the first", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = linear_square(backend, 4);
     auto const look = when<QuadLinear>(BeginOfElement{});
     Adaptation adapt{look.above(-10).budget(4).refine(), look.above(-10).budget(4).refine()};

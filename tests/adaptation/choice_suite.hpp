@@ -8,7 +8,7 @@
 #include "support/repeatable.hpp"
 
 // Choices among several groups: cheapest and within.
-namespace pliant::test {
+namespace pliant::test::choice_suite {
 
 using Linear = Formulation<Quad4, Gauss<2>, Hooke>;
 using Turning = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
@@ -67,7 +67,7 @@ inline double most_of(std::vector<double> values) {
 
 TEST_CASE("each element goes to the cheapest group that is right within the tolerance",
           "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const u = uneven(mesh);
     auto const errors = errors_of_groups(backend, mesh, u);
@@ -89,7 +89,7 @@ TEST_CASE("each element goes to the cheapest group that is right within the tole
 }
 
 TEST_CASE("the list says what is cheap, whatever the order of the body's groups", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(6);
     Body body{backend, mesh, soft, Group<Rubber>{}, Group<Linear>{}, Group<Turning>{}};
     body.template assign<Turning>({3, 4});
@@ -104,7 +104,7 @@ TEST_CASE("the list says what is cheap, whatever the order of the body's groups"
 }
 
 TEST_CASE("elements return below a share of the tolerance, and after their stay", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const u = uneven(mesh);
     auto const errors = errors_of_groups(backend, mesh, u);
@@ -165,7 +165,7 @@ inline double sum_of(std::vector<double> const& values) {
 constexpr std::array<double, 3> some_costs{0.2, 0.35, 1};
 
 TEST_CASE("an error is held by the offers of most worth, and by no more", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const u = uneven(mesh);
     auto const errors = errors_of_groups(backend, mesh, u);
@@ -193,7 +193,7 @@ TEST_CASE("an error is held by the offers of most worth, and by no more", "[adap
 }
 
 TEST_CASE("a budget goes to the offers of most worth, as far as it reaches", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const u = uneven(mesh);
     auto const errors = errors_of_groups(backend, mesh, u);
@@ -221,7 +221,7 @@ TEST_CASE("a budget goes to the offers of most worth, as far as it reaches", "[a
 }
 
 TEST_CASE("of an error and a budget the stricter holds", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const groups_by = [&](double error, double evaluations) {
       auto body = three_laws(backend, mesh);
@@ -247,7 +247,7 @@ TEST_CASE("of an error and a budget the stricter holds", "[adaptation]") {
 }
 
 TEST_CASE("equal offers are taken by number, as many as the budget allows", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {16, 16}, .cells = {16, 16}});
     auto body = three_laws(backend, mesh);
     auto h = Tensor<double, 2>::zero();
@@ -265,7 +265,7 @@ TEST_CASE("equal offers are taken by number, as many as the budget allows", "[ad
 }
 
 TEST_CASE("a discrepancy is the same from whatever group it is looked at", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(8);
     Body body{backend,         mesh,           soft, Group<Linear>{Hooke<double>{30, 20}},
               Group<Coarse>{}, Group<Rubber>{}};
@@ -287,7 +287,7 @@ TEST_CASE("a discrepancy is the same from whatever group it is looked at", "[ada
 }
 
 TEST_CASE("laws, rules of quadrature and both are chosen among", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Rough = Formulation<Quad4, OnePoint, Hooke>;
     auto const mesh = distorted_mesh<Quad4>(10);
     Body body{backend, mesh, soft, Group<Rough>{}, Group<Coarse>{}, Group<Rubber>{}};
@@ -332,7 +332,7 @@ inline double place_at(double time) { return 4 - 3 * std::cos(0.25 * time); }
 
 TEST_CASE("a budget is held within a tenth while a load wanders, where it is needed",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = loaded_beam(backend), fixed = loaded_beam(backend);
     constexpr double budget = 150;
     auto const rule = within<Linear, Turning, Rubber>(
@@ -369,7 +369,7 @@ TEST_CASE("a budget is held within a tenth while a load wanders, where it is nee
 }
 
 TEST_CASE("an error is held while a load wanders, and room is given back", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = loaded_beam(backend);
     constexpr double error = 1e-6;
     auto const rule = within<Linear, Turning, Rubber>({.error = error, .costs = some_costs});
@@ -390,7 +390,7 @@ TEST_CASE("an error is held while a load wanders, and room is given back", "[ada
 }
 
 TEST_CASE("no element of a swinging beam switches more than once per half period", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {6, 1}, .cells = {18, 3}});
     auto const swing = [&](auto const& make) {
       auto body = three_laws(backend, mesh);
@@ -439,7 +439,7 @@ TEST_CASE("no element of a swinging beam switches more than once per half period
 }
 
 TEST_CASE("what an element has counts for more than what it would get", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(12);
     auto const moves = [&](double release) {
       auto body = three_laws(backend, mesh);
@@ -464,7 +464,7 @@ TEST_CASE("what an element has counts for more than what it would get", "[adapta
 }
 
 TEST_CASE("where a discrepancy is NaN an element stays", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {4, 4}, .cells = {4, 4}});
     auto u = uneven(mesh);
     u[12] = {3, 3};  // folds elements: neo-Hooke's law has no energy there
@@ -499,7 +499,7 @@ TEST_CASE("where a discrepancy is NaN an element stays", "[adaptation]") {
 
 TEST_CASE("a run that is saved and restored goes on as if nothing had happened, to the bit",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const rule =
         within<Linear, Turning, Rubber>({.error = 1e-8, .evaluations_per_step = 150, .stay = 24});
     auto body = loaded_beam(backend), again = loaded_beam(backend);
@@ -577,7 +577,7 @@ TEST_CASE("choices that differ by a limit look each in their own time", "[adapta
 }
 
 TEST_CASE("a budget in milliseconds follows what steps take", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = loaded_beam(backend);
     constexpr double budget = 3;  // ms
     WithinOptions<3> options{.milliseconds_per_step = budget, .costs = some_costs};
@@ -630,7 +630,7 @@ TEST_CASE("a budget in milliseconds follows what steps take", "[adaptation]") {
 }
 
 TEST_CASE("what sleeps stays, costs nothing, and leaves its budget to others", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     int const rows = B::orders_by_group ? 12 : 6;
     auto const mesh = mesh::rectangle({.size = {20, 0.05 * rows}, .cells = {200, rows}});
     auto const run = [&](auto... rules) {
@@ -679,7 +679,7 @@ TEST_CASE("what sleeps stays, costs nothing, and leaves its budget to others", "
 TEST_CASE("costs are counted alike everywhere, or measured", "[adaptation]") {
   auto const mesh = distorted_mesh<Quad4>(6);
   std::array<double, 3> first{};
-  on_each_backend<AllBackends>([&]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([&]<class B>(B const& backend) {
     auto body = three_laws(backend, mesh);
     auto const counted =
         detail::counted_costs(body.parts(), detail::TypeList<Linear, Turning, Rubber>{});
@@ -721,7 +721,7 @@ TEST_CASE("limits and costs out of range are refused", "[adaptation]") {
   CHECK_THROWS_WITH((within<Linear, Rubber>({})), says("there is no limit"));
   CHECK_THROWS_WITH((within<Linear, Rubber>({.error = 1, .costs = {2, 1}})),
                     says("list groups from cheap to costly"));
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = three_laws(backend, distorted_mesh<Quad4>(3));
     auto const groups = body.template groups_of<Quad4>();
     Adaptation wrong{within<Rubber, Linear>({.error = 1e-9})};
@@ -730,4 +730,4 @@ TEST_CASE("limits and costs out of range are refused", "[adaptation]") {
   });
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::choice_suite

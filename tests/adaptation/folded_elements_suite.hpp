@@ -31,7 +31,7 @@ void fold(TheBody& body) {
 }
 
 TEST_CASE("a rule leaves a law that cannot invert, and the run goes on", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Adaptation rescue{when<Rubber>(AreaRatio{}).above(0.5).template become<Turning>()};
     auto body = rubber_square(backend);
     CentralDifference step{{.check_interval = 4}};
@@ -60,7 +60,7 @@ TEST_CASE("a rule leaves a law that cannot invert, and the run goes on", "[adapt
 }
 
 TEST_CASE("an element that folds between two checks is rescued by a rule", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Adaptation rescue{when<Rubber>(AreaRatio{}).above(0.5).template become<Turning>()};
     auto body = rubber_square(backend);
     CentralDifference step{{.check_interval = 4}};
@@ -81,7 +81,7 @@ TEST_CASE("an element that folds between two checks is rescued by a rule", "[ada
 }
 
 TEST_CASE("loads set while an element is folded leave the books finite", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = rubber_square(backend);
     CentralDifference step;
     step(body, 5);
@@ -97,7 +97,7 @@ TEST_CASE("loads set while an element is folded leave the books finite", "[adapt
 }
 
 TEST_CASE("refining a body with a folded element leaves the books finite", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = rubber_square(backend);
     CentralDifference step;
     step(body, 5);

@@ -64,7 +64,7 @@ void check_intensity(B const& backend) {
 }
 
 TEST_CASE("R_S is its sum over points and nodes", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     check_intensity<Formulation<Tri3, Gauss<1>, Hooke>>(backend);
     check_intensity<Formulation<Tri3, Gauss<2>, SaintVenantKirchhoff>>(backend);
     check_intensity<Formulation<Quad4, Gauss<2>, NeoHookean>>(backend);
@@ -78,7 +78,7 @@ TEST_CASE("R_S is its sum over points and nodes", "[adaptation]") {
 }
 
 TEST_CASE("R_S asks each element's own law", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Soft = Formulation<Quad4, Gauss<2>, Hooke>;
     using Stiff = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
     auto const mesh = distorted_mesh<Quad4>(4);

@@ -67,7 +67,7 @@ TEST_CASE("hanging nodes hand their forces to others", "[adaptation]") {
 }
 
 TEST_CASE("forces are the slope of the energy with hanging nodes too", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(4, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(4, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = refined_body(backend, mesh);
     Random random(4);
     auto const n = static_cast<std::size_t>(body.nodes());
@@ -93,7 +93,7 @@ TEST_CASE("forces are the slope of the energy with hanging nodes too", "[adaptat
 }
 
 TEST_CASE("the tangent is symmetric with hanging nodes too", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(4, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(4, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = refined_body(backend, mesh);
     Random random(4);
     auto const n = static_cast<std::size_t>(body.nodes());
@@ -108,7 +108,7 @@ TEST_CASE("the tangent is symmetric with hanging nodes too", "[adaptation]") {
 }
 
 TEST_CASE("a patch with hanging nodes takes a uniform state", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(4, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(4, []<class B, class M>(B const& backend, M const& mesh) {
     for (unsigned seed : {3u, 8u}) {
       auto body = refined_body(backend, mesh, seed);
       REQUIRE(hanging_nodes(body.mesh())->size() > 5);
@@ -136,7 +136,7 @@ TEST_CASE("a patch with hanging nodes takes a uniform state", "[adaptation]") {
 }
 
 TEST_CASE("the stable step is below the true limit with hanging nodes too", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(3, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(3, []<class B, class M>(B const& backend, M const& mesh) {
     for (unsigned seed : {3u, 8u, 9u}) {
       auto body = refined_body(backend, mesh, seed, 2);
       REQUIRE_FALSE(hanging_nodes(body.mesh())->empty());

@@ -23,7 +23,7 @@ TEST_CASE("uniform stress has no error, and other stress has", "[estimator]") {
     CAPTURE(formulation_name<F>());
     auto const mesh = distorted_mesh<typename F::element>(3);
     Tensor<double, F::dim> const h = Random(4).tensor<F::dim>(0.1);
-    auto body = body_of<F>(MainBackend{}, mesh);
+    auto body = body_among<F, Everything>(MainBackend{}, mesh);
 
     body.set_displacements(uniform(mesh.nodes, h));
     double const of_uniform = estimate(body, RecoveredStress{}), energy = strain_energy(body);
@@ -40,22 +40,20 @@ TEST_CASE("uniform stress has no error, and other stress has", "[estimator]") {
 TEST_CASE("backends agree on estimates", "[estimator]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     double const tolerance = sizeof(typename B::scalar) == 4 ? 2e-3 : 1e-10;
-    on_formulations(
-        List<Formulation<Quad4, FBar<Gauss<2>>, NeoHookean>,
-             Formulation<Tri6, Gauss<2>, NeoHookean>, Formulation<Tet4, Gauss<1>, Hooke>,
-             Formulation<Hex8, OnePoint, SaintVenantKirchhoff>,
-             Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>>{},
-        [&]<class F>(List<F>) {
-          CAPTURE(formulation_name<F>());
-          auto const mesh = distorted_mesh<typename F::element>(3);
-          auto const u = Random(5).field<F::dim>(mesh.nodes.size(), 0.02);
+    on_formulations(List<Formulation<Quad4, FBar<Gauss<2>>, NeoHookean>,
+                         Formulation<Hex8, OnePoint, SaintVenantKirchhoff>,
+                         Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>>{},
+                    [&]<class F>(List<F>) {
+                      CAPTURE(formulation_name<F>());
+                      auto const mesh = distorted_mesh<typename F::element>(3);
+                      auto const u = Random(5).field<F::dim>(mesh.nodes.size(), 0.02);
 
-          auto const found = estimates<F>(backend, mesh, u),
-                     expected = estimates<F>(Reference<double>{}, mesh, u);
+                      auto const found = estimates<F>(backend, mesh, u),
+                                 expected = estimates<F>(Reference<double>{}, mesh, u);
 
-          for (std::size_t e = 0; e < found.size(); ++e)
-            CHECK(found[e] == Approx(expected[e]).epsilon(tolerance));
-        });
+                      for (std::size_t e = 0; e < found.size(); ++e)
+                        CHECK(found[e] == Approx(expected[e]).epsilon(tolerance));
+                    });
   });
 }
 

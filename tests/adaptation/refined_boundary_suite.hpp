@@ -6,7 +6,7 @@ namespace pliant::test::refined_boundary_suite {
 
 TEST_CASE("conditions, pressures and named boundaries go over to both halves of a facet",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     auto body = body_of<Rubber>(backend, mesh);
@@ -27,7 +27,7 @@ TEST_CASE("conditions, pressures and named boundaries go over to both halves of 
 }
 
 TEST_CASE("a family keeps the momentum of distorted parents", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
     auto const mesh = distorted_mesh<Quad4>(4);
     auto body = body_of<Rubber>(backend, mesh);

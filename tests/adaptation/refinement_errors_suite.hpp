@@ -90,7 +90,7 @@ TEST_CASE("a mesh that would grow beyond the capacity is an error and leaves the
 
 TEST_CASE("to refine an element that is not there is an error and leaves the body",
           "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = moving_body(backend, mesh);
     Portrait const before(body);
     std::size_t which = 0;
@@ -109,7 +109,7 @@ TEST_CASE("to refine an element that is not there is an error and leaves the bod
 
 TEST_CASE("lists of marks that are too few or too many are an error and leave the body",
           "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = moving_body(backend, mesh);
     Portrait const before(body);
     std::size_t const types = before.groups.size();
@@ -122,7 +122,7 @@ TEST_CASE("lists of marks that are too few or too many are an error and leave th
 }
 
 TEST_CASE("nothing marked, or only what is at its level, changes nothing", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = moving_body(backend, mesh);
     Portrait const before(body);
     Marks const none(before.groups.size());
@@ -141,7 +141,7 @@ TEST_CASE("nothing marked, or only what is at its level, changes nothing", "[ada
 }
 
 TEST_CASE("a state that is not finite is not refined", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(5);
     auto body = plane_body(backend, mesh);
     body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 10));

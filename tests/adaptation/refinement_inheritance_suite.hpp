@@ -16,7 +16,7 @@ bool contains(M const& mesh, std::array<Index, N> const& element, Point<2> const
 }
 
 TEST_CASE("children are in the group of their parent", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(6, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(6, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     Random random(5);
     put(body, random_marks(body, random, 2), Put::linear);
@@ -55,7 +55,7 @@ TEST_CASE("children are in the group of their parent", "[adaptation]") {
 }
 
 TEST_CASE("named boundaries and conditions on facets go over to the children", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     body.clamp(mesh.boundary("left"));
     body.hold(mesh.boundary("top"), 2);
@@ -114,7 +114,7 @@ TEST_CASE("named boundaries and conditions on facets go over to the children", "
 }
 
 TEST_CASE("conditions and loads on nodes stay with these nodes", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     std::vector<Index> const held{2, 7, 11};
     body.clamp(held);
@@ -136,7 +136,7 @@ TEST_CASE("conditions and loads on nodes stay with these nodes", "[adaptation]")
 }
 
 TEST_CASE("facets and nodes may be held between refinements", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     body.clamp(mesh.boundary("left"));
     Random random(5);
@@ -157,7 +157,7 @@ TEST_CASE("facets and nodes may be held between refinements", "[adaptation]") {
 
 TEST_CASE("pressures stay on their facets when nodes are held between refinements",
           "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     body.clamp(mesh.boundary("left"));
     body.press(mesh.boundary("top"), 1);
@@ -179,7 +179,7 @@ TEST_CASE("pressures stay on their facets when nodes are held between refinement
 }
 
 TEST_CASE("element-steps go on counting over refinements", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     Random random(5);
     CentralDifference step{{.step = 1e-4}};

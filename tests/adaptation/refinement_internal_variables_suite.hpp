@@ -9,7 +9,7 @@ namespace pliant::test::refinement_internal_variables_suite {
 
 TEST_CASE("children have their parent's values, and its points' memory, and give them back",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const visit = [&]<class E>(E) {
       using Q = Gauss<2>;
       using Graded = Formulation<E, Q, PerElement<SaintVenantKirchhoff>::template law>;

@@ -23,7 +23,7 @@ std::vector<double> areas(TheBody const& body) {
 }
 
 TEST_CASE("a rule refines the elements of its formulation that it marks", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(8);
     auto body = plane_body(backend, mesh), twin = plane_body(backend, mesh);
     Random random(2);
@@ -58,7 +58,7 @@ auto refine_all(Mesh<Es...> const&, RefineOptions options) {
 }
 
 TEST_CASE("elements are refined as often as their rule says", "[adaptation]") {
-  on_plane_meshes<DoubleBackends>(3, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(3, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     auto const all = element_count(body);
     auto adapt = refine_all(mesh, {.max_level = 2});
@@ -70,7 +70,7 @@ TEST_CASE("elements are refined as often as their rule says", "[adaptation]") {
 }
 
 TEST_CASE("each rule has its own greatest level", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     // Sixteen cells in a row: linear ones on the left, with their level 1, neo-Hookean ones on the
     // right, with their level 3.
     auto body = plane_body(backend, mesh::rectangle({.size = {16, 1}, .cells = {16, 1}}));
@@ -93,7 +93,7 @@ TEST_CASE("each rule has its own greatest level", "[adaptation]") {
 }
 
 TEST_CASE("a rule that refines keeps its budget, closure aside", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Tri3>(6);
     auto body = plane_body(backend, mesh);
     body.set_displacements(Random(2).field<2>(mesh.nodes.size(), 0.01));
@@ -105,7 +105,7 @@ TEST_CASE("a rule that refines keeps its budget, closure aside", "[adaptation]")
 }
 
 TEST_CASE("rules switch before they refine, and children have the new group", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(4);
     auto body = plane_body(backend, mesh);
     auto const all = element_count(body);
@@ -121,7 +121,7 @@ TEST_CASE("rules switch before they refine, and children have the new group", "[
 }
 
 TEST_CASE("refinement that would exceed the capacity leaves the body to go on", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(4);
     auto body = plane_body(backend, mesh);
     body.set_gravity({0, -1});

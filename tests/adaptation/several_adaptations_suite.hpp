@@ -48,7 +48,7 @@ long after_both(B const& backend, One one, Other other) {
 
 TEST_CASE("Adaptations whose rules differ in anything look each in their own time",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const to_turning = [](auto const& marked) {
       return Adaptation{marked.template become<Turning>()};
     };
@@ -88,7 +88,7 @@ TEST_CASE("Adaptations whose rules differ in anything look each in their own tim
 
 TEST_CASE("an Adaptation made anew goes on with the last look of the one that is gone",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = square_of_two_laws(backend);
     CentralDifference step;
     for (int k = 0; k < 8; ++k) {
@@ -103,7 +103,7 @@ TEST_CASE("an Adaptation made anew goes on with the last look of the one that is
 
 TEST_CASE("Adaptations of a run that is loaded look when those that were saved would have",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const rule = [](double place) {
       return Adaptation{when<Linear>(RightOf{place}).above(0.5).template become<Turning>()}.every(
           5);

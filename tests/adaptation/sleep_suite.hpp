@@ -91,7 +91,7 @@ class LatePull : public ConnectedTerm<B, Pull> {
 
 TEST_CASE("what sleeps does not differ from what is awake by more than its threshold allows",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto plain = bar_on(backend), body = bar_on(backend);
     hit_left_end(plain);
     hit_left_end(body);
@@ -115,7 +115,7 @@ TEST_CASE("what sleeps does not differ from what is awake by more than its thres
 }
 
 TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = bar_on(backend);
     CentralDifference step;
     Adaptation adapt{quick_sleep()};
@@ -133,7 +133,7 @@ TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adapta
 }
 
 TEST_CASE("what something pulls at wakes, whatever it is", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const wakes = [&](char const* what, auto const& cause, bool at_once = true) {
       INFO(what);
       auto plain = bar_on(backend), body = bar_on(backend);
@@ -191,7 +191,7 @@ TEST_CASE("what something pulls at wakes, whatever it is", "[adaptation]") {
 }
 
 TEST_CASE("what carries load sleeps until it is pulled at", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bar_on(backend), plain = bar_on(backend);
     CentralDifference step, same_step;
     // A wave that comes between two looks is thrown back until the next, whatever the threshold.
@@ -233,7 +233,7 @@ TEST_CASE("what carries load sleeps until it is pulled at", "[adaptation]") {
 }
 
 TEST_CASE("a term of the user's own that begins to pull wakes what sleeps", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     // A recording of a GPU has what pulled when it was made.
     if constexpr (std::same_as<typename B::Recording, HostRecording>) {
       auto const pulls = std::make_shared<bool>(false);
@@ -262,7 +262,7 @@ TEST_CASE("a term of the user's own that begins to pull wakes what sleeps", "[ad
 }
 
 TEST_CASE("nodes that are driven later on do not sleep", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bar_on(backend), plain = bar_on(backend);
     CentralDifference step, same_step;
     Adaptation adapt{quick_sleep()};
@@ -283,7 +283,7 @@ TEST_CASE("nodes that are driven later on do not sleep", "[adaptation]") {
 
 TEST_CASE("a pressure beside sleeping patches is felt, and the neighbours of what moves wake",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bar_on(backend), plain = bar_on(backend);
     for (auto* b : {&body, &plain}) {
       b->press(b->mesh().boundary("right"), 1e-7);
@@ -302,7 +302,7 @@ TEST_CASE("a pressure beside sleeping patches is felt, and the neighbours of wha
 }
 
 TEST_CASE("what sleep takes is booked, and its residual told", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bar_on(backend);
     hit_left_end(body);
     body.set_damping(2);
@@ -338,7 +338,7 @@ TEST_CASE("what sleep takes is booked, and its residual told", "[adaptation]") {
 }
 
 TEST_CASE("a body with sleeping patches is saved and rolled back", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bar_on(backend), again = bar_on(backend);
     hit_left_end(body);
     CentralDifference step{{.check_interval = 24}};
@@ -375,7 +375,7 @@ TEST_CASE("a body with sleeping patches is saved and rolled back", "[adaptation]
 }
 
 TEST_CASE("reading forces of a body with sleeping patches gives those of all", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bar_on(backend), read = bar_on(backend), plain = bar_on(backend);
     for (auto* b : {&body, &read}) hit_left_end(*b);
     CentralDifference step, same_step;
@@ -396,7 +396,7 @@ TEST_CASE("reading forces of a body with sleeping patches gives those of all", "
 }
 
 TEST_CASE("where nobody looks any more, and under another integrator, all wakes", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     for (bool other_integrator : {false, true}) {
       auto body = bar_on(backend), plain = bar_on(backend);
       for (auto* b : {&body, &plain}) hit_left_end(*b);

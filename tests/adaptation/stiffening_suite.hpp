@@ -50,7 +50,7 @@ auto rule(double reach) {
 
 TEST_CASE("the step is asked for before the next one where elements go to a stiffer law",
           "[adaptation][solver]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     bool const together = GENERATE(false, true);
     auto body = resting_body(backend);
     CentralDifference step{{.watch_interval = 1 << 20}};
@@ -77,7 +77,7 @@ TEST_CASE("the step is asked for before the next one where elements go to a stif
 
 TEST_CASE("the step is not asked for where nothing gets stiffer than it allows",
           "[adaptation][solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = resting_body(backend);
     CentralDifference step{{.watch_interval = 1 << 20}};
     step(body, 20);
@@ -166,7 +166,7 @@ TEST_CASE("the host asks for moves to stiffer laws, and for no others", "[adapta
 
 TEST_CASE("a run that is saved behind a switch asks for its step all the same",
           "[adaptation][solver][state]") {
-  using Backends = decltype(std::tuple_cat(DoubleBackends{}, std::tuple<Unasked>{}));
+  using Backends = decltype(std::tuple_cat(MainAlone{}, std::tuple<Unasked>{}));
   on_each_backend<Backends>([]<class B>(B const& backend) {
     bool const local = GENERATE(false, true);
     auto whole = resting_body(backend), part = resting_body(backend), next = resting_body(backend);

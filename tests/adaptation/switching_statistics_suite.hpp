@@ -70,7 +70,7 @@ TEST_CASE("the statistics follow every switch of a bending beam", "[adaptation]"
 }
 
 TEST_CASE("the statistics stay right when a user moves elements too", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = bending_body(backend);
     auto adapt = bending_rules();
     adapt.now(body);
@@ -86,7 +86,7 @@ TEST_CASE("the statistics stay right when a user moves elements too", "[adaptati
 
 TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the largest",
           "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     constexpr int most = std::numeric_limits<int>::max();
     constexpr std::int64_t later = 4 * std::int64_t{most};
     auto body = bending_body(backend);
@@ -128,7 +128,7 @@ TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the l
 }
 
 TEST_CASE("the energy of a body that switches is what its ledger says", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     // Central differences keep energy up to Δt²; what is lost at the switches would be of order Δt.
     auto const drift = [&](double dt) {
       auto body = bending_body(backend);

@@ -78,7 +78,7 @@ TEST_CASE("the elements beyond a threshold switch, and no others", "[adaptation]
 }
 
 TEST_CASE("elements between two thresholds stay where they are", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(8);
     auto body = three_group_body(backend, mesh);
     Random random(2);
@@ -106,7 +106,7 @@ TEST_CASE("elements between two thresholds stay where they are", "[adaptation]")
 }
 
 TEST_CASE("an element stays as long as its rule says", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(6);
     auto body = three_group_body(backend, mesh);
     Random random(2);
@@ -140,7 +140,7 @@ TEST_CASE("an element stays as long as its rule says", "[adaptation]") {
 }
 
 TEST_CASE("the first rule that holds acts, once", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(8);
     auto const u = Random(2).field<2>(mesh.nodes.size(), 0.02);
     auto const strict = when<Linear>(EdgeLengthRatio{}).above(0.2).template become<Turning>();
@@ -173,7 +173,7 @@ TEST_CASE("the first rule that holds acts, once", "[adaptation]") {
 }
 
 TEST_CASE("ranking rules compare the elements of their own formulation alone", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(8);
     Random random(2);
     auto body = three_group_body(backend, mesh);
@@ -205,7 +205,7 @@ TEST_CASE("ranking rules compare the elements of their own formulation alone", "
 
 TEST_CASE("of equal values, as many elements act as the budget or the share allows",
           "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {8, 8}});
     auto const linear = when<Linear>(Constant{1});
     /// The first elements by the user's number are in group 1.
@@ -251,7 +251,7 @@ struct NanBeyond {
 };
 
 TEST_CASE("elements where a criterion is NaN do not act and are not counted", "[adaptation]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {8, 8}});
     auto const value = [&] {
       auto const body = three_group_body(backend, mesh);
@@ -366,7 +366,7 @@ TEST_CASE("a criterion that throws leaves groups and statistics as they were on 
 #endif
 
 TEST_CASE("adaptation looks at every eighth call, or as often as it is told", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = regular_mesh<Quad4>(3);
     std::vector<Tag> const all(mesh.elements<Quad4>().size(), Tag(1)), none(all.size(), Tag(0));
     auto const rule = when<Linear>(Constant{1}).above(0.5).template become<Turning>();
@@ -406,7 +406,7 @@ TEST_CASE("adaptation looks at every eighth call, or as often as it is told", "[
 }
 
 TEST_CASE("rules that never hold leave the motion alone to the bit", "[adaptation]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(6);
     auto const run = [&](auto&& adapt) {
       auto body = three_group_body(backend, mesh);

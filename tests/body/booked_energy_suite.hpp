@@ -14,7 +14,7 @@ double kept_energy(TheBody& body) {
 }
 
 TEST_CASE("changes between steps are booked to rounding", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(5);
     Body body{backend, mesh, soft, Group<Rubber>{}, Group<Linear>{}};
     auto const left = body.clamp(mesh.boundary("left"));
@@ -45,7 +45,7 @@ TEST_CASE("changes between steps are booked to rounding", "[body]") {
 }
 
 TEST_CASE("refining keeps the work of loads booked", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(5);
     auto body = body_of<Rubber>(backend, mesh);
     body.set_displacements(Random(1).field<2>(mesh.nodes.size(), 0.01));
@@ -58,7 +58,7 @@ TEST_CASE("refining keeps the work of loads booked", "[body]") {
 }
 
 TEST_CASE("reading does not change what an integrator compares energies with", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(5);
     auto watched = body_of<Rubber>(backend, mesh), left_alone = body_of<Rubber>(backend, mesh);
     for (auto* body : {&watched, &left_alone}) {

@@ -5,7 +5,7 @@
 
 #include "support/catch.hpp"
 
-namespace pliant::test {
+namespace pliant::test::copy_values_test {
 
 /// Writes down what it would copy.
 struct Recorder {
@@ -42,4 +42,4 @@ TEST_CASE("more values than an Index can number are copied whole", "[body]") {
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::copy_values_test

@@ -69,7 +69,7 @@ TEST_CASE("a stride leaves what lies between the nodes alone", "[body]") {
 }
 
 TEST_CASE("strides that would mix up the nodes are refused", "[body][errors]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Quad4>(3);
     auto body = body_of<Rubber>(backend, mesh);
     auto const u = upload(backend, std::vector<double>(2 * mesh.nodes.size(), 0.0));
@@ -138,7 +138,7 @@ TEST_CASE("a mesh of plain arrays makes a body", "[body]") {
 }
 
 TEST_CASE("internal variables that are committed by hand act at once", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Viscous = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
     auto const mesh = distorted_mesh<Quad4>(5);
     Body body{backend, mesh, soft,
@@ -162,7 +162,7 @@ TEST_CASE("internal variables that are committed by hand act at once", "[body]")
 }
 
 TEST_CASE("a step that is missing is told from one that is negative", "[body][errors]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Viscous = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::law>;
     auto const mesh = distorted_mesh<Quad4>(3);
     auto body = body_of<Rubber>(backend, mesh);

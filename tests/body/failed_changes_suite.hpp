@@ -89,7 +89,7 @@ void check_refused(TheBody& body, TheBody& twin, Change const& change) {
 }
 
 TEST_CASE("a force term that cannot be made anew leaves the body as it was", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     for (Made how : {Made::null, Made::by_throwing}) {
       Made made = Made::well, well = Made::well;
       auto body = swinging(backend, made), twin = swinging(backend, well);
@@ -121,7 +121,7 @@ TEST_CASE("a force term that cannot be made anew leaves the body as it was", "[b
 }
 
 TEST_CASE("a term that is never made is refused", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Made well = Made::well, null = Made::null;
     auto body = swinging(backend, well);
     using Make = typename std::remove_cvref_t<decltype(body.parts())>::MakeTerm;
@@ -132,7 +132,7 @@ TEST_CASE("a term that is never made is refused", "[body]") {
 }
 
 TEST_CASE("a check whose listener throws is done all the same", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Made well = Made::well;
     auto body = swinging(backend, well), twin = swinging(backend, well);
     body.on_change([](auto const&) { throw std::runtime_error("no space"); });

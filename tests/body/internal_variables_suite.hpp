@@ -70,7 +70,7 @@ TEST_CASE("a dashpot pulls in proportion to the rate", "[body]") {
 TEST_CASE(
     "an element that changes its elastic law keeps its past, and one without a past begins relaxed",
     "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using A = OneSquare<Prony<SaintVenantKirchhoff>::template law>;
     using C = OneSquare<Prony<NeoHookean>::template law>;
     using Elastic = OneSquare<SaintVenantKirchhoff>;
@@ -125,7 +125,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a static solution is at rest with its memory", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Maxwell = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::template law>;
     using Dashpot = Formulation<Tri3, Gauss<1>, KelvinVoigt<NeoHookean>::template law>;
     auto const rests = [&]<class F>(Group<F> const& group) {
@@ -155,7 +155,7 @@ TEST_CASE("a static solution is at rest with its memory", "[body]") {
 }
 
 TEST_CASE("what a static solution brings to rest is booked", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Maxwell = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::template law>;
     auto const mesh = distorted_mesh<Quad4>(4);
     Body body{backend, mesh, soft,
@@ -177,7 +177,7 @@ TEST_CASE("what a static solution brings to rest is booked", "[body]") {
 }
 
 TEST_CASE("what branches store comes back without a false alarm", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using F = Formulation<Quad4, Gauss<2>, Prony<NeoHookean>::template law>;
     auto const mesh = regular_mesh<Quad4>(4);
     Body body{backend, mesh, soft,
@@ -201,7 +201,7 @@ TEST_CASE("what branches store comes back without a false alarm", "[body]") {
 }
 
 TEST_CASE("going back to a checkpoint goes back in memory too", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, Prony<NeoHookean>::template law>;
     auto const mesh = distorted_mesh<Tri3>(6);
     Body body{backend, mesh, soft, Group<F>{typename F::template law<double>{{3, 2}, {1}, {0.05}}}};
@@ -242,7 +242,7 @@ TEST_CASE("the stable step is stable with dashpots, and not far from the limit",
 }
 
 TEST_CASE("viscosity takes energy from a vibration", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using F = Formulation<Quad4, Gauss<2>, KelvinVoigt<SaintVenantKirchhoff>::template law>;
     auto const energy_left = [&](double viscosity) {
       auto const mesh = distorted_mesh<Quad4>(5);

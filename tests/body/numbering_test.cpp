@@ -6,7 +6,7 @@
 
 #include "support/catch.hpp"
 
-namespace pliant::test {
+namespace pliant::test::numbering_test {
 
 template <Element E>
 Mesh<E> box_of(int cells) {
@@ -60,4 +60,4 @@ TEST_CASE("a run of elements has few nodes, whether or not cells fit the curve",
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::numbering_test

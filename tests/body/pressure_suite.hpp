@@ -18,17 +18,20 @@ FieldOf<M::dim> turned(M const& mesh) {
               random.field<M::dim>(mesh.nodes.size(), 0.03));
 }
 
-/// Calls visit(backend, F{}) with elements of every kind of side.
+/// Calls visit(backend, F{}) with elements of every kind of side, on the other backend of a CPU with one in the plane and
+/// one in space.
 template <class Bs, class Visit>
 void on_each_side_type(Visit const& visit) {
   on_each_backend<Bs>([&]<class B>(B const& backend) {
-    SECTION("Line2") { visit(backend, Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>{}); }
     SECTION("Line3") { visit(backend, Formulation<Quad8, Gauss<3>, SaintVenantKirchhoff>{}); }
-    SECTION("Tri3") { visit(backend, Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>{}); }
-    SECTION("Tri6") { visit(backend, Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>{}); }
     SECTION("Quad4") { visit(backend, Formulation<Hex8, Gauss<2>, SaintVenantKirchhoff>{}); }
-    SECTION("Quad8") { visit(backend, Formulation<Hex20, Gauss<3>, SaintVenantKirchhoff>{}); }
-    SECTION("Quad9") { visit(backend, Formulation<Hex27, Gauss<3>, SaintVenantKirchhoff>{}); }
+    if constexpr (runs_all<B>) {
+      SECTION("Line2") { visit(backend, Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>{}); }
+      SECTION("Tri3") { visit(backend, Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>{}); }
+      SECTION("Tri6") { visit(backend, Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>{}); }
+      SECTION("Quad8") { visit(backend, Formulation<Hex20, Gauss<3>, SaintVenantKirchhoff>{}); }
+      SECTION("Quad9") { visit(backend, Formulation<Hex27, Gauss<3>, SaintVenantKirchhoff>{}); }
+    }
   });
 }
 
@@ -54,7 +57,7 @@ TEST_CASE("a pressure on part of the surface is that of consistent loads at this
 }
 
 TEST_CASE("a pressure all around pulls nothing away and turns nothing", "[body]") {
-  on_each_side_type<DoubleBackends>([]<class B, class F>(B const& backend, F) {
+  on_each_side_type<MainAlone>([]<class B, class F>(B const& backend, F) {
     auto const mesh = distorted_mesh<typename F::element>(3);
     auto const u = turned(mesh);
     auto body = body_of<F>(backend, mesh);
@@ -69,7 +72,7 @@ TEST_CASE("a pressure all around pulls nothing away and turns nothing", "[body]"
 }
 
 TEST_CASE("the tangent of a pressure is the derivative of its force", "[body]") {
-  on_each_side_type<DoubleBackends>([]<class B, class F>(B const& backend, F) {
+  on_each_side_type<MainAlone>([]<class B, class F>(B const& backend, F) {
     auto const mesh = distorted_mesh<typename F::element>(3);
     auto body = body_of<F>(backend, mesh);
     body.press(mesh.boundary("right"), 50);  // far stiffer than the body
@@ -110,7 +113,7 @@ TEST_CASE("a tube under inner pressure holds against Lame's solution", "[body]")
 }
 
 TEST_CASE("a pressure in dynamics lifts a plate, step for step on every backend", "[body]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
     auto const run = [](auto const& on) {
       auto const mesh = mesh::rectangle<Tri3>({.size = {1, 0.2}, .cells = {20, 4}});
@@ -132,7 +135,7 @@ TEST_CASE("a pressure in dynamics lifts a plate, step for step on every backend"
 }
 
 TEST_CASE("facets to press may be told by their corners alone, from either side", "[body]") {
-  on_each_side_type<DoubleBackends>([]<class B, class F>(B const& backend, F) {
+  on_each_side_type<MainAlone>([]<class B, class F>(B const& backend, F) {
     auto const mesh = distorted_mesh<typename F::element>(3);
     auto const side = mesh.boundary("right");
     std::vector<Facet<F::dim>> corners;

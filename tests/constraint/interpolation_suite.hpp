@@ -123,7 +123,7 @@ TEST_CASE("constant fields are kept to the bit", "[constraint]") {
 }
 
 TEST_CASE("a mesh without slaves is left alone", "[constraint]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     InterpolationOn<B> const none(backend, Interpolation{});
     auto const field = Random(5).field<2>(7, 1);
     auto own = padded(backend, field);

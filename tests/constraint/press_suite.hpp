@@ -25,7 +25,7 @@ double pull(TheBody& body) {
 }
 
 TEST_CASE("pressing facets again in another order or orientation replaces", "[constraint]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const check = [](auto body) {
       auto const facets = body.mesh().boundary("top");
       auto const first = body.press(facets, 100);
@@ -42,7 +42,7 @@ TEST_CASE("pressing facets again in another order or orientation replaces", "[co
 }
 
 TEST_CASE("pressing a refined boundary replaces, whichever way its facets ran", "[constraint]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto mesh = mesh::rectangle({.size = {1, 1}, .cells = {4, 4}});
     mesh.boundaries.at("top") = turned(mesh.boundary("top"));
     auto body = body_of<Quads>(backend, mesh);

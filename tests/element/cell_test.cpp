@@ -6,7 +6,7 @@
 #include "support/catch.hpp"
 #include "support/elements.hpp"
 
-namespace pliant::test {
+namespace pliant::test::cell_test {
 
 static_assert(TensorCell<Hexahedron> && !TensorCell<Wedge> && SimplexCell<Triangle>);
 
@@ -87,4 +87,4 @@ TEMPLATE_TEST_CASE("the corner rule has its points at the corners", "[element]",
   static_assert(!QuadratureOn<Corners, Pyramid>);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::cell_test

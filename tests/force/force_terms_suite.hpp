@@ -137,7 +137,7 @@ void on_each_term(TheBody& body, Visit const& visit) {
 }
 
 TEST_CASE("a term's force is minus the derivative of its energy", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of_all_terms(backend);
     auto const n = static_cast<std::size_t>(body.nodes());
     auto const u = Random(1).field<2>(n, 0.02), along = Random(2).field<2>(n, 1);
@@ -161,7 +161,7 @@ TEST_CASE("a term's force is minus the derivative of its energy", "[force]") {
 }
 
 TEST_CASE("a term's tangent product is the derivative of its force, and adds", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of_all_terms(backend);
     auto const n = static_cast<std::size_t>(body.nodes());
     auto const u = Random(1).field<2>(n, 0.02), along = Random(2).field<2>(n, 1);
@@ -177,7 +177,7 @@ TEST_CASE("a term's tangent product is the derivative of its force, and adds", "
 }
 
 TEST_CASE("a term's diagonal blocks and row sums are those of its matrix", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of_all_terms(backend);
     auto const n = static_cast<std::size_t>(body.nodes());
     auto const u = Random(1).field<2>(n, 0.02);
@@ -210,7 +210,7 @@ TEST_CASE("a term's diagonal blocks and row sums are those of its matrix", "[for
 }
 
 TEST_CASE("the elements of a term on the host add up to what its backend says", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of_all_terms(backend);
     auto const n = static_cast<std::size_t>(body.nodes());
     auto const u = Random(1).field<2>(n, 0.02);
@@ -324,7 +324,7 @@ TEST_CASE("a physics sees nodes where the mesh has them", "[force]") {
 }
 
 TEST_CASE("a term stays with its nodes when the mesh is refined", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, mesh::rectangle({.size = {1, 1}, .cells = {3, 3}}));
     body.add(Sets{{0, 15}}, Spring<double>{8});
     refine(body, {{0, 4}});
@@ -350,7 +350,7 @@ TEST_CASE("a term stays with its nodes when the mesh is refined", "[force]") {
 }
 
 TEST_CASE("the stable step knows springs that are stiffer than the body", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     auto body = body_of<Rubber>(backend, mesh);
     body.clamp(mesh.boundary("left"));
@@ -377,7 +377,7 @@ TEST_CASE("the stable step knows springs that are stiffer than the body", "[forc
 }
 
 TEST_CASE("the stable step knows a pressure that is stiffer than the body", "[force]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     auto body = body_of<Rubber>(backend, mesh);
     double const before = stable_step(body);

@@ -9,7 +9,7 @@ TEST_CASE("inner forces and their moments add up to zero", "[formulation]") {
     using T = typename B::scalar;
     int const n = F::dim == 2 ? 8 : 4;
     auto const mesh = distorted_mesh<typename F::element>(n);
-    auto body = body_of<F>(B{}, mesh);
+    auto body = body_among_all<F>(B{}, mesh);
     auto const u = Random(1).field<F::dim>(mesh.nodes.size(), 0.1 / n);
 
     auto const f = forces_at(body, u);
@@ -28,7 +28,7 @@ TEST_CASE("masses add up to density times volume, about the right centre", "[for
   on_each_formulation<AllBackends>([]<class B, class F>(Case<B, F>) {
     auto const mesh = distorted_mesh<typename F::element>(5);
 
-    auto const body = body_of<F>(B{}, mesh);
+    auto const body = body_among_all<F>(B{}, mesh);
     auto const& masses = body.parts().layout.mass_list;
 
     double sum = 0;

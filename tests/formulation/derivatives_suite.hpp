@@ -25,11 +25,11 @@ double energy_at(TheBody& body, FieldOf<TheBody::dim> const& u) {
 }
 
 TEST_CASE("forces are minus the derivative of the energy", "[formulation]") {
-  on_each_formulation<DoubleBackends>([]<class B, class F>(Case<B, F>) {
+  on_each_formulation<MainAlone>([]<class B, class F>(Case<B, F>) {
     if constexpr (internal_variables_of<F> > 0) return;  // dashpots have no energy
     int const n = F::dim == 2 ? 4 : 3;
     auto const mesh = distorted_mesh<typename F::element>(n);
-    auto body = body_of<F>(B{}, mesh);
+    auto body = body_among_all<F>(B{}, mesh);
     for (unsigned seed = 1; seed <= 3; ++seed) {
       auto const u = rough_state<F>(mesh, n, seed);
       auto const along = Random(seed + 10).field<F::dim>(u.size(), 1.0);
@@ -46,10 +46,10 @@ TEST_CASE("forces are minus the derivative of the energy", "[formulation]") {
 }
 
 TEST_CASE("the tangent product is the derivative of the forces", "[formulation]") {
-  on_each_formulation<DoubleBackends>([]<class B, class F>(Case<B, F>) {
+  on_each_formulation<MainAlone>([]<class B, class F>(Case<B, F>) {
     int const n = F::dim == 2 ? 4 : 3;
     auto const mesh = distorted_mesh<typename F::element>(n);
-    auto body = body_of<F>(B{}, mesh);
+    auto body = body_among_all<F>(B{}, mesh);
     for (unsigned seed = 1; seed <= 2; ++seed) {
       auto const u = rough_state<F>(mesh, n, seed);
       auto const along = Random(seed + 10).field<F::dim>(u.size(), 1.0);
@@ -65,10 +65,10 @@ TEST_CASE("the tangent product is the derivative of the forces", "[formulation]"
 }
 
 TEST_CASE("the tangent is symmetric", "[formulation]") {
-  on_each_formulation<DoubleBackends>([]<class B, class F>(Case<B, F>) {
+  on_each_formulation<MainAlone>([]<class B, class F>(Case<B, F>) {
     int const n = F::dim == 2 ? 6 : 4;
     auto const mesh = distorted_mesh<typename F::element>(n);
-    auto body = body_of<F>(B{}, mesh);
+    auto body = body_among_all<F>(B{}, mesh);
     auto const u = rough_state<F>(mesh, n, 1);
     auto const x = Random(2).field<F::dim>(u.size(), 1.0);
     auto const y = Random(3).field<F::dim>(u.size(), 1.0);

@@ -6,7 +6,7 @@
 #include "support/inverted_states.hpp"
 
 // Elements one of whose nodes was pushed through them.
-namespace pliant::test {
+namespace pliant::test::inversion_test {
 
 /// λ = 3 Pa, μ = 2 Pa: stiffened as the other suites have it.
 template <class L>
@@ -111,4 +111,4 @@ TEST_CASE("no static solution is found with a node pushed through its element", 
   CHECK(body.displacements()[3][2] == -1.5);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::inversion_test

@@ -4,7 +4,7 @@
 #include "support/elements.hpp"
 #include "support/random.hpp"
 
-namespace pliant::test {
+namespace pliant::test::mass_test {
 
 /// An element whose nodes are moved: curved where it can be.
 template <class E>
@@ -63,4 +63,4 @@ TEST_CASE("shares on regular cells are those of the literature", "[formulation]"
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::mass_test

@@ -6,7 +6,7 @@
 #include "support/elements.hpp"
 #include "support/formulations.hpp"
 
-namespace pliant::test {
+namespace pliant::test::modes_test {
 
 /// The eigenvalues, ascending and over the largest, of the stiffness of one crooked element at rest.
 template <class F>
@@ -101,4 +101,4 @@ TEST_CASE("over-integration changes nothing on straight cells", "[formulation]")
             .norm() < 1e-13);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::modes_test

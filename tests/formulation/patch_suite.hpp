@@ -47,7 +47,7 @@ TEST_CASE("a uniform state leaves no force inside, and its stress on the outside
     constexpr int dim = F::dim;
     int const n = dim == 2 ? 6 : 4;
     auto const mesh = distorted_mesh<typename F::element>(n);
-    auto body = body_of<F>(B{}, mesh);
+    auto body = body_among_all<F>(B{}, mesh);
     for (auto const& [name, h] : uniform_states<dim>()) {
       INFO(name);
       auto const u = uniform(mesh.nodes, h);

@@ -37,7 +37,7 @@ TEST_CASE("a rigid motion leaves the energy alone and makes no force", "[formula
     if constexpr (!small_strain<F>) {
       int const n = dim == 2 ? 6 : 4;
       auto const mesh = distorted_mesh<typename F::element>(n);
-      auto body = body_of<F>(B{}, mesh);
+      auto body = body_among_all<F>(B{}, mesh);
       for (auto const& r : rotations<dim>()) {
         auto u = uniform(mesh.nodes, r - Tensor<double, dim>::identity());
         for (auto& v : u) v[0] += 0.75;
@@ -61,7 +61,7 @@ TEST_CASE("Hooke's law takes a rotation for a strain of cos(angle) - 1", "[formu
     constexpr int dim = F::dim;
     if constexpr (std::same_as<typename F::template law<double>, Hooke<double>>) {
       auto const mesh = distorted_mesh<typename F::element>(4);
-      auto body = body_of<F>(B{}, mesh);
+      auto body = body_among_all<F>(B{}, mesh);
       double const mu = soft.lame_mu(), lambda = soft.lame_lambda();
       double const epsilon = 64 * double{std::numeric_limits<typename B::scalar>::epsilon()};
       for (auto const& r : rotations<dim>()) {

@@ -3,7 +3,7 @@
 #include "support/catch.hpp"
 #include "support/difference_quotient.hpp"
 
-namespace pliant::test {
+namespace pliant::test::dual_test {
 
 /// A function of two numbers, for any scalar, that uses all operators and elementary functions.
 struct Everything {
@@ -57,4 +57,4 @@ TEST_CASE("a constant has no derivative", "[math]") {
   static_assert(std::same_as<builtin_scalar<Dual<Dual<float, 2>, 3>>, float>);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::dual_test

@@ -2,7 +2,7 @@
 
 #include "support/catch.hpp"
 
-namespace pliant::test {
+namespace pliant::test::functions_test {
 
 /// x − ln(1 + x) in extended precision, by its series where the difference would cancel.
 long double exact_excess(long double x) {
@@ -60,4 +60,4 @@ TEST_CASE("select, min and max choose", "[math]") {
   CHECK(square_of_positive(-3.0) == 0);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::functions_test

@@ -5,7 +5,7 @@
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
-namespace pliant::test {
+namespace pliant::test::matrix_test {
 
 template <int R, int C>
 Eigen::Matrix<double, R, C> in_eigen(Matrix<double, R, C> const& a) {
@@ -47,4 +47,4 @@ TEMPLATE_TEST_CASE_SIG("determinant and cofactors near the identity keep their d
   CHECK(c(0, 1) == Approx(-tiny(1, 0)).epsilon(1e-14));
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::matrix_test

@@ -3,7 +3,7 @@
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
-namespace pliant::test {
+namespace pliant::test::spectrum_test {
 
 template <int N>
 double largest_entry(Tensor<double, N> const& a) {
@@ -71,4 +71,4 @@ TEST_CASE("a spectrum in single precision is diagonal to rounding", "[math]") {
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::spectrum_test

@@ -5,7 +5,7 @@
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
-namespace pliant::test {
+namespace pliant::test::hilbert_test {
 
 template <std::size_t Dim>
 std::vector<Index> order_of(std::vector<std::array<double, Dim>> const& points) {
@@ -88,4 +88,4 @@ TEST_CASE("neighbours in the order are neighbours in space", "[mesh]") {
   CHECK(length / 4095 < 3.0 / 64);
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::hilbert_test

@@ -4,7 +4,7 @@
 
 #include "support/catch.hpp"
 
-namespace pliant::test {
+namespace pliant::test::exactness_test {
 
 static_assert(QuadratureOn<Gauss<1>, Triangle> && QuadratureOn<Gauss<6>, Triangle>);
 static_assert(QuadratureOn<Gauss<1>, Tetrahedron> && QuadratureOn<Gauss<6>, Tetrahedron>);
@@ -170,4 +170,4 @@ TEST_CASE("a tabulation holds the element's values at the rule's points", "[quad
   }
 }
 
-}  // namespace pliant::test
+}  // namespace pliant::test::exactness_test

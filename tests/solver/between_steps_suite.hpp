@@ -21,7 +21,7 @@ auto held_beam(B const& backend) {
 }
 
 TEST_CASE("a load on a body at rest is no blow-up", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     for (bool all : {false, true}) {
       auto body = held_beam(backend);
       CentralDifference step;
@@ -44,7 +44,7 @@ TEST_CASE("a load on a body at rest is no blow-up", "[solver]") {
 }
 
 TEST_CASE("loads that change again and again are no blow-up, and hide none", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const run = [&](double fraction) {
       auto body = held_beam(backend);
       CentralDifference step{{.step = fraction * stable_step(body), .check_interval = 5}};
@@ -73,7 +73,7 @@ struct Spring {
 };
 
 TEST_CASE("a body that is made stiffer by hand is stepped within its new stable step", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const check = [&](bool watched, auto const& stiffen) {
       Body body{backend, beam(), gel, Group<Linear>{},
                 Group<Stiff>{{SaintVenantKirchhoff<double>::from({4e7, 0.3, 1e3})}}};
@@ -107,7 +107,7 @@ TEST_CASE("a body that is made stiffer by hand is stepped within its new stable 
 }
 
 TEST_CASE("a step that cannot be chosen is asked for again", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of<Linear>(backend, beam(), gel);
     std::vector<Index> all(static_cast<std::size_t>(body.nodes()));
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
@@ -128,7 +128,7 @@ TEST_CASE("a step that cannot be chosen is asked for again", "[solver]") {
 }
 
 TEST_CASE("gravity, damping and loads outlast a roll-back to before they were set", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = held_beam(backend);
     body.set_velocities(FieldOf<2>(static_cast<std::size_t>(body.nodes()), {0, 1e-3}));
     CentralDifference step{{.step = 1.2 * stable_step(body), .watch_interval = 1 << 20}};
@@ -154,7 +154,7 @@ TEST_CASE("gravity, damping and loads outlast a roll-back to before they were se
 }
 
 TEST_CASE("a loaded run follows the options of the integrator that goes on with it", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = held_beam(backend), loaded = held_beam(backend);
     body.set_gravity({0, -1});
     CentralDifference first{{.step = 1e-3}};
@@ -181,7 +181,7 @@ TEST_CASE("a loaded run follows the options of the integrator that goes on with 
 }
 
 TEST_CASE("integrators that take turns book no work", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = held_beam(backend);
     body.set_gravity({0, -1});
     CentralDifference first{{.step = 1e-3}}, second{{.step = 1e-3}};

@@ -14,7 +14,7 @@ bool finite(TheBody& body) {
 }
 
 TEST_CASE("a step that is somewhat too large is halved and done again", "[solver]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, strip());
     body.clamp(body.mesh().boundary("left"));
     body.set_gravity({0, -0.05});
@@ -33,7 +33,7 @@ TEST_CASE("a step that is somewhat too large is halved and done again", "[solver
 }
 
 TEST_CASE("time and state go back together", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, strip());
     body.set_gravity({0, -1});
     body.set_velocities(Random(1).field<2>(static_cast<std::size_t>(body.nodes()), 0.01));
@@ -64,7 +64,7 @@ TEST_CASE("time and state go back together", "[solver]") {
 
 TEST_CASE("a blow-up that smaller steps do not cure is an error, and the body stays good",
           "[solver]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, strip());
     body.clamp(body.mesh().boundary("left"));
     body.set_gravity({0, -0.05});
@@ -78,7 +78,7 @@ TEST_CASE("a blow-up that smaller steps do not cure is an error, and the body st
 }
 
 TEST_CASE("what a user does to a body is not taken for a blow-up", "[solver]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = strip();
     auto body = body_of<Rubber>(backend, mesh);
     body.clamp(mesh.boundary("left"));
@@ -104,7 +104,7 @@ TEST_CASE("what a user does to a body is not taken for a blow-up", "[solver]") {
 }
 
 TEST_CASE("one integrator may step two bodies in turn", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = strip();
     auto still = body_of<Rubber>(backend, mesh), fast = body_of<Rubber>(backend, mesh);
     fast.set_velocities(Random(1).field<2>(mesh.nodes.size(), 0.1));
@@ -123,7 +123,7 @@ TEST_CASE("one integrator may step two bodies in turn", "[solver]") {
 }
 
 TEST_CASE("a body does not inherit the halved step of the one before", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto first = body_of<Rubber>(backend, strip());
     first.clamp(first.mesh().boundary("left"));
     first.set_gravity({0, -0.05});
@@ -140,7 +140,7 @@ TEST_CASE("a body does not inherit the halved step of the one before", "[solver]
 }
 
 TEST_CASE("a state that is not finite from the start is an error", "[solver]") {
-  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto const mesh = strip();
     auto body = body_of<Rubber>(backend, mesh);
     // A node pushed through its elements: the law is not defined there.

@@ -62,7 +62,7 @@ void noise_keeps_energy(B const& backend, double cells) {
 }
 
 TEST_CASE("no energy creeps in where a block hits a wall", "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     SECTION("neo-Hookean") { impact_keeps_energy<Square<NeoHookean>>(backend, 2); }
     SECTION("stable neo-Hookean") { impact_keeps_energy<Square<StableNeoHookean>>(backend, 4); }
     SECTION("corotated") { impact_keeps_energy<Square<Corotated>>(backend, 4); }
@@ -70,7 +70,7 @@ TEST_CASE("no energy creeps in where a block hits a wall", "[solver]") {
 }
 
 TEST_CASE("no energy creeps in from noise", "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     SECTION("Saint Venant-Kirchhoff") {
       noise_keeps_energy<Square<SaintVenantKirchhoff>>(backend, 0.3);
     }
@@ -79,7 +79,7 @@ TEST_CASE("no energy creeps in from noise", "[solver]") {
 }
 
 TEST_CASE("the step shrinks while a block is compressed, before its energy grows", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {16, 4}});
     auto body = gel_body<Square<NeoHookean>>(backend, mesh);
     body.hold(mesh.boundary("left"), 1);
@@ -106,7 +106,7 @@ TEST_CASE("the step shrinks while a block is compressed, before its energy grows
 }
 
 TEST_CASE("rough motion at a stable step is not taken for a blow-up", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     // The highest mode: at nine tenths of the stable step its total energy swings by a factor of 5.
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     for (double fraction : {0.9, 0.94}) {
@@ -158,7 +158,7 @@ void touched_run(B const& backend, Touch touch, double fraction, double peak) {
 }
 
 TEST_CASE("a state that is touched again and again does not blind the check", "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {16, 4}});
     auto body = gel_body<Square<Hooke>>(backend, mesh);
     body.clamp(mesh.boundary("left"));
@@ -177,7 +177,7 @@ TEST_CASE("a state that is touched again and again does not blind the check", "[
 }
 
 TEST_CASE("without its thresholds the check would miss a blow-up", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const run = [&](CentralDifferenceOptions options) {
       auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
       auto body = gel_body<Square<Hooke>>(backend, mesh);
@@ -206,7 +206,7 @@ TEST_CASE("without its thresholds the check would miss a blow-up", "[solver]") {
 }
 
 TEST_CASE("what leapfrog keeps is compared with the start, however slowly it grows", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     // A dashpot of negative rate, as it were: each call adds a ten-thousandth without being booked.
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     auto body = gel_body<Square<Hooke>>(backend, mesh);

@@ -48,7 +48,7 @@ void check_ledger(B const& backend, Begin const& begin, Each const& each, double
 }
 
 TEST_CASE("gravity and damping are booked", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     check_ledger(backend, nothing, nothing_each);
     for (double rate : {0.1, 10.0, 1000.0}) {
       CAPTURE(rate);
@@ -59,7 +59,7 @@ TEST_CASE("gravity and damping are booked", "[solver]") {
 }
 
 TEST_CASE("the work of driven nodes is booked", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const of_time = [](double t) -> Point<2> { return {0.02 * std::sin(9 * t), 0.1 * t * t}; };
     auto const of_place = [](Point<2> const& x, double t) -> Point<2> {
       return {0.1 * x[1] * std::sin(7 * t), 0.03 * t};
@@ -76,14 +76,14 @@ TEST_CASE("the work of driven nodes is booked", "[solver]") {
 }
 
 TEST_CASE("the work of a pressure that follows its surface is booked", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     check_ledger(
         backend, [](auto& body) { body.press(body.mesh().boundary("top"), 300); }, nothing_each);
   });
 }
 
 TEST_CASE("the work of loads that are set between steps is booked", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     check_ledger(backend, nothing, [](auto& body, int) {
       body.set_load(20, {3 * std::sin(11 * body.time()), 5 * body.time()});
     });
@@ -98,7 +98,7 @@ TEST_CASE("the work of loads that are set between steps is booked", "[solver]") 
 }
 
 TEST_CASE("what a user changes of the state is booked", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     SECTION("velocities") {
       check_ledger(backend, nothing, [](auto& body, int k) {
         if (k % 30 != 10) return;

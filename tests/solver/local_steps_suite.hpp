@@ -405,7 +405,7 @@ TEST_CASE("elements that move to a stiffer law take its level before they step",
 }
 
 TEST_CASE("a run with local steps goes on from a file with the same bits", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<std::tuple<Patches<1>, MainBackend>>([]<class B>(B const& backend) {
     auto const make = [&] {
       auto body = split_strip<Rubber>(backend);
       body.set_gravity({0, -2});
@@ -431,7 +431,7 @@ TEST_CASE("a run with local steps goes on from a file with the same bits", "[sol
 }
 
 TEST_CASE("a macro step that goes wrong is rolled back", "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = split_strip<Rubber>(backend);
     body.set_gravity({0, -1});
     LocalSteps step{{.check_interval = 16}};
@@ -478,7 +478,7 @@ TEST_CASE("a motion that throws within a macro step leaves the last whole one", 
 }
 
 TEST_CASE("an integrator takes over from another one", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = split_strip<Rubber>(backend);
     body.set_gravity({0, -1});
     LocalSteps local;
@@ -510,7 +510,7 @@ TEST_CASE("options of local steps that cannot be meant are refused", "[solver]")
 }
 
 TEST_CASE("with one level local steps are central differences", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = shaken(mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}}), 0.02);
     auto const make = [&] {
       auto body = body_of<Rubber>(backend, mesh, gel);

@@ -43,14 +43,14 @@ void check_frequencies(B const& backend) {
 }
 
 TEST_CASE("a bar of lumped masses has its frequencies", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     check_frequencies<Formulation<Quad4, Gauss<2>, Hooke>>(backend);
     check_frequencies<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend);
   });
 }
 
 TEST_CASE("a bar swings at the frequency of its mode and step", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using F = Formulation<Quad4, Gauss<2>, Hooke>;
     int const n = 8;
     auto const mesh = bar<Quad4>(n);

@@ -49,17 +49,17 @@ void check_uniform(B const& backend, Put law) {
 }
 
 TEST_CASE("a mesh refined everywhere has the equilibrium of the finer mesh", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     check_uniform<Quad4>(backend, Put::rubber);
     check_uniform<Quad4>(backend, Put::linear);
   });
   // Red triangles keep the direction of their diagonals, so that they are those of the finer grid.
-  on_each_backend<DoubleBackends>(
+  on_each_backend<MainAlone>(
       []<class B>(B const& backend) { check_uniform<Tri3>(backend, Put::rubber); });
 }
 
 TEST_CASE("more freedom never raises the potential energy of an equilibrium", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
       auto body = cantilever<Tri3>(backend, 1, Put::rubber);
       Random random(seed);
@@ -88,7 +88,7 @@ TEST_CASE("more freedom never raises the potential energy of an equilibrium", "[
 
 TEST_CASE("the assembled matrix is that of the tangent products with hanging nodes too",
           "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = plane_body(backend, mixed_mesh(3));
     Random random(5);
     for (int k = 0; k < 2; ++k) refine(body, random_marks(body, random, 5));
@@ -112,7 +112,7 @@ TEST_CASE("the assembled matrix is that of the tangent products with hanging nod
 }
 
 TEST_CASE("a load at a hanging node pulls at its masters", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const loaded = [&](auto const& load) {
       auto body = cantilever<Quad4>(backend, 1, Put::rubber);
       refine(body, {{5}});
@@ -148,7 +148,7 @@ TEST_CASE("a load at a hanging node pulls at its masters", "[solver]") {
 }
 
 TEST_CASE("a hanging node cannot be held or driven", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = cantilever<Quad4>(backend, 1, Put::rubber);
     refine(body, {{5}});
     Index const hanging = (*hanging_nodes(body.mesh()))[0].node;

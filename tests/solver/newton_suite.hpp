@@ -37,7 +37,7 @@ double imbalance(TheBody& body) {
 }
 
 TEST_CASE("a strip whose end is driven takes the confined stretch", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = strip();
     for (int load_steps : {1, 4}) {
       auto body = body_of<Rubber>(backend, mesh);
@@ -65,7 +65,7 @@ TEST_CASE("a strip whose end is driven takes the confined stretch", "[solver]") 
 }
 
 TEST_CASE("an end that is driven far arrives in load steps", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = strip();
     auto body = body_of<Rubber>(backend, mesh);
     body.hold(all_nodes(mesh), 2);
@@ -86,7 +86,7 @@ TEST_CASE("an end that is driven far arrives in load steps", "[solver]") {
 }
 
 TEST_CASE("the load does work twice the energy that a linear body stores", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of<Linear>(backend, strip());
     body.clamp(body.mesh().boundary("left"));
     body.set_load(26, {0.02, -0.01});
@@ -104,7 +104,7 @@ TEST_CASE("the load does work twice the energy that a linear body stores", "[sol
 }
 
 TEST_CASE("load steps lead to the same equilibrium", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const solved = [&](int load_steps) {
       auto body = body_of<Rubber>(backend, strip());
       body.clamp(body.mesh().boundary("left"));
@@ -124,7 +124,7 @@ TEST_CASE("load steps lead to the same equilibrium", "[solver]") {
 }
 
 TEST_CASE("a static solution leaves velocities and time alone", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, strip());
     body.clamp(body.mesh().boundary("left"));
     body.set_gravity({0, -0.05});
@@ -160,7 +160,7 @@ TEST_CASE("bodies in single precision find the same equilibrium", "[solver]") {
 }
 
 TEST_CASE("a body that is not held enough has no static solution", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     for (bool in_balance : {false, true}) {
       INFO((in_balance ? "loads in balance" : "gravity"));
       auto body = body_of<Rubber>(backend, strip());

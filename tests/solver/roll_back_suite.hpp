@@ -26,7 +26,7 @@ inline auto turning_rules() {
 }
 
 TEST_CASE("statistics and ledger are right after roll-backs", "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     int retries = 0;
     for (double fraction : {1.5, 2.0, 3.0, 4.0, 6.0}) {
       CAPTURE(fraction);
@@ -102,7 +102,7 @@ auto observed(TheBody& body) {
 }
 
 TEST_CASE("roll-back brings back all that a run changes", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     Body body{backend, mesh, gel, Group<Rubber>{},
               Group<Viscous>{typename Viscous::template law<double>{
@@ -166,7 +166,7 @@ auto loaded_run(B const& backend, double dt_over_stable, double& dt, int& retrie
 
 TEST_CASE("a call that is rolled back behind its begin says so, and its caller sets loads anew",
           "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     double dt = 0;
     int retries = 0, none = 0;
     bool told = false, told_again = false;
@@ -183,7 +183,7 @@ TEST_CASE("a call that is rolled back behind its begin says so, and its caller s
 }
 
 TEST_CASE("a long call redoes inside itself what it rolls back", "[solver]") {
-  on_each_backend<std::tuple<MainBackend>>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = body_of<Rubber>(backend, gel_mesh(), gel);
     body.clamp(body.mesh().boundary("left"));
     body.set_gravity({0, -1});
@@ -209,7 +209,7 @@ void check_alike(TheBody& a, TheBody& b) {
 }
 
 TEST_CASE("a motion that throws leaves the last whole step, from which a run goes on", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     bool fails = true;
     auto const driven = [&](Motion<2> motion) {
@@ -250,7 +250,7 @@ struct Failing {
 };
 
 TEST_CASE("a criterion that throws leaves a body from which a run goes on", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     bool fails = false;
     auto const rules = [&] {
       return Adaptation{when<Linear>(Failing{&fails}).above(0.02).template become<Turning>(),
@@ -286,7 +286,7 @@ TEST_CASE("a criterion that throws leaves a body from which a run goes on", "[so
 #endif
 
 TEST_CASE("a listener that throws leaves a refined body from which a run goes on", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const make = [&] {
       auto body =
           body_of<Rubber>(backend, mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}}), gel);
@@ -312,7 +312,7 @@ TEST_CASE("a listener that throws leaves a refined body from which a run goes on
 }
 
 TEST_CASE("a state that turns NaN is rolled back, or is an error that says where", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
     auto body = body_of<Rubber>(backend, mesh, gel);
     body.clamp(mesh.boundary("left"));
@@ -373,7 +373,7 @@ std::array<double, 3> steps_around_trouble(TheBody& body, Integrator& integrate,
 
 TEST_CASE("a step that was halved gets longer again when all has been well for long enough",
           "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const make = [&] {
       auto body =
           body_of<Linear>(backend, mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}}), gel);

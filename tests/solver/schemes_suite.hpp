@@ -91,7 +91,7 @@ struct Dense {
 };
 
 TEST_CASE("each scheme takes the steps of its formulas", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const damping = GENERATE(0.0, 3e-3);
     auto const method = GENERATE(LinearMethod::direct, LinearMethod::matrix_free);
     double const h = 2e-3;
@@ -277,7 +277,7 @@ TEST_CASE("runs with steps by their error are saved and go on with the same bits
 }
 
 TEST_CASE("the motion of a viscous body is that of short explicit steps", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Group<Gel> const gel{
         KelvinVoigt<NeoHookean>::law<double>{NeoHookean<double>::from({1e5, 0.3, 1000}), 2e3}};
     auto by_bdf = beam<Gel>(backend, gel), by_newmark = beam<Gel>(backend, gel),
@@ -311,7 +311,7 @@ TEST_CASE("backward Euler stands steps of hundreds of stable ones", "[solver]") 
 }
 
 TEST_CASE("an explicit run and an implicit one exchange states", "[solver][state]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto mixed = beam<Rubber>(backend), plain = beam<Rubber>(backend);
     double const h = 1e-4;
     for (int k = 0; k < 5; ++k) {

@@ -76,7 +76,7 @@ TEST_CASE("driven nodes and hanging ones are where they are with a matrix", "[so
 }
 
 TEST_CASE("curved solids rest without a matrix", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     compare<B>([&] {
       Body body{backend, mesh::box<Tet10>({.size = {1, 0.5, 0.5}, .cells = {2, 1, 1}}),
                 Elastic{2e5, 0.3, 1000}, Group<Solid>{}};
@@ -88,7 +88,7 @@ TEST_CASE("curved solids rest without a matrix", "[solver]") {
 }
 
 TEST_CASE("viscous laws rest without a matrix as after all time", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Group<Viscous> const group{
         Prony<NeoHookean, 1>::law<double>{NeoHookean<double>::from({2e5, 0.3, 1000}), {0.5}, {1}}};
     compare<B>([&] {
@@ -100,7 +100,7 @@ TEST_CASE("viscous laws rest without a matrix as after all time", "[solver]") {
 }
 
 TEST_CASE("what cannot be solved without a matrix is told, and the body stays", "[solver]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     NewtonOptions const without{.linear = LinearMethod::matrix_free};
     auto body = clamped_sheet(backend, Group<Rubber>{});
     body.set_gravity({0, -4});

@@ -90,7 +90,11 @@ int main(int count, char** arguments) {
       return 2;
     }
   }
-  std::apply([&](auto const&... backend) { (run_on(backend, scene, options), ...); },
-             test::DoubleBackends{});
+#if defined(STORM_ON_MAIN_BACKEND)
+  using Backends = test::MainAlone;
+#else
+  using Backends = test::DoubleBackends;
+#endif
+  std::apply([&](auto const&... backend) { (run_on(backend, scene, options), ...); }, Backends{});
   return failed ? 1 : 0;
 }

@@ -28,14 +28,34 @@ using Backends = std::tuple<Reference<T>>;
 using MainBackend = Reference<double>;
 #endif
 
+/// One that reads a host's memory.
+#if defined(__CUDACC__)
+using HostBackend = Reference<double>;
+#else
+using HostBackend = MainBackend;
+#endif
+
 using DoubleBackends = Backends<double>;
+/// The main one in double precision, for what stands on the verbs alone, which tests/backend compares. A build
+/// without OpenMP has the serial one there.
+using MainAlone = std::tuple<MainBackend>;
+/// Whether a suite over several elements or meshes runs all of them on a backend; on the others a few will do.
+template <class B>
+#if defined(__CUDACC__)
+inline constexpr bool runs_all = true;
+#else
+inline constexpr bool runs_all = std::same_as<B, MainBackend>;
+#endif
 /// Each backend in each precision: what tests backends themselves.
 using AllPairs = decltype(std::tuple_cat(Backends<float>{}, Backends<double>{}));
 /// Each backend and each precision, on CPUs in pairs.
 #if defined(_OPENMP) && !defined(__CUDACC__)
 using AllBackends = std::tuple<Reference<float>, OpenMP<double>>;
+/// The same for what neither rounds nor stands on more than the verbs: on CPUs the main one alone.
+using FewBackends = MainAlone;
 #else
 using AllBackends = AllPairs;
+using FewBackends = AllPairs;
 #endif
 
 }  // namespace pliant::test

@@ -85,6 +85,10 @@ using FewFormulations = FewQuadraticFormulations;
 #elif defined(SPECIAL_FORMULATIONS)
 using AllFormulations = SpecialFormulations;
 using FewFormulations = FewSpecialFormulations;
+#elif defined(FEW_FORMULATIONS_ALONE)
+using AllFormulations = FewLinearFormulations;
+using FewFormulations =
+    List<Formulation<Tri3, Gauss<1>, NeoHookean>, Formulation<Hex8, Gauss<2>, NeoHookean>>;
 #else
 using AllFormulations = LinearFormulations;
 using FewFormulations = FewLinearFormulations;
@@ -155,14 +159,52 @@ void on_few_formulations(Visit const& visit) {
   }(static_cast<Bs const*>(nullptr));
 }
 
-/// A body of one formulation.
-template <class F, Backend B, class M>
-auto body_of(B const& backend, M const& mesh, Elastic const& material = soft) {
+/// A group with the law and the values of its sample.
+template <class F>
+Group<F> sample_group() {
   using S = Sample<typename F::template law<double>>;
   Group<F> group;
   if constexpr (requires { S::law; }) group.law = S::law;
   if constexpr (requires { S::values; }) group.values = {S::values};
-  return Body{backend, mesh, material, group};
+  return group;
+}
+/// A body of one formulation.
+template <class F, Backend B, class M>
+auto body_of(B const& backend, M const& mesh, Elastic const& material = soft) {
+  return Body{backend, mesh, material, sample_group<F>()};
+}
+
+/// Those of a list on one element, as a tuple of groups.
+template <class E, class F>
+auto group_if_on() {
+  if constexpr (std::same_as<typename F::element, E>)
+    return std::tuple{sample_group<F>()};
+  else
+    return std::tuple{};
+}
+template <class E, class... Fs>
+auto groups_on(List<Fs...>) {
+  return std::tuple_cat(group_if_on<E, Fs>()...);
+}
+/// A body all of whose elements are in one group, with groups for all formulations on this element of the list, so that
+/// the compiler makes one body for them.
+template <class F, class L, Backend B, class M>
+auto body_among(B const& backend, M const& mesh) {
+  auto body = std::apply(
+      [&](auto const&... group) {
+        return Body{backend, mesh, soft, group...};
+      },
+      groups_on<typename F::element>(L{}));
+  std::vector<Index> all(mesh.template elements<typename F::element>().size());
+  for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+  body.template assign<F>(all);
+  return body;
+}
+
+/// The same among those that on_each_formulation visits.
+template <class F, Backend B, class M>
+auto body_among_all(B const& backend, M const& mesh) {
+  return body_among<F, formulations_on<B>>(backend, mesh);
 }
 
 /// The law of a body of one formulation at a point of any element, at rest so far.

@@ -19,6 +19,12 @@ using OfAllElements =
          Formulation<Wedge6, Gauss<2>, NeoHookean>>;
 using OfSolids =
     List<Formulation<Tet4, Gauss<1>, NeoHookean>, Formulation<Hex8, Gauss<2>, NeoHookean>>;
+/// Those whose forces are compared with the serial backend's: all of a GPU, and on CPUs hanging nodes that take from
+/// two others, from three, and from four.
+using Compared = std::conditional_t<
+    runs_all<Reference<double>>, OfAllElements,
+    List<Formulation<Tri3, Gauss<1>, NeoHookean>, Formulation<Quad8, Gauss<3>, NeoHookean>,
+         Formulation<Tet4, Gauss<1>, NeoHookean>, Formulation<Hex8, Gauss<2>, NeoHookean>>>;
 template <class B>
 using elements_on = std::conditional_t<std::same_as<B, MainBackend>, OfAllElements, OfSolids>;
 
@@ -137,7 +143,7 @@ TEST_CASE("a changed mesh does not resist rigid motion, and forces on it balance
 }
 
 TEST_CASE("forces on a changed mesh are the same on all backends", "[topology]") {
-  on_elements<DoubleBackends>([]<class B, class F>(Case<B, F>) {
+  on_each_of<MainBackend>(Compared{}, []<class B, class F>(Case<B, F>) {
     constexpr int dim = F::dim;
     auto const changed = [](auto const& backend) {
       auto body = body_of<F>(backend, initial_mesh<typename F::element>());
@@ -165,7 +171,7 @@ TEST_CASE("forces on a changed mesh are the same on all backends", "[topology]")
 TEST_CASE(
     "the stable step bounds the highest frequency of a changed mesh, whose masses are positive",
     "[topology]") {
-  on_each_of<Reference<double>>(OfAllElements{}, []<class B, class F>(Case<B, F>) {
+  on_each_of<HostBackend>(OfAllElements{}, []<class B, class F>(Case<B, F>) {
     constexpr int dim = F::dim;
     auto body = body_of<F>(B{}, initial_mesh<typename F::element>());
     Random random(13);

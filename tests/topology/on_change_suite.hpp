@@ -41,7 +41,7 @@ struct Simulator {
 };
 
 TEST_CASE("a simulator's own arrays follow the mesh of a body", "[topology]") {
-  on_plane_meshes<DoubleBackends>(5, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);
     Simulator simulator(mesh);
     body.on_change([&](TopologyChange<M> const& change) {
@@ -103,7 +103,7 @@ struct Longer {
 };
 
 TEST_CASE("a listener is called once for a refinement by rules", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Tri3>(5);
     auto body = plane_body(backend, mesh);
     Adaptation adapt{when<TriRubber>(Longer{}).above(0.2).refine({.max_level = 1})};
@@ -120,7 +120,7 @@ TEST_CASE("a listener is called once for a refinement by rules", "[topology]") {
 }
 
 TEST_CASE("pressures and conditions follow a refinement at work", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {3, 3}});
     auto body = body_of<QuadRubber>(backend, mesh);
     body.clamp(mesh.boundary("bottom"));
@@ -148,7 +148,7 @@ TEST_CASE("pressures and conditions follow a refinement at work", "[topology]") 
 }
 
 TEST_CASE("a body of the mesh of a refined one has the same energy and forces", "[topology]") {
-  on_plane_meshes<DoubleBackends>(4, []<class B, class M>(B const& backend, M const& mesh) {
+  on_plane_meshes<MainAlone>(4, []<class B, class M>(B const& backend, M const& mesh) {
     auto refined = plane_body(backend, mesh);
     Random random(3);
     for (int k = 0; k < 3; ++k) refine(refined, random_marks(refined, random, 4));
