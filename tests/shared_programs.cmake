@@ -40,8 +40,9 @@ share(shared/elements
       formulation/coefficients mesh/check mesh/generators mesh/loads mesh/middles
       topology/transfer)
 share(shared/statics
-      body/pressure solver/assemble solver/implicit solver/implicit_state solver/schemes solver/static solver/static_loads
-      solver/static_report solver/without_matrix)
+      body/pressure solver/assemble solver/static solver/static_loads solver/static_report)
+share(shared/implicit
+      solver/implicit solver/implicit_state solver/schemes solver/without_matrix)
 share(shared/laws
       law/closed_forms law/derivatives law/fibres law/invariance law/inversion law/limits
       law/plane_stress law/plane_stress_tangents law/plane_stress_values law/precision

@@ -155,6 +155,12 @@ TEST_CASE("elements of nodes that the mesh has not are refused when its sides ar
   }
 }
 
+TEST_CASE("boundaries that are no sides are refused where elements are raised", "[mesh]") {
+  auto mesh = mesh::rectangle({.size = {1, 1}, .cells = {2, 2}});
+  std::swap(mesh.elements<Quad4>()[0][0], mesh.elements<Quad4>()[0][1]);
+  CHECK_THROWS_WITH(mesh::raised<Quad9>(mesh), says("mesh::raised: a facet of the boundary"));
+}
+
 TEST_CASE("sizes that make no mesh are refused", "[mesh]") {
   CHECK_THROWS_AS(mesh::rectangle({.size = {1, 0}, .cells = {2, 2}}), Error);
   CHECK_THROWS_AS(mesh::rectangle({.size = {1, NAN}, .cells = {2, 2}}), Error);

@@ -157,6 +157,25 @@ void touched_run(B const& backend, Touch touch, double fraction, double peak) {
   CHECK(kept_energy(body) < 0.1 * peak);  // from 0
 }
 
+TEST_CASE("a call says which of its steps were looked at", "[solver]") {
+  MainBackend const backend;
+  auto body = gel_body<Square<NeoHookean>>(backend, regular_mesh<Quad4>(2));
+  CentralDifference step{{.check_interval = 40}};
+  CHECK(step(body, 30).checked == 0);
+  CHECK(step(body, 30).checked == 40);
+  CHECK(step(body, 20).checked == 40);
+  CHECK(step(body, 1).checked == 80);
+
+  // Beyond the stable step it takes some steps until that is seen; they are not vouched for.
+  auto wild = gel_body<Square<NeoHookean>>(backend, regular_mesh<Quad4>(2));
+  wild.set_velocities(Random(1).field<2>(static_cast<std::size_t>(wild.nodes()), 1));
+  CentralDifference hasty{{.step = 40 * stable_step(wild), .watch_interval = 1 << 20}};
+  auto const done = hasty(wild, 200);
+  CHECK_FALSE(finite_state(wild));
+  CHECK(done.checked == 0);
+  CHECK(hasty(wild, 100).rolled_back);
+}
+
 TEST_CASE("a state that is touched again and again does not blind the check", "[solver]") {
   on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {16, 4}});

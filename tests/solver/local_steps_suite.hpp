@@ -343,6 +343,22 @@ TEST_CASE("fine elements have two rings of their level around them", "[solver]")
   CHECK(largest_excess(body, step) < 0.8 + 1e-9);
 }
 
+TEST_CASE("rounding of a body that is turned and at rest is no growth", "[solver]") {
+  auto const turned = [](auto const& step_with) {
+    auto body =
+        body_of<Rubber>(MainBackend{}, shaken(regular_mesh<Quad4>(4), 0.1, 3), {2e6, 0.3, 1e3});
+    double const c = std::cos(2.1), s = std::sin(2.1);
+    body.set_displacements(
+        uniform(body.mesh().nodes, Tensor<double, 2>{{{c - 1, -s}, {s, c - 1}}}));
+    auto step = step_with;
+    step(body, 3000);
+    CHECK(step.retries() == 0);
+    CHECK(largest(body.velocities()) < 1e-6);
+  };
+  turned(LocalSteps{});
+  turned(CentralDifference{});
+}
+
 TEST_CASE("levels follow elements that stiffen, between macro steps", "[solver]") {
   on_each_backend<std::tuple<Patches<1>, MainBackend>>([]<class B>(B const& backend) {
     auto body = split_strip<Rubber>(backend);

@@ -105,6 +105,21 @@ auto pulled_strip(int load_steps) {
   return solve_static(body, {.load_steps = load_steps});
 }
 
+TEST_CASE("a saddle is told from rest", "[solver]") {
+  // A slender column that is pressed together, and stays straight by its symmetry.
+  auto const pressed = [](double by, LinearMethod method) {
+    auto const mesh = mesh::rectangle({.size = {1, 0.1}, .cells = {10, 2}});
+    auto body = body_of<Rubber>(Reference<double>{}, mesh);
+    body.clamp(mesh.boundary("left"));
+    body.drive(mesh.boundary("right"), [by](double) { return Point<2>{-by, 0}; });
+    return solve_static(body, {.linear = method}).indefinite;
+  };
+  for (auto method : {LinearMethod::automatic, LinearMethod::direct}) {
+    CHECK_FALSE(pressed(0.005, method));
+    CHECK(pressed(0.15, method));
+  }
+}
+
 TEST_CASE("a linear problem takes one factorisation", "[solver]") {
   CHECK(pulled_strip<Linear>(1).factorisations == 1);
   auto const report = pulled_strip<Linear>(5);

@@ -41,6 +41,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   std::vector<double> mass_list;                // kg, in the user's order, slaves' handed on
+  double mass_in_all = 0;                       // kg
   std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
   Index nodes = 0;
   Point<dim> middle{};  // m, of the box around the body: `rest` is relative to it
@@ -211,6 +212,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     (add_mass<Es>(topology.mesh, density), ...);
     topology.interpolation.hand_masses(
         [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
+    for (double m : mass_list) mass_in_all += m;
   }
   template <Element E>
   void add_mass(Mesh<Es...> const& mesh, double density) {

@@ -29,6 +29,14 @@ struct CheckedEnergy {
   double total, kept;
 };
 
+/// Energies that rounding makes of a body that is at rest, J: of elements of Young's modulus that are turned.
+template <class Parts>
+double rounding_energy(Parts const& parts) {
+  double const volume = parts.layout.mass_in_all / parts.material.density;
+  return 64 * double{std::numeric_limits<typename Parts::T>::epsilon()} * parts.material.young *
+         volume;
+}
+
 /// The next check has nothing to compare with.
 inline void forget_energies(IntegratorState& own) {
   own.first_energy = own.last_energy = std::numeric_limits<double>::quiet_NaN();
@@ -50,6 +58,7 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
   auto& own = state.integrator;
   double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
   double const kinetic = kinetic_energy_of(parts), present = strain + kinetic;
+  double const least = std::max(present, rounding_energy(parts));
   double const booked = booked_energy(parts);
   auto const [total, kept] = steps.energy(present + potential_energy_of(parts), booked);
   bool const watched =
@@ -57,9 +66,9 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
   // An unstable step lets the total grow while what the steps keep stays; a state that stiffens faster than the
   // step follows adds to that too. Comparisons with NaN, before the first check, are false.
   bool const grew =
-      watched && ((total > own.last_energy + check.growth * present &&
-                   !steps.explains(check.growth * present)) ||
-                  kept > own.first_energy + check.drift * std::max(own.scale, present));
+      watched &&
+      ((total > own.last_energy + check.growth * least && !steps.explains(check.growth * least)) ||
+       kept > own.first_energy + check.drift * std::max(own.scale, least));
   if (std::isfinite(total) && !grew) {
     own.scale = std::max(own.scale, present);
     own.last_energy = total;
