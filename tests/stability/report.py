@@ -16,7 +16,7 @@ folder, source, expected = sys.argv[1:]
 OUTCOMES = ["works", "reports", "SILENTLY WRONG", "HANGS", "CRASHES"]
 COLOURS = ["#4c9f70", "#e3b23c", "#c1292e", "#7b2d8b", "#111111"]
 INTEGRATORS = ["CentralDifference", "LocalSteps", "implicit", "BackwardEuler", "static"]
-SHORT = ["C", "L", "I", "S"]
+SHORT = ["C", "L", "I", "B", "S"]
 
 
 class Row:
