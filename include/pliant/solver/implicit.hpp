@@ -36,7 +36,7 @@ struct ImplicitReport {
   double error = 0;        // m: of the last step, as it was told
   int iterations = 0;      // of Newton's method, in all
   int factorisations = 0;  // of matrices, in all
-  LinearReport linear;     // what the linear systems took
+  LinearReport linear{};   // what the linear systems took
   double residual = 0;     // N, of the last step
   LeastJacobian
       least_J{};  // det F where it is least at the ends of these steps, at points of elements and between
