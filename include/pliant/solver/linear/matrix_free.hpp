@@ -122,7 +122,7 @@ KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backen
   using Const = NodeField<T const, dim>;
   Scalars const s{arrays.scalars.data()};
   auto const dot_into = [&](Scalars::Name name, auto const& one, auto const& other) {
-    backend.add_sum(n, DotAt<T, dim>{{one.data}, {other.data}}, s.values + name);
+    backend.add_sum(n, DotAt<T, dim>{{one.data}, {other.data}}, &s[name]);
   };
   auto const with_columns = [&](auto functor) {
     for (int k = 0; k < dim; ++k)
@@ -156,7 +156,7 @@ KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backen
     // The functors live on in the recording.
     auto const iterate = [&parts, a, backend, n, s, p, q, r, z, step] {
       auto const dot = [&](Scalars::Name name, auto const& one, auto const& other) {
-        backend.add_sum(n, DotAt<T, dim>{{one.data}, {other.data}}, s.values + name);
+        backend.add_sum(n, DotAt<T, dim>{{one.data}, {other.data}}, &s[name]);
       };
       for (int k = 0; k < stretch; ++k) {
         backend.for_each(1, BeginIteration{s});

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cmath>
+
 #include <pliant/backend/backend.hpp>
+#include <pliant/constraint/condition.hpp>
 
 // Sums and products of vectors over nodes, in the memory of a backend.
 namespace pliant::detail {
