@@ -1,7 +1,7 @@
 #pragma once
 
-// The solvers on sparse matrices, all of which need Eigen alone: static equilibrium, implicit dynamics, and
-// the matrices by themselves. Not part of pliant.hpp, for the sake of those that step explicitly.
+// The solvers of systems of equations, with sparse matrices, for which Eigen is enough, or without: static equilibrium,
+// implicit dynamics, and the matrices by themselves. Not part of pliant.hpp, for the sake of those that step explicitly.
 #include <pliant/solver/assemble.hpp>
 #include <pliant/solver/assemble_mass.hpp>
 #include <pliant/solver/implicit.hpp>

@@ -117,6 +117,7 @@ with open(f"{folder}/RESULTS.md", "w") as out:
     say("*works* when what its scene asks in cases.cpp holds: displacements within 1% of Reference in double at a quarter of")
     say("the step, or an invariant kept to the bound that stands in cases.cpp; values are finite always. It *reports* when an Error")
     say("says in words what failed and the body that is left is finite, or when a roll-back is told and what is asked does not hold.")
+    say("Told, too, are a saddle, by the report of solve_static, and steps that an explicit integrator says it has not looked at, where later calls go back.")
     say("Else it is silently wrong, hangs or crashes. Each case is a process of its own.")
     say("*det F* tells of explicit steps whose body is folded somewhere in the end, which they do not look for: laws that take")
     say("inversion go on. Steps are half the stable one, after sudden starts a tenth; implicit ones half of these.\n")

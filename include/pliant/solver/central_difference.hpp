@@ -23,7 +23,7 @@ struct CentralDifferenceOptions {
   /// What counts as a blow-up: growth of the total energy since the last check, over strain and kinetic
   /// energy, which beyond the stable step is many times (at safety 0.94 that of the highest mode swings
   /// by 0.9 of its largest), and more than the loads' accelerations explain; and growth of the energy that leapfrog keeps since the start, over the
-  /// largest of these so far. The work of loads, pressures, driven nodes and damping is booked, and no
+  /// largest of these so far; energies below what rounding makes of a body at rest, 64 ε E V, count as that much. The work of loads, pressures, driven nodes and damping is booked, and no
   /// growth. Not looked at with laws that have internal variables, which may give back what the strain
   /// energy does not count, nor while there are driven nodes or pressures, whose work would hide it: then
   /// only a state that is not finite is a blow-up.
