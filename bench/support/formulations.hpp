@@ -7,9 +7,10 @@
 // The formulations that are timed: every element with every law.
 namespace pliant::bench {
 
-/// The quadrature that integrates an element's forces in practice.
+/// The quadrature that integrates an element's forces in practice: as many points per direction as nodes, on simplices
+/// as many as the degree asks for.
 template <Element E>
-using UsualPoints = std::conditional_t<LinearSimplex<E>, Gauss<1>, Gauss<2>>;
+using UsualPoints = Gauss<E::degree + (SimplexCell<typename E::cell> ? 0 : 1)>;
 
 template <Element E, template <class> class L>
 using Usual = Formulation<E, UsualPoints<E>, L>;

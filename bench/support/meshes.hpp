@@ -20,7 +20,7 @@ M warped(M mesh) {
   return mesh;
 }
 
-/// `cells` along each edge; a Tri3 mesh has two elements per cell, a Tet4 mesh six.
+/// `cells` along each edge.
 template <Element E>
 Mesh<E> mesh_of(int cells) {
   if constexpr (E::dim == 2)
@@ -29,13 +29,14 @@ Mesh<E> mesh_of(int cells) {
     return warped(mesh::box<E>({.size = {1, 1, 1}, .cells = {cells, cells, cells}}));
 }
 
+/// A square has two triangles; a cube six tetrahedra, six pyramids or two wedges.
 template <Element E>
 long element_count(int cells) {
+  using Cell = typename E::cell;
+  constexpr bool in_six = std::same_as<Cell, Tetrahedron> || std::same_as<Cell, Pyramid>;
+  constexpr bool in_two = std::same_as<Cell, Triangle> || std::same_as<Cell, Wedge>;
   long const n = cells;
-  if constexpr (E::dim == 2)
-    return n * n * (E::nodes == 3 ? 2 : 1);
-  else
-    return n * n * n * (E::nodes == 4 ? 6 : 1);
+  return (E::dim == 2 ? n * n : n * n * n) * (in_six ? 6 : in_two ? 2 : 1);
 }
 
 /// The cells along an edge that come nearest to a number of elements.

@@ -32,7 +32,7 @@ void add(std::string const& what, std::string const& backend, int cells, Run run
 /// The cells along an edge of the usual mesh: large enough to leave the caches, and to fill a GPU.
 template <Element E, class B>
 int usual_cells() {
-  return cells_for<E>(on_gpu<B> ? 1e6 : 2e5);
+  return cells_for<E>((on_gpu<B> ? 1e6 : 2e5) / (E::nodes >= 20 ? 8 : 1));
 }
 /// Where starting a loop counts: within the caches of a CPU; where a GPU has little to hide latency.
 template <Element E, class B>

@@ -210,6 +210,7 @@ class OpenMP {
     std::fill_n(out.data + std::ptrdiff_t{node_stride} * first,
                 std::ptrdiff_t{node_stride} * (last - first), T(0));
     detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
+      detail::prefetch_next<Nodes>(elements, m, out, fields...);
       auto const values =
           call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int a = 0; a < Nodes; ++a) {

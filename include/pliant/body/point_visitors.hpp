@@ -11,10 +11,9 @@ template <class F, class S, class Visit>
 PLIANT_HOST_DEVICE void for_each_point(Nodal<typename F::element, S> const& rest,
                                        Nodal<typename F::element, S> const& u, Visit const& visit) {
   using E = typename F::element;
-  static constexpr auto table = tabulate<E, typename F::quadrature, builtin_scalar<S>>();
-  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
-  for (int q = 0; q < F::points; ++q)
-    visit(q, RestMap<E, S>::at(x, table, q).gradient(v, table, q));
+  visit_points<typename F::quadrature>([&](int q, auto, auto const&, auto const& h)
+                                           PLIANT_INLINE { visit(q, h); },
+                                       Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u));
 }
 
 /// Brings internal variables up to the displacements u.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/element/element.hpp>
+#include <pliant/element/linear.hpp>
 
 namespace pliant {
 
@@ -52,6 +52,13 @@ struct Serendipity : ElementOn<Cell, Cell::corners + static_cast<int>(Cell::edge
     return n;
   }
 };
+
+/// An element on a segment, square or cube whose shape functions have its degree, at most, in each direction.
+template <class E>
+concept TensorElement =
+    Element<E> && TensorCell<typename E::cell> &&
+    (Multilinear<E> || std::derived_from<E, QuadraticLagrange<typename E::cell>> ||
+     std::derived_from<E, Serendipity<typename E::cell>>);
 
 struct Line3 : QuadraticLagrange<Segment> {
   static constexpr char const* name() { return "Line3"; }

@@ -2,6 +2,7 @@
 
 #include <pliant/element/quadratic_simplex.hpp>
 #include <pliant/formulation/coefficients.hpp>
+#include <pliant/formulation/tensor_coefficients.hpp>
 
 namespace pliant {
 
@@ -20,18 +21,26 @@ struct RestMap {
 
   template <class Table>
   PLIANT_HOST_DEVICE static RestMap at(Coefficients<E, S> const& rest, Table const& table, int q) {
-    Tensor<S, E::dim> const j = jacobian(rest, table, q);
-    Tensor<S, E::dim> const c = cofactor(j);
-    S det = j(0, 0) * c(0, 0);
-    for (int k = 1; k < E::dim; ++k) det = det + j(0, k) * c(0, k);
-    return {c, det, reciprocal(det)};
+    return of(jacobian(rest, table, q));
+  }
+  /// j: ∂X_i/∂ξ_k.
+  PLIANT_HOST_DEVICE static RestMap of(Tensor<S, E::dim> const& j) {
+    RestMap map{cofactor(j), j(0, 0), j(0, 0)};  // in place: copies would go through memory
+    map.volume = j(0, 0) * map.cofactors(0, 0);
+    for (int k = 1; k < E::dim; ++k) map.volume = map.volume + j(0, k) * map.cofactors(0, k);
+    map.inverse_volume = reciprocal(map.volume);
+    return map;
   }
 
   /// ∂v/∂X of a field at the same point.
   template <class Table>
   PLIANT_HOST_DEVICE Tensor<S, E::dim> gradient(Coefficients<E, S> const& v, Table const& table,
                                                 int q) const {
-    return inverse_volume * (v.gradient(table, q) * transpose(cofactors));
+    return gradient(v.gradient(table, q));
+  }
+  /// ∂v/∂X from ∂v_i/∂ξ_k.
+  PLIANT_HOST_DEVICE Tensor<S, E::dim> gradient(Tensor<S, E::dim> const& slopes) const {
+    return inverse_volume * (slopes * transpose(cofactors));
   }
 
  private:

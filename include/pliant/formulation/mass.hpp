@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/formulation/kinematics.hpp>
+#include <pliant/formulation/points.hpp>
 #include <pliant/quadrature/gauss.hpp>
 #include <pliant/quadrature/lobatto.hpp>
 
@@ -12,11 +12,10 @@ namespace pliant {
 template <Element E, class Q, class S>
 PLIANT_HOST_DEVICE S volume(Nodal<E, S> const& rest) {
   using T = builtin_scalar<S>;
-  static constexpr auto table = tabulate<E, Q, T>();
-  auto const x = Coefficients<E, S>::of(rest);
   S sum = S(0);
-  for (int q = 0; q < table.count; ++q)
-    sum = sum + RestMap<E, S>::at(x, table, q).volume * T(table.weight[q]);
+  visit_points<Q>([&](int, T weight, auto const& map)
+                      PLIANT_INLINE { sum = sum + map.volume * weight; },
+                  Coefficients<E, S>::of(rest));
   return sum;
 }
 

@@ -35,12 +35,9 @@ PLIANT_HOST_DEVICE void for_each_point_of(Nodal<typename F::element, S> const& r
                                           Visit const& visit) {
   using E = typename F::element;
   using T = builtin_scalar<S>;
-  static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-  auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
-  for (int q = 0; q < F::points; ++q) {
-    auto const map = RestMap<E, S>::at(x, table, q);
-    visit(q, map.volume * T(table.weight[q]), map.gradient(v, table, q));
-  }
+  visit_points<typename F::quadrature>([&](int q, T weight, auto const& map, auto const& h)
+                                           PLIANT_INLINE { visit(q, map.volume * weight, h); },
+                                       Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u));
 }
 
 /// Calls visit(q, volume, H, P) at each point of a formulation's rule, with the rest volume of the point (m³),

@@ -16,4 +16,10 @@ PLIANT_HOST_DEVICE constexpr void unroll(F const& f) {
   }(std::make_integer_sequence<int, N>());
 }
 
+/// n, unknown to the compiler: a loop to it is not unrolled.
+PLIANT_HOST_DEVICE int unknown(int n) {
+  asm("" : "+r"(n));
+  return n;
+}
+
 }  // namespace pliant

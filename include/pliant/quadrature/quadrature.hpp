@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/element/element.hpp>
+#include <pliant/math/power.hpp>
 
 namespace pliant {
 
@@ -24,7 +25,8 @@ concept QuadratureOn = requires {
 template <Element E, class Q, class T>
 struct Tabulation {
   static constexpr int count = decltype(Q::template rule<typename E::cell>())::count;
-  T monomial[count][1 << E::dim];  // Π_{k∈b} ξ_k, b a set of directions as bits
+  static constexpr int exponents = E::degree + 1;  // of a direction: 0, 1, ... degree
+  T monomial[count][power(exponents, E::dim)];     // Π ξ_k^b_k at Σ b_k exponentsᵏ
   T shape[count][E::nodes];
   T gradient[count][E::nodes][E::dim];
   T weight[count];
@@ -37,9 +39,11 @@ PLIANT_HOST_DEVICE constexpr Tabulation<E, Q, T> tabulate() {
   for (int q = 0; q < rule.count; ++q) {
     Vector<double, E::dim> xi{};
     for (int k = 0; k < E::dim; ++k) xi[k] = rule.points[q][k];
-    for (int b = 0; b < 1 << E::dim; ++b) {
+    for (int b = 0; b < power(table.exponents, E::dim); ++b) {
       double product = 1;
-      for (int k = 0; k < E::dim; ++k) product *= b >> k & 1 ? xi[k] : 1;
+      for (int k = 0; k < E::dim; ++k)
+        for (int times = b / power(table.exponents, k) % table.exponents; times > 0; --times)
+          product *= xi[k];
       table.monomial[q][b] = static_cast<T>(product);
     }
     auto const shape = E::shape(xi);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <pliant/backend/dispatch.hpp>
@@ -17,6 +18,7 @@ struct PackMembers {
   using Scalar = Pack<T>;
   Index element[Scalar::lanes];
   int count;
+  std::span<Index const> next;  // the elements of the pack that follows
 
   /// The values of a field per element.
   template <class U, int C>
@@ -35,6 +37,8 @@ void for_each_pack_of(Patches<Nodes> const& elements, Index patch, F const& f) {
   for (std::size_t first = 0; first < members.size(); first += lanes) {
     PackMembers<T> m;
     m.count = static_cast<int>(std::min<std::size_t>(lanes, members.size() - first));
+    std::size_t const end = first + static_cast<std::size_t>(m.count);
+    m.next = members.subspan(end, std::min<std::size_t>(lanes, members.size() - end));
     for (int l = 0; l < lanes; ++l)
       m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
     f(GroupNumber<Group>{}, m);
@@ -46,6 +50,17 @@ void for_each_pack(Patches<Nodes> const& elements, Index patch, F const& f) {
   [&]<int... G>(std::integer_sequence<int, G...>) {
     (for_each_pack_of<G, T>(elements, patch, f), ...);
   }(std::make_integer_sequence<int, Groups>());
+}
+
+/// Asks for the rows of fields that the next pack works on, so that they are in the caches by then.
+template <int Nodes, class T, class... Fields>
+PLIANT_INLINE inline void prefetch_next(Patches<Nodes> const& elements, PackMembers<T> const& m,
+                                        Fields const&... fields) {
+  for (Index e : m.next) {
+    Index const* const nodes = elements.nodes(e);
+    for (int a = 0; a < Nodes; ++a)
+      (__builtin_prefetch(fields.data + std::ptrdiff_t{node_stride} * nodes[a]), ...);
+  }
 }
 
 /// The values of a field at the nodes of a pack's elements.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/formulation/kinematics.hpp>
+#include <pliant/formulation/points.hpp>
 #include <pliant/formulation/scheme/f_bar.hpp>
 
 namespace pliant {
@@ -28,7 +28,7 @@ class Projection {
   /// φ_m at point q.
   template <class Table>
   PLIANT_HOST_DEVICE static auto basis(int m, Table const& table, int q) {
-    return table.monomial[q][m == 0 ? 0 : 1 << (m - 1)];
+    return table.monomial[q][m == 0 ? 0 : power(Table::exponents, m - 1)];
   }
   template <class Table>
   PLIANT_HOST_DEVICE static S value(Polynomial const& p, Table const& table, int q) {
@@ -143,13 +143,13 @@ struct MeanDilatation {
     using T = builtin_scalar<S>;
     Mean<S> mean;
     auto integrals = Projection<E, S>::Polynomial::zero();
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S, G>::at(x, table, q);
-      S const share = map.volume * T(table.weight[q]);
-      S const here = Point<S, linear<L>>::dilatation_of(map.gradient(v, table, q));
-      mean.onto.add_weight(share, table, q);
-      mean.onto.add(integrals, share * here, table, q);
-    }
+    visit_points<typename F::quadrature, G>(
+        [&](int q, T weight, auto const& map, auto const& h) PLIANT_INLINE {
+          S const share = map.volume * weight;
+          mean.onto.add_weight(share, table, q);
+          mean.onto.add(integrals, share * Point<S, linear<L>>::dilatation_of(h), table, q);
+        },
+        x, v);
     mean.onto.factorise();
     mean.dilatation = mean.onto.nearest(integrals);
     return mean;
@@ -162,12 +162,12 @@ struct MeanDilatation {
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
     auto const mean_of = mean<L>(x, v, table);
     S sum = S(0);
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S, G>::at(x, table, q);
-      Point<S, linear<L>> const point(map.gradient(v, table, q),
-                                      mean_of.onto.value(mean_of.dilatation, table, q));
-      sum = sum + map.volume * T(table.weight[q]) * energy_density(at_point(law, q), point.h_bar);
-    }
+    visit_points<typename F::quadrature, G>(
+        [&](int q, T weight, auto const& map, auto const& h) PLIANT_INLINE {
+          Point<S, linear<L>> const point(h, mean_of.onto.value(mean_of.dilatation, table, q));
+          sum = sum + map.volume * weight * energy_density(at_point(law, q), point.h_bar);
+        },
+        x, v);
     return sum;
   }
 
@@ -184,21 +184,21 @@ struct MeanDilatation {
     Coefficients<E, S> slopes[Onto::size];
     for (auto& slope : slopes) slope = Coefficients<E, S>::zero();
     auto pressures = Onto::Polynomial::zero();
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S, G>::at(x, table, q);
+    auto const flux = [&](int q, T weight, auto const& map, auto const& h)
+                          PLIANT_INLINE -> Tensor<S, dim> {
       S const dilatation = Onto::value(mean_of.dilatation, table, q);
-      Point<S, linear<L>> const point(map.gradient(v, table, q), dilatation);
+      Point<S, linear<L>> const point(h, dilatation);
       auto const p = stress(at_point(law, q), point.h_bar);
       S const work = point.work(p);
       S const here = linear<L> ? work : work / (S(1) + point.dilatation);
       S const on_mean = linear<L> ? work : work / (S(1) + dilatation);
-      auto const slope = T(-table.weight[q]) * (point.slope() * map.cofactors);
-      f.add_divergence(T(-table.weight[q]) * (point.pull(p) * map.cofactors) - here * slope, table,
-                       q);
+      auto const slope = -weight * (point.slope() * map.cofactors);
       for (int m = 0; m < Onto::size; ++m)
         slopes[m].add_divergence(Onto::basis(m, table, q) * slope, table, q);
-      Onto::add(pressures, map.volume * T(table.weight[q]) * on_mean, table, q);
-    }
+      Onto::add(pressures, map.volume * weight * on_mean, table, q);
+      return -weight * (point.pull(p) * map.cofactors) - here * slope;
+    };
+    add_divergences<typename F::quadrature, G>(f, flux, x, v);
     pressures = mean_of.onto.nearest(pressures);
     auto sum = f.per_node();
     for (int m = 0; m < Onto::size; ++m) sum = sum + pressures[m] * slopes[m].per_node();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/formulation/kinematics.hpp>
+#include <pliant/formulation/points.hpp>
 
 namespace pliant {
 
@@ -9,17 +9,17 @@ template <class F, Geometry G>
 struct Pointwise {
   using E = typename F::element;
 
+  using Q = typename F::quadrature;
+
   template <class L, class S>
   PLIANT_HOST_DEVICE static S energy(L const& law, Nodal<E, S> const& rest, Nodal<E, S> const& u) {
     using T = builtin_scalar<S>;
-    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-    auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
     S sum = S(0);
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S, G>::at(x, table, q);
-      auto const h = map.gradient(v, table, q);
-      sum = sum + map.volume * T(table.weight[q]) * energy_density(at_point(law, q), h);
-    }
+    visit_points<Q, G>(
+        [&](int q, T weight, auto const& map, auto const& h) PLIANT_INLINE {
+          sum = sum + map.volume * weight * energy_density(at_point(law, q), h);
+        },
+        Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u));
     return sum;
   }
 
@@ -27,15 +27,12 @@ struct Pointwise {
   PLIANT_HOST_DEVICE static Nodal<E, S> force(L const& law, Nodal<E, S> const& rest,
                                               Nodal<E, S> const& u) {
     using T = builtin_scalar<S>;
-    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-    auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
     auto f = Coefficients<E, S>::zero();
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S, G>::at(x, table, q);
-      auto const h = map.gradient(v, table, q);
-      auto const p = stress(at_point(law, q), h);
-      f.add_divergence(T(-table.weight[q]) * (p * map.cofactors), table, q);
-    }
+    add_divergences<Q, G>(
+        f,
+        [&](int q, T weight, auto const& map, auto const& h)
+            PLIANT_INLINE { return -weight * (stress(at_point(law, q), h) * map.cofactors); },
+        Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u));
     return f.per_node();
   }
 
@@ -44,16 +41,14 @@ struct Pointwise {
                                                         Nodal<E, S> const& u,
                                                         Nodal<E, S> const& du) {
     using T = builtin_scalar<S>;
-    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
-    auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u),
-               dv = Coefficients<E, S>::of(du);
     auto df = Coefficients<E, S>::zero();
-    for (int q = 0; q < F::points; ++q) {
-      auto const map = RestMap<E, S, G>::at(x, table, q);
-      auto const h = map.gradient(v, table, q), dh = map.gradient(dv, table, q);
-      auto const dp = stress_tangent_product(at_point(law, q), h, dh);
-      df.add_divergence(T(-table.weight[q]) * (dp * map.cofactors), table, q);
-    }
+    add_divergences<Q, G>(
+        df,
+        [&](int q, T weight, auto const& map, auto const& h, auto const& dh) PLIANT_INLINE {
+          auto const dp = stress_tangent_product(at_point(law, q), h, dh);
+          return -weight * (dp * map.cofactors);
+        },
+        Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u), Coefficients<E, S>::of(du));
     return df.per_node();
   }
 
@@ -64,7 +59,7 @@ struct Pointwise {
                                                                    Nodal<E, S> const& u) {
     using T = builtin_scalar<S>;
     constexpr int dim = F::dim, nodes = F::nodes;
-    static constexpr auto table = tabulate<E, typename F::quadrature, T>();
+    static constexpr auto table = tabulate<E, Q, T>();
     auto const x = Coefficients<E, S>::of(rest), v = Coefficients<E, S>::of(u);
     auto k = Tensor<S, nodes * dim>::zero();
     for (int q = 0; q < F::points; ++q) {
