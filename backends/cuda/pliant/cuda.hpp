@@ -14,6 +14,7 @@
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/launch.hpp>
+#include <pliant/cuda/point_rows.cuh>
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
 #include <pliant/cuda/scatter.cuh>
@@ -92,7 +93,14 @@ class Cuda {
     require_kernel<Kernel, Matrix<T, nodes, C>, Groups, OneElement, Values<nodes, Fields>...>();
     auto const active = detail::active(table);
     if (active.most <= 0) return;
-    if constexpr (detail::scatters<T, nodes>) {
+    if constexpr (detail::shares_rows<Kernel, Groups>()) {
+      using E = typename Kernel::template points<0>::element;
+      void (*const by_rows)(detail::ElementView<nodes>, Kernel, NodeField<T, C>, Fields...) =
+          detail::accumulate_rows<Groups, E, T, Kernel, Fields...>;
+      launch("accumulate",
+             {blocks(element_count(active), detail::PointRows<E>::elements), detail::row_threads},
+             by_rows, active.elements.view({active.list, active.most}), kernel, out, fields...);
+    } else if constexpr (detail::scatters<T, nodes>) {
       void (*const scatter)(detail::ElementView<nodes>, Kernel, NodeField<T, C>, Fields...) =
           detail::scatter_elements<Groups, nodes, T, C, Kernel, Fields...>;
       launch("accumulate",

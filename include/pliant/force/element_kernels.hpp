@@ -1,11 +1,28 @@
 #pragma once
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/point_kernel.hpp>
 #include <pliant/body/group_laws.hpp>
 
 // The adapters between the element loops of a backend, which speak of group numbers and gathered
 // values, and the physics of a formulation.
 namespace pliant {
+
+namespace detail {
+/// The points of a formulation whose forces are the divergence of a flux; void for others.
+template <class F, Geometry How>
+using PointsOfFormulation =
+    std::conditional_t<std::same_as<SchemeOf<F, How>, Pointwise<F, How>>,
+                       PointsOf<typename F::element, typename F::quadrature>, void>;
+
+/// The flux of a formulation at point q from the slopes ∂v_i/∂ξ_k of the positions at rest and of other fields.
+template <class F, Geometry How, class L, class T, class S, class... V>
+PLIANT_HOST_DEVICE auto flux_from_slopes(L const& law, int q, T weight, S const& j,
+                                         V const&... slopes) {
+  auto const map = RestMap<typename F::element, T, How>::of(j);
+  return Pointwise<F, How>::flux(law, q, weight, map, map.gradient(slopes)...);
+}
+}  // namespace detail
 
 /// −∂W/∂u of an element, (nodes, dim), N.
 template <class Laws, Geometry How = Geometry::isoparametric>
@@ -18,6 +35,16 @@ struct ForceKernel {
     return groups.template apply<G>(
         [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
           return force<typename Laws::template formulation<G>, How>(law, rest, u);
+        },
+        v...);
+  }
+  template <int G>
+  using points = detail::PointsOfFormulation<typename Laws::template formulation<G>, How>;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto flux(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [](auto const& law, auto const&... at) PLIANT_INLINE {
+          return detail::flux_from_slopes<typename Laws::template formulation<G>, How>(law, at...);
         },
         v...);
   }
@@ -35,6 +62,17 @@ struct TangentKernel {
         [this](auto const& law, auto const& rest, auto const& u, auto const& du) PLIANT_INLINE {
           return factor *
                  tangent_product<typename Laws::template formulation<G>, How>(law, rest, u, du);
+        },
+        v...);
+  }
+  template <int G>
+  using points = detail::PointsOfFormulation<typename Laws::template formulation<G>, How>;
+  template <int G, class... V>
+  PLIANT_HOST_DEVICE auto flux(GroupNumber<G>, V const&... v) const {
+    return groups.template apply<G>(
+        [this](auto const& law, auto const&... at) PLIANT_INLINE {
+          return factor *
+                 detail::flux_from_slopes<typename Laws::template formulation<G>, How>(law, at...);
         },
         v...);
   }

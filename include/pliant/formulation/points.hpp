@@ -15,7 +15,7 @@ struct PartlyFixed {
   using T = builtin_scalar<S>;
   static constexpr int dim = E::dim, size = Lattice<E>::size, count = power(size, K);
   S value[count][dim];  // its constant is not used
-  S slope[dim - K][count][dim];
+  S slope[K < dim ? dim - K : 1][count][dim];
 
   /// What `from`, with one direction more that is free, is where that one is x.
   PLIANT_HOST_DEVICE static PartlyFixed at(Coefficients<E, S> const& from, T x) {
@@ -31,6 +31,21 @@ struct PartlyFixed {
         for (int i = 0; i < dim; ++i) next.slope[j][r][i] = value_at<r>(from.slope[j - 1], i, x);
       });
     return next;
+  }
+  /// Two directions fixed at once, where shape functions are linear: with less between the coefficients and the line.
+  PLIANT_HOST_DEVICE static PartlyFixed at(Coefficients<E, S> const& from, Vector<T, 2> const& x)
+    requires(K == 1 && size == 2 && dim == 3)
+  {
+    PartlyFixed line;
+    auto const& c = from.c;
+    for (int i = 0; i < dim; ++i) {
+      line.slope[0][0][i] = c[2][i] + x[1] * c[6][i];
+      line.slope[0][1][i] = c[3][i] + x[1] * c[7][i];
+      line.slope[1][0][i] = c[4][i] + x[0] * c[6][i];
+      line.slope[1][1][i] = c[5][i] + x[0] * c[7][i];
+      line.value[1][i] = c[1][i] + x[0] * c[3][i] + x[1] * line.slope[1][1][i];
+    }
+    return line;
   }
   PLIANT_HOST_DEVICE Tensor<S, dim> gradient() const {
     static_assert(K == 0);
@@ -58,6 +73,21 @@ struct PartlyFixed {
     return point;
   }
   PLIANT_HOST_DEVICE void add_to(Coefficients<E, S>& to, T x) const { release(to.c, x); }
+  PLIANT_HOST_DEVICE void add_to(Coefficients<E, S>& to, Vector<T, 2> const& x) const
+    requires(K == 1 && size == 2 && dim == 3)
+  {
+    for (int i = 0; i < dim; ++i) {
+      auto const add = [&](int b, S const& v) PLIANT_INLINE { to.c[b][i] = to.c[b][i] + v; };
+      S const high = slope[1][1][i] + x[1] * value[1][i];
+      add(1, value[1][i]);
+      add(2, slope[0][0][i]);
+      add(3, slope[0][1][i] + x[0] * value[1][i]);
+      add(4, slope[1][0][i]);
+      add(5, high);
+      add(6, x[1] * slope[0][0][i] + x[0] * slope[1][0][i]);
+      add(7, x[1] * slope[0][1][i] + x[0] * high);
+    }
+  }
   PLIANT_HOST_DEVICE void add_to(PartlyFixed<E, K + 1, S>& to, T x) const {
     release(to.value, x);
     for (int j = 1; j < dim - K; ++j)
@@ -106,53 +136,83 @@ struct PartlyFixed {
   }
 };
 
-template <int K, class T, Element E, class S>
-PLIANT_HOST_DEVICE auto fixed_at(Coefficients<E, S> const& from, T x) {
+template <int K, class X, Element E, class S>
+PLIANT_HOST_DEVICE auto fixed_at(Coefficients<E, S> const& from, X const& x) {
   return PartlyFixed<E, K, S>::at(from, x);
 }
-template <int K, class T, Element E, class S>
-PLIANT_HOST_DEVICE auto fixed_at(PartlyFixed<E, K + 1, S> const& from, T x) {
+template <int K, class X, Element E, class S>
+PLIANT_HOST_DEVICE auto fixed_at(PartlyFixed<E, K + 1, S> const& from, X const& x) {
   return PartlyFixed<E, K, S>::at(from, x);
 }
 
-/// Whether the loop along direction K − 1 stays one: what compilers unroll of large bodies does not fit the caches of
-/// instructions, and takes long to compile.
-template <Element E, int K, class... Fields>
-inline constexpr bool loops = K == E::dim && (E::degree > 1 || sizeof...(Fields) > 2);
+/// How many directions are free after a step from K.
+template <Element E, int K>
+inline constexpr int next_free = E::degree == 1 && K == 3 ? 1 : K - 1;
+/// The places of step p.
+template <Element E, int K, class Rule>
+PLIANT_HOST_DEVICE auto places_at(Rule const& rule, int p) {
+  if constexpr (K - next_free<E, K> == 1)
+    return rule.place[p];
+  else
+    return Vector<std::remove_cvref_t<decltype(rule.place[0])>, 2>{
+        {{rule.place[p % Rule::count]}, {rule.place[p / Rule::count]}}};
+}
+
+/// Whether a loop over the steps from K stays one: what compilers unroll of large bodies does not fit the caches of
+/// instructions, takes registers, and takes long to compile. (Swept by bench/formulation.)
+template <Element E, int K, class T, int Fields>
+#if defined(__CUDACC__)
+inline constexpr bool loops = E::degree > 1 ||
+                              (E::dim == 3 && K > 1 && (sizeof(T) == 4 || Fields > 2));
+#else
+inline constexpr bool loops = E::degree > 1 && K == E::dim;
+#endif
+
+/// Calls f(q) for the first points of the steps from K.
+template <Element E, int K, int Fields, class Rule, class F>
+PLIANT_HOST_DEVICE void for_each_step(int first, F const& f) {
+  constexpr int steps = power(Rule::count, K - next_free<E, K>);
+  constexpr bool loop = loops<E, K, typename Rule::scalar, Fields>;
+  int const count = loop ? unknown(steps) : steps;
+#if defined(__CUDA_ARCH__)
+#pragma unroll(loop ? 1 : steps)
+#endif
+  for (int p = 0; p < count; ++p) f(p, first + p * power(Rule::count, next_free<E, K>));
+}
 
 /// visit(q, weight, gradients...) at the points of a product rule, where the directions from K on are fixed.
 template <Element E, int K, class Rule, class Visit, class... Fields>
 PLIANT_HOST_DEVICE void visit_lines(Rule const& rule, int first, Visit const& visit,
                                     Fields const&... fields) {
-  int const count = loops<E, K, Fields...> ? unknown(Rule::count) : Rule::count;
-  for (int p = 0; p < count; ++p) {
-    int const q = first + p * power(Rule::count, K - 1);
+  constexpr int free = next_free<E, K>;
+  for_each_step<E, K, sizeof...(Fields), Rule>(first, [&](int p, int q) PLIANT_INLINE {
+    auto const x = places_at<E, K>(rule, p);
     [&](auto const&... fixed) PLIANT_INLINE {
-      if constexpr (K == 1)
+      if constexpr (free == 0)
         visit(q, rule.weight[q], fixed.gradient()...);
       else
-        visit_lines<E, K - 1>(rule, q, visit, fixed...);
-    }(fixed_at<K - 1>(fields, rule.place[p])...);
-  }
+        visit_lines<E, free>(rule, q, visit, fixed...);
+    }(fixed_at<free>(fields, x)...);
+  });
 }
 /// Adds what flux(q, weight, gradients...) gives to the sum, as a divergence.
 template <Element E, class S, int K, class Rule, class Flux, class Sum, class... Fields>
 PLIANT_HOST_DEVICE void add_lines(Rule const& rule, int first, Flux const& flux, Sum& sum,
                                   Fields const&... fields) {
-  int const count = loops<E, K, Fields...> ? unknown(Rule::count) : Rule::count;
-  for (int p = 0; p < count; ++p) {
-    int const q = first + p * power(Rule::count, K - 1);
+  constexpr int free = next_free<E, K>;
+  using Part = PartlyFixed<E, free, S>;
+  for_each_step<E, K, sizeof...(Fields), Rule>(first, [&](int p, int q) PLIANT_INLINE {
+    auto const x = places_at<E, K>(rule, p);
     [&](auto const&... fixed) PLIANT_INLINE {
-      using Part = PartlyFixed<E, K - 1, S>;
-      if constexpr (K == 1) {
-        Part::of(flux(q, rule.weight[q], fixed.gradient()...)).add_to(sum, rule.place[p]);
+      if constexpr (free == 0) {
+        Part::of(flux(q, rule.weight[q], fixed.gradient()...)).add_to(sum, x);
       } else {
         auto part = Part::zero();
-        add_lines<E, S, K - 1>(rule, q, flux, part, fixed...);
-        part.add_to(sum, rule.place[p]);
+        add_lines<E, S, free>(rule, q, flux, part, fixed...);
+        part.add_to(sum, x);
       }
-    }(fixed_at<K - 1>(fields, rule.place[p])...);
-  }
+    }(fixed_at<free>(fields, x)...);
+  });
 }
 
 /// Whether sums over points go direction by direction.
@@ -172,7 +232,7 @@ PLIANT_HOST_DEVICE void visit_points(Visit const& visit, Coefficients<E, S> cons
     detail::visit_lines<E, E::dim>(
         rule, 0,
         [&](int q, T weight, auto const& j, auto const&... slopes) PLIANT_INLINE {
-          auto const map = RestMap<E, S>::of(j);
+          auto const map = RestMap<E, S, G>::of(j);
           visit(q, weight, map, map.gradient(slopes)...);
         },
         x, v...);
@@ -195,7 +255,7 @@ PLIANT_HOST_DEVICE void add_divergences(Coefficients<E, S>& f, Flux const& flux,
     detail::add_lines<E, S, E::dim>(
         rule, 0,
         [&](int q, T weight, auto const& j, auto const&... slopes) PLIANT_INLINE {
-          auto const map = RestMap<E, S>::of(j);
+          auto const map = RestMap<E, S, G>::of(j);
           return flux(q, weight, map, map.gradient(slopes)...);
         },
         f, x, v...);

@@ -21,6 +21,7 @@ constexpr int points_per_direction(QuadratureRule<Dim, Count> const& rule) {
 /// A rule that is a product: the places along a line, and the weights of all points.
 template <class Q, TensorCell Cell, class T>
 struct ProductRule {
+  using scalar = T;
   static constexpr auto rule = Q::template rule<Cell>();
   static constexpr int count = points_per_direction(rule);
   T place[count];

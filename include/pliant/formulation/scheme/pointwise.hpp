@@ -23,33 +23,32 @@ struct Pointwise {
     return sum;
   }
 
+  /// −w P cof J: the forces are its divergence.
+  template <class L, class S, class T>
+  PLIANT_HOST_DEVICE static Tensor<S, F::dim> flux(L const& law, int q, T weight,
+                                                   RestMap<E, S, G> const& map,
+                                                   Tensor<S, F::dim> const& h) {
+    return -weight * (stress(at_point(law, q), h) * map.cofactors);
+  }
+  /// −w (∂P/∂H : δH) cof J.
+  template <class L, class S, class T>
+  PLIANT_HOST_DEVICE static Tensor<S, F::dim> flux(L const& law, int q, T weight,
+                                                   RestMap<E, S, G> const& map,
+                                                   Tensor<S, F::dim> const& h,
+                                                   Tensor<S, F::dim> const& dh) {
+    return -weight * (stress_tangent_product(at_point(law, q), h, dh) * map.cofactors);
+  }
+
   template <class L, class S>
   PLIANT_HOST_DEVICE static Nodal<E, S> force(L const& law, Nodal<E, S> const& rest,
                                               Nodal<E, S> const& u) {
-    using T = builtin_scalar<S>;
-    auto f = Coefficients<E, S>::zero();
-    add_divergences<Q, G>(
-        f,
-        [&](int q, T weight, auto const& map, auto const& h)
-            PLIANT_INLINE { return -weight * (stress(at_point(law, q), h) * map.cofactors); },
-        Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u));
-    return f.per_node();
+    return divergence(law, rest, u);
   }
-
   template <class L, class S>
   PLIANT_HOST_DEVICE static Nodal<E, S> tangent_product(L const& law, Nodal<E, S> const& rest,
                                                         Nodal<E, S> const& u,
                                                         Nodal<E, S> const& du) {
-    using T = builtin_scalar<S>;
-    auto df = Coefficients<E, S>::zero();
-    add_divergences<Q, G>(
-        df,
-        [&](int q, T weight, auto const& map, auto const& h, auto const& dh) PLIANT_INLINE {
-          auto const dp = stress_tangent_product(at_point(law, q), h, dh);
-          return -weight * (dp * map.cofactors);
-        },
-        Coefficients<E, S>::of(rest), Coefficients<E, S>::of(u), Coefficients<E, S>::of(du));
-    return df.per_node();
+    return divergence(law, rest, u, du);
   }
 
   /// K_(ai)(bk) = Σ_q w_q det J Σ_jl ∂N_a/∂X_j ∂P_ij/∂H_kl ∂N_b/∂X_l.
@@ -99,6 +98,19 @@ struct Pointwise {
       }
     }
     return k;
+  }
+
+ private:
+  template <class L, class S, class... V>
+  PLIANT_HOST_DEVICE static Nodal<E, S> divergence(L const& law, Nodal<E, S> const& rest,
+                                                   V const&... v) {
+    auto sum = Coefficients<E, S>::zero();
+    add_divergences<Q, G>(
+        sum,
+        [&](int q, auto weight, auto const& map, auto const&... gradients)
+            PLIANT_INLINE { return flux(law, q, weight, map, gradients...); },
+        Coefficients<E, S>::of(rest), Coefficients<E, S>::of(v)...);
+    return sum.per_node();
   }
 };
 
