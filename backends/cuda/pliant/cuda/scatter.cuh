@@ -9,7 +9,7 @@ namespace pliant::detail {
 
 /// One thread per element, which adds its shares to its nodes in global memory.
 template <int Groups, int Nodes, class T, int C, class Kernel, class... Fields>
-__global__ void __launch_bounds__(scatter_threads, (scatter_blocks<Nodes, sizeof...(Fields)>))
+__global__ void __launch_bounds__(scatter_threads, (scatter_blocks<Nodes, C, sizeof...(Fields)>))
     scatter_elements(ElementView<Nodes> const elements, __grid_constant__ Kernel const kernel,
                      NodeField<T, C> const out, Fields... fields) {
   begin_after_previous_kernel();

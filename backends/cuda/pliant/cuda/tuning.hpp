@@ -19,15 +19,13 @@ inline constexpr bool scatters = Nodes >= 20 || (sizeof(T) == 4 && Nodes >= 8);
 
 /// Blocks of loops that scatter that fit a multiprocessor, which bounds registers per thread; 0: as they come. Hex8 has
 /// room for all it works on.
-template <int Nodes, int Fields>
-inline constexpr int scatter_blocks = Nodes == 8 ? (Fields == 2 ? 4 : 3) : 0;
+template <int Nodes, int C, int Fields>
+inline constexpr int scatter_blocks = Nodes == 8 && C == 3 ? (Fields == 2 ? 4 : 3) : 0;
 
 /// Threads per block where several share an element's points (point_rows.cuh), and blocks that fit a multiprocessor.
 inline constexpr int row_threads = 64;
-template <class T, int Fields>
-inline constexpr int row_blocks = sizeof(T) == 8 ? 4
-                                  : Fields == 2  ? 8
-                                                 : PLIANT_RT;
+template <class T>
+inline constexpr int row_blocks = sizeof(T) == 8 ? 4 : 8;
 
 /// How patches accumulate: those of many elements add less to global memory, small ones occupy all
 /// of a GPU while a mesh is small.
