@@ -1,8 +1,8 @@
 #pragma once
 
 #include <pliant/backend/backend.hpp>
-#include <pliant/backend/point_kernel.hpp>
 #include <pliant/body/group_laws.hpp>
+#include <pliant/formulation/point_kernel.hpp>
 
 // The adapters between the element loops of a backend, which speak of group numbers and gathered
 // values, and the physics of a formulation.

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <pliant/backend/point_kernel.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/vector_memory.cuh>
+#include <pliant/formulation/point_kernel.hpp>
 
 // Accumulation of elements with many nodes: in one thread, their values would not fit the registers.
 namespace pliant::detail {
