@@ -29,7 +29,8 @@ struct ElementColumn {
     auto const origin = own(low);
     auto const local = [&](int a) PLIANT_INLINE {
       Vector<S, Dim> xi;
-      for (int k = 0; k < Dim; ++k) xi[k] = (rest(a, k) - origin[k]) * per_spacing[k];
+      for (int k = 0; k < Dim; ++k)
+        xi[k] = local_coordinate<S>(rest(a, k), origin[k], per_spacing[k]);
       return xi;
     };
     auto du = V::zero();

@@ -16,6 +16,16 @@ PLIANT_HOST_DEVICE S corner_function(Vector<S, Dim> const& xi, int b) {
   return weight;
 }
 
+/// A local coordinate; exactly 0 or 1 where only rounding tells it from that: a function with next to no value at all
+/// unknowns would be one of rounding.
+template <class S>
+PLIANT_HOST_DEVICE S local_coordinate(S x, S low, builtin_scalar<S> per_spacing) {
+  using T = builtin_scalar<S>;
+  constexpr T nothing = T(sizeof(T) == 4 ? 1e-3 : 1e-9);
+  S const xi = (x - low) * per_spacing, rest = S(1) - xi;
+  return select(abs(xi) < S(nothing), S(0), select(abs(rest) < S(nothing), S(1), xi));
+}
+
 template <class T, int Dim>
 struct GridView {
   static constexpr int corners = power_of(2, Dim), neighbours = power_of(3, Dim);
@@ -28,8 +38,9 @@ struct GridView {
   Index const *first, *member;               // finer nodes by boxes
 
   PLIANT_HOST_DEVICE Vector<T, Dim> local(Index finer_node, Index box) const {
-    auto xi = finer.at(finer_node) - low.at(box);
-    for (int k = 0; k < Dim; ++k) xi[k] = xi[k] * per_spacing[k];
+    auto xi = finer.at(finer_node);
+    auto const origin = low.at(box);
+    for (int k = 0; k < Dim; ++k) xi[k] = local_coordinate(xi[k], origin[k], per_spacing[k]);
     return xi;
   }
   /// The sum of the functions with values at nodes, at a finer node.
