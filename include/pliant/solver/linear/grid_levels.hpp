@@ -41,14 +41,13 @@ class GridLevels {
   int count() const { return static_cast<int>(levels_.size()); }
   GridView<T, Dim> const& finest() const { return levels_.front().grid.view(); }
   GridView<T, Dim> const& grid(int level) const { return at(level).grid.view(); }
+  Array<T> const& rest(int level) const { return at(level).grid.rest(); }
   StencilView<T, Dim> matrix(int level) const { return at(level).matrix(); }
   Field right_side() const { return at(0).field(at(0).b); }
   Field correction() const { return at(0).field(at(0).x); }
 
   void clear_finest_matrix(B const& backend) {
-    auto& entries = levels_.front().entries;
-    backend.for_each(static_cast<Index>(entries.size() / StencilView<T, Dim>::together),
-                     ClearTogether{entries.data()});
+    backend.for_each(levels_.front().grid.nodes(), ClearStencil<T, Dim>{matrix(0)});
   }
   /// Makes the coarser matrices, and what smooths, from the finest.
   void prepare(B const& backend) {
@@ -91,14 +90,6 @@ class GridLevels {
   }
 
  private:
-  struct ClearTogether {
-    T* entries;
-    PLIANT_HOST_DEVICE void operator()(Index i) const {
-      constexpr int together = StencilView<T, Dim>::together;
-      for (int k = 0; k < together; ++k)
-        entries[static_cast<std::ptrdiff_t>(together) * i + k] = T(0);
-    }
-  };
   struct Level {
     GridFunctions<B, Dim> grid;
     Array<T> entries, blocks;  // of the matrix; inverses of its diagonal: (Dim, nodes, 4)

@@ -35,6 +35,16 @@ struct StencilView {
   }
 };
 
+template <class T, int Dim>
+struct ClearStencil {
+  StencilView<T, Dim> a;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int o = 0; o < a.neighbours; ++o)
+      for (int k = 0; k < Dim; ++k)
+        for (int l = 0; l < Dim; ++l) a(i, o, k, l) = T(0);
+  }
+};
+
 /// y = A x.
 template <class T, int Dim>
 struct StencilProduct {
