@@ -24,6 +24,8 @@ struct ImplicitOptions {
   double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
   LinearMethod linear = LinearMethod::automatic;  // on a GPU without a matrix, on the host with one
   int max_linear_iterations = 10000;              // without a matrix, per iteration
+  /// Of conjugate gradients without a matrix. Kept from iteration to iteration of a step as long as it serves.
+  Preconditioner preconditioner = Preconditioner::automatic;
   bool accept_folded = false;  // steps that fold the body somewhere, instead of an Error
 };
 

@@ -114,7 +114,7 @@ KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backen
   report.residual = std::sqrt(values[Scalars::rr]);
   report.indefinite = values[Scalars::indefinite] != 0 || values[Scalars::unfit] != 0;
   report.converged = report.residual <= tolerance * std::sqrt(size);
-  by.end(report.iterations);
+  by.end(report.iterations, report.residual / std::sqrt(size));
   parts.layout.interpolation.apply(backend, x);
   return report;
 }

@@ -11,8 +11,8 @@
 
 namespace pliant::detail {
 
-/// By what the linear systems of one solve are preconditioned, and when that is made anew: where iterations have
-/// become half as many again as they were behind the last time.
+/// By what the linear systems of one solve are preconditioned, and when that is made anew: where a system takes
+/// half as many iterations again as the first one under it, for the same digits.
 template <class Parts>
 class Preconditioning {
   using Arrays = SolverArrays<typename Parts::backend_type>;
@@ -62,14 +62,15 @@ class Preconditioning {
     begin(parts, arrays, a);
     return true;
   }
-  /// Behind the iterations of a system.
-  void end(int iterations) {
+  /// Behind the iterations of a system, which left that share of the residual.
+  void end(int iterations, double share) {
     report_.preconditioner = now_;
     report_.levels = is_nodal() ? 1 : levels_;
     report_.iterations += iterations;
     if (is_nodal()) return;
-    if (fresh_) usual_ = std::max(iterations, 4);
-    if (2 * iterations > 3 * usual_) made_ = false;
+    double const digits = std::max(-std::log10(share), 1.0);
+    if (fresh_) usual_ = iterations / digits;
+    if (iterations > 1.5 * usual_ * digits + few) made_ = false;
   }
   /// What iterations call; null: nodal blocks.
   Multigrid<Parts> const* in(Arrays& arrays) const { return is_nodal() ? nullptr : &of(arrays); }
@@ -98,11 +99,12 @@ class Preconditioning {
   static constexpr bool on_host =
       std::same_as<typename Parts::backend_type::Recording, HostRecording>;
   // Making multigrid costs about as much as 60 iterations under nodal blocks, each of its iterations 6.
-  static constexpr int look_behind = 16, worth = 150;
+  static constexpr int look_behind = 16, worth = 100, few = 4;
   static constexpr Index fewest_unknowns = on_host ? 3000 : 300000;
   Preconditioner wanted_, now_ = Preconditioner::nodal_blocks;
   bool made_ = false, fresh_ = false;  // at all, and from this system's matrix
-  int usual_ = 0, levels_ = 1;         // iterations behind a fresh one
+  double usual_ = 0;  // iterations by which a fresh one made a residual ten times smaller
+  int levels_ = 1;
   LinearReport report_{};
 };
 
