@@ -59,9 +59,8 @@ void time_rest(benchmark::State& state, B const& backend, int cells, Way const& 
   time_each(
       state, [&] { body.set_displacements(rest); },
       [&] {
-        report = solve_static(body, {.tolerance = 1e-6,
-                                     .linear = way.method,
-                                     .preconditioner = way.preconditioner});
+        report = solve_static(
+            body, {.tolerance = 1e-6, .linear = way.method, .preconditioner = way.preconditioner});
         return report.linear.setup;
       });
   report_solve(state, body, report);
@@ -111,8 +110,7 @@ inline void add_without_matrix() {
           [=](benchmark::State& state) { time_implicit(state, backend, cells, way); });
     };
     constexpr auto without = LinearMethod::matrix_free;
-    std::vector<int> const sizes =
-        on_gpu<B> ? std::vector{21, 46, 69} : std::vector{10, 21, 32};
+    std::vector<int> const sizes = on_gpu<B> ? std::vector{21, 46, 69} : std::vector{10, 21, 32};
     for (int cells : sizes) {
       add_all(cells, "nodal_blocks", {without, Preconditioner::nodal_blocks});
       add_linear(cells, "chebyshev", {without, Preconditioner::chebyshev});

@@ -22,8 +22,8 @@ struct Machine {
   TheBody& body;
   Parts& parts = body.parts();
   detail::Balance<Parts> balance{parts, MassMatrix::lumped, 0};
-  detail::ShiftedTangent<Parts> a{0, MassMatrix::lumped, 1, std::as_const(parts).u(), 0,
-                                  std::as_const(parts).u()};
+  detail::ShiftedTangent<Parts> a{0, MassMatrix::lumped,      1, std::as_const(parts).u(),
+                                  0, std::as_const(parts).u()};
   detail::Multigrid<Parts> multigrid{parts, Preconditioner::multigrid};
 
   explicit Machine(TheBody& of) : body(of) {}
@@ -67,19 +67,21 @@ struct Machine {
     auto const from = pliant::upload(parts.backend, y);
     auto to = zeros<T>(parts.backend, finer);
     bool const of_body = level == 0;
-    parts.backend.for_each(static_cast<Index>(finer / node_stride),
-                           detail::AddInterpolated<T, dim>{
-                               grid(level), {to.data()}, {from.data()},
-                               of_body ? parts.layout.mass.data() : nullptr,
-                               of_body ? parts.layout.held.data() : nullptr});
+    parts.backend.for_each(
+        static_cast<Index>(finer / node_stride),
+        detail::AddInterpolated<T, dim>{grid(level),
+                                        {to.data()},
+                                        {from.data()},
+                                        of_body ? parts.layout.mass.data() : nullptr,
+                                        of_body ? parts.layout.held.data() : nullptr});
     return download<T>(to);
   }
   std::vector<T> restricted(int level, std::vector<T> const& b) const {
     auto const from = pliant::upload(parts.backend, b), nothing = zeros<T>(parts.backend, b.size());
     auto to = zeros<T>(parts.backend, rows(level));
-    parts.backend.for_each(grid(level).nodes,
-                           detail::Restrict<T, dim>{
-                               grid(level), {to.data()}, {from.data()}, {nothing.data()}});
+    parts.backend.for_each(
+        grid(level).nodes,
+        detail::Restrict<T, dim>{grid(level), {to.data()}, {from.data()}, {nothing.data()}});
     return download<T>(to);
   }
   std::vector<T> times_stencil(int level, std::vector<T> const& x) const {
@@ -183,8 +185,7 @@ TEST_CASE("interpolation carries any linear field over", "[solver]") {
         };
         auto expected = field_at(rest_of(level - 1));
         if (level == 0) expected = machine.unknowns_of(expected);
-        auto const found =
-            machine.interpolated(level, field_at(rest_of(level)), expected.size());
+        auto const found = machine.interpolated(level, field_at(rest_of(level)), expected.size());
         CHECK(difference_of(found, expected) < digits<T>);
       }
     });
@@ -203,7 +204,8 @@ TEST_CASE("multigrid is symmetric and positive definite", "[solver]") {
           auto const mr = machine.conditioned(r), ms = machine.conditioned(s);
           double const size = std::sqrt(inner_product(r, mr) * inner_product(s, ms));
           CHECK(inner_product(r, mr) > 0);
-          CHECK(inner_product(s, mr) == Approx(inner_product(r, ms)).margin(digits<typename B::scalar> * size));
+          CHECK(inner_product(s, mr) ==
+                Approx(inner_product(r, ms)).margin(digits<typename B::scalar> * size));
           // It is nearly the inverse.
           double const share = inner_product(r, machine.conditioned(machine.times_matrix(mr))) /
                                inner_product(r, mr);
@@ -218,8 +220,7 @@ TEST_CASE("multigrid is symmetric and positive definite", "[solver]") {
 TEST_CASE("matrices of grids are Galerkin's where elements lie in boxes", "[solver]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;
-    auto body =
-        body_of<Bricks>(backend, mesh::box<Hex8>({.size = {1, 1, 1}, .cells = {9, 8, 8}}));
+    auto body = body_of<Bricks>(backend, mesh::box<Hex8>({.size = {1, 1, 1}, .cells = {9, 8, 8}}));
     body.clamp(body.mesh().boundary("left"));
     body.hold(body.mesh().boundary("bottom"), 2);
     Machine<decltype(body)> machine(body);

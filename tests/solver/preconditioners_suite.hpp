@@ -28,10 +28,9 @@ struct Anchor {
 
 template <class TheBody>
 NewtonReport rest(TheBody& body, Preconditioner preconditioner, double tolerance = 1e-9) {
-  return solve_static(body,
-                      {.tolerance = sizeof(typename TheBody::scalar) == 8 ? tolerance : 1e-4,
-                       .linear = LinearMethod::matrix_free,
-                       .preconditioner = preconditioner});
+  return solve_static(body, {.tolerance = sizeof(typename TheBody::scalar) == 8 ? tolerance : 1e-4,
+                             .linear = LinearMethod::matrix_free,
+                             .preconditioner = preconditioner});
 }
 /// Brings bodies to rest by each preconditioner. Multigrid takes at most `most` of the iterations under nodal blocks.
 template <class Make>
@@ -99,8 +98,7 @@ TEST_CASE("multigrid finds the rest of bodies with hanging nodes, springs and pa
     SECTION("graded") {
       compare(
           [&] {
-            auto body =
-                plane_body(backend, mesh::rectangle({.size = {2, 1}, .cells = {16, 8}}));
+            auto body = plane_body(backend, mesh::rectangle({.size = {2, 1}, .cells = {16, 8}}));
             for (double reach : {0.5, 0.25, 0.12}) {
               Marks marks(1);
               auto const& mesh = body.mesh();
@@ -240,8 +238,8 @@ TEST_CASE("what no longer preconditions is made anew, and given up where that do
     using Parts = typename decltype(body)::parts_type;
     detail::Balance<Parts> balance(parts, MassMatrix::lumped, 0);
     auto& arrays = balance.arrays();
-    detail::ShiftedTangent<Parts> const a{0, MassMatrix::lumped, 1, std::as_const(parts).u(), 0,
-                                          std::as_const(parts).u()};
+    detail::ShiftedTangent<Parts> const a{0, MassMatrix::lumped,      1, std::as_const(parts).u(),
+                                          0, std::as_const(parts).u()};
     detail::Preconditioning<Parts> by(Preconditioner::multigrid);
     auto const solve = [&] {
       balance.weigh(balance.field(arrays.residual));

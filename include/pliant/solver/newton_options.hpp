@@ -21,7 +21,7 @@ struct NewtonOptions {
   int max_linear_iterations = 10000;  // without a matrix, per iteration
   /// Of conjugate gradients without a matrix. Kept from iteration to iteration as long as it serves.
   Preconditioner preconditioner = Preconditioner::automatic;
-  bool accept_folded = false;         // an answer that is folded somewhere, instead of an Error
+  bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
 
 /// What solve_static found, and at what cost.

@@ -33,22 +33,22 @@ struct BackgroundGrid {
   Place ratio{};                 // how many boxes of the finer grid make one along each axis
   std::vector<Place> box, node;  // in ascending order of their keys
   std::vector<Index> corner;     // (boxes, corners): nodes
-  std::vector<Index> around;     // (nodes, corners): the box of which the node is corner b; −1: none
+  std::vector<Index> around;  // (nodes, corners): the box of which the node is corner b; −1: none
   std::vector<Index> neighbour;  // (nodes, neighbours): see offset_between; −1: none
 
   /// `occupied`: boxes where the body is, each as often as you like.
   void number(std::vector<Place> const& occupied) {
-    box = unique(occupied);
+    box = unique(occupied, box_at_);
     std::vector<Place> ends;
     ends.reserve(box.size() * corners);
     for (auto const& place : box)
       for (int b = 0; b < corners; ++b) ends.push_back(corner_of(place, b));
-    node = unique(ends);
+    node = unique(ends, node_at_);
     corner.resize(ends.size());
     around.assign(node.size() * corners, -1);
     neighbour.assign(node.size() * neighbours, -1);
     for (std::size_t k = 0; k < ends.size(); ++k) {
-      corner[k] = find(node, ends[k]);
+      corner[k] = find(node, node_at_, ends[k]);
       around[static_cast<std::size_t>(corner[k]) * corners + k % corners] =
           static_cast<Index>(k / corners);
     }
@@ -69,8 +69,8 @@ struct BackgroundGrid {
   Place place_of(Point<Dim> const& x) const {
     Place place;
     for (std::size_t k = 0; k < Dim; ++k)
-      place[k] =
-          static_cast<Index>(std::clamp(std::floor((x[k] - low[k]) / spacing[k]), 0.0, boxes[k] - 1.0));
+      place[k] = static_cast<Index>(
+          std::clamp(std::floor((x[k] - low[k]) / spacing[k]), 0.0, boxes[k] - 1.0));
     return place;
   }
   Point<Dim> point_at(Place const& place) const {
@@ -79,7 +79,7 @@ struct BackgroundGrid {
     return x;
   }
   /// The number of a box; −1 where the body is not.
-  Index find_box(Place const& place) const { return find(box, place); }
+  Index find_box(Place const& place) const { return find(box, box_at_, place); }
 
   /// Boxes of twice the size along those axes where they are small, as long as there are several: point by point
   /// smoothing does little along the others.
@@ -117,17 +117,41 @@ struct BackgroundGrid {
   auto by_key() const {
     return [this](Place const& a, Place const& b) { return key(a) < key(b); };
   }
-  std::vector<Place> unique(std::vector<Place> places) const {
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    std::ranges::sort(places, by_key());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
+  /// Each of the places once, in order, and `at`: their numbers by keys, where few keys are of none, or nothing.
+  std::vector<Place> unique(std::vector<Place> places, std::vector<Index>& at) const {
+    std::int64_t keys = 1;
+    for (Index n : boxes) keys *= std::int64_t{n} + 1;
+    at.clear();
+    if (keys > 4096 + 8 * std::ssize(places)) {
+      std::ranges::sort(places, by_key());
+      places.erase(std::unique(places.begin(), places.end()), places.end());
+      return places;
+    }
+    at.assign(static_cast<std::size_t>(keys), -1);
+    for (auto const& place : places) at[static_cast<std::size_t>(key(place))] = 0;
+    places.clear();
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      if (at[k] < 0) continue;
+      at[k] = static_cast<Index>(places.size());
+      places.push_back(place_of_key(static_cast<std::int64_t>(k)));
+    }
     return places;
   }
-  Index find(std::vector<Place> const& places, Place const& place) const {
+  Place place_of_key(std::int64_t key) const {
+    Place place;
+    for (std::size_t k = Dim; k-- > 0; key /= boxes[k] + 1)
+      place[k] = static_cast<Index>(key % (boxes[k] + 1));
+    return place;
+  }
+  Index find(std::vector<Place> const& places, std::vector<Index> const& at,
+             Place const& place) const {
+    if (!at.empty()) return at[static_cast<std::size_t>(key(place))];
     auto const found = std::ranges::lower_bound(places, place, by_key());
     return found != places.end() && *found == place ? static_cast<Index>(found - places.begin())
                                                     : -1;
   }
+
+  std::vector<Index> box_at_, node_at_;
 };
 
 /// Lays the finest grid around a mesh, without numbers: boxes of two elements' size, one of quadratic ones, but none

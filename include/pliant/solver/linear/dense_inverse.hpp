@@ -56,8 +56,7 @@ inline Eigen::MatrixXd inverse_of_definite(Eigen::MatrixXd a) {
   }
   for (Eigen::Index j = 0; j < n; ++j)
     for (Eigen::Index i = 0; i <= j; ++i)
-      inverse(i, j) = inverse(j, i) =
-          scale[i] * scale[j] * (inverse(i, j) + inverse(j, i)) / 2;
+      inverse(i, j) = inverse(j, i) = scale[i] * scale[j] * (inverse(i, j) + inverse(j, i)) / 2;
   return inverse;
 }
 

@@ -37,9 +37,8 @@ struct ElementColumn {
     for (int a = 0; a < F::nodes; ++a)
       for (int k = 0; k < Dim; ++k)
         if (k == direction) du(a, k) = mask(a, k) * corner_function<Dim>(local(a), corner);
-    auto const product = [&](auto const& law, auto const&... v) PLIANT_INLINE {
-      return tangent_product<F>(law, v...);
-    };
+    auto const product = [&](auto const& law, auto const&... v)
+                             PLIANT_INLINE { return tangent_product<F>(law, v...); };
     auto const df = [&]() PLIANT_INLINE {
       if constexpr (Laws::reads_elements)
         return groups.template apply<G>(product, own, rest, u, du);

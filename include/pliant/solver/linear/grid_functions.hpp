@@ -1,9 +1,9 @@
 #pragma once
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/constraint/condition.hpp>
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/solver/linear/background_grid.hpp>
-#include <pliant/constraint/condition.hpp>
 
 // The functions of a grid's nodes, linear along each axis, at the nodes of something finer: a body or a finer grid.
 namespace pliant::detail {
@@ -44,7 +44,8 @@ struct GridView {
     return xi;
   }
   /// The sum of the functions with values at nodes, at a finer node.
-  PLIANT_HOST_DEVICE Vector<T, Dim> interpolate(NodeField<T const, Dim> values, Index finer_node) const {
+  PLIANT_HOST_DEVICE Vector<T, Dim> interpolate(NodeField<T const, Dim> values,
+                                                Index finer_node) const {
     auto sum = Vector<T, Dim>::zero();
     Index const box = box_of[finer_node];
     if (box < 0) return sum;
@@ -90,9 +91,8 @@ struct Restrict {
   NodeField<T const, Dim> b, q;
   PLIANT_HOST_DEVICE void operator()(Index node) const {
     auto sum = Vector<T, Dim>::zero();
-    grid.for_each_finer(node, [&](Index i, T weight) PLIANT_INLINE {
-      sum = sum + weight * (b.at(i) - q.at(i));
-    });
+    grid.for_each_finer(
+        node, [&](Index i, T weight) PLIANT_INLINE { sum = sum + weight * (b.at(i) - q.at(i)); });
     y.set(node, sum);
   }
 };
@@ -138,7 +138,7 @@ class GridFunctions {
   }
   Index nodes() const { return view_.nodes; }
   GridView<T, Dim> const& view() const { return view_; }
-  Array<T> const& rest() const { return rest_; }              // (nodes, 4), m
+  Array<T> const& rest() const { return rest_; }                 // (nodes, 4), m
   Array<Index> const& neighbours() const { return neighbour_; }  // as in BackgroundGrid
 
  private:

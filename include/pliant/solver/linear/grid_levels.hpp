@@ -54,13 +54,13 @@ class GridLevels {
     for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
       auto& level = levels_[l];
       auto& next = levels_[l + 1];
-      backend.for_each(
-          next.grid.nodes() * BackgroundGrid<Dim>::neighbours,
-          GalerkinBlock<T, Dim>{next.matrix(), level.matrix(), next.grid.view()});
+      backend.for_each(next.grid.nodes() * BackgroundGrid<Dim>::neighbours,
+                       GalerkinBlock<T, Dim>{next.matrix(), level.matrix(), next.grid.view()});
       InvertStencilBlocks<T, Dim> invert{level.matrix(), {}};
       for (int k = 0; k < Dim; ++k) invert.columns[k] = level.column(k);
       backend.for_each(level.grid.nodes(), invert);
-      double const largest = 1.1 * largest_eigenvalue_on(backend, level.fields(), level.product(backend));
+      double const largest =
+          1.1 * largest_eigenvalue_on(backend, level.fields(), level.product(backend));
       level.per_largest.upload(std::vector{static_cast<T>(1 / largest)});
     }
     invert_coarsest();
@@ -80,12 +80,13 @@ class GridLevels {
     smooth(backend, fields, smoothing, Guess::zero, product);
     product(fields.x, fields.q);
     auto const coarse = next.fields();
-    backend.for_each(next.grid.nodes(),
-                     Restrict<T, Dim>{next.grid.view(), coarse.b, {fields.b.data}, {fields.q.data}});
+    backend.for_each(
+        next.grid.nodes(),
+        Restrict<T, Dim>{next.grid.view(), coarse.b, {fields.b.data}, {fields.q.data}});
     cycle(backend, smoothing, l + 1);
-    backend.for_each(level.grid.nodes(),
-                     AddInterpolated<T, Dim>{
-                         next.grid.view(), fields.x, {coarse.x.data}, nullptr, nullptr});
+    backend.for_each(
+        level.grid.nodes(),
+        AddInterpolated<T, Dim>{next.grid.view(), fields.x, {coarse.x.data}, nullptr, nullptr});
     smooth(backend, fields, smoothing, Guess::given, product);
   }
 
@@ -101,7 +102,8 @@ class GridLevels {
         : grid(backend, numbers, finer, boxes_of),
           entries(zeros<T>(backend, StencilView<T, Dim>::size(grid.nodes()))),
           per_largest(zeros<T>(backend, 1)) {
-      auto const rows = static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(grid.nodes());
+      auto const rows =
+          static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(grid.nodes());
       blocks = zeros<T>(backend, Dim * rows);
       for (auto* array : {&b, &x, &d, &q}) *array = zeros<T>(backend, rows);
     }
@@ -113,8 +115,8 @@ class GridLevels {
       return {const_cast<T*>(entries.data()), grid.view().neighbour};
     }
     SmootherFields<T, Dim> fields() const {
-      SmootherFields<T, Dim> f{grid.nodes(), field(b), field(x), field(d), field(q), {},
-                               per_largest.data()};
+      SmootherFields<T, Dim> f{grid.nodes(), field(b), field(x),          field(d),
+                               field(q),     {},       per_largest.data()};
       for (int k = 0; k < Dim; ++k) f.columns[k] = {column(k).data};
       return f;
     }

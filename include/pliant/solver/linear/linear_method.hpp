@@ -21,8 +21,9 @@ struct LinearReport {
   /// Without a matrix: what preconditioned in the end, of how many matrices it was made, and the time that this took.
   Preconditioner preconditioner = Preconditioner::nodal_blocks;
   int levels = 1;
-  double setup = 0;   // s, of chebyshev and multigrid
-  int fallbacks = 0;  // linear systems in which these turned out not to be positive definite, and nodal blocks went on
+  double setup = 0;  // s, of chebyshev and multigrid
+  int fallbacks =
+      0;  // linear systems in which these turned out not to be positive definite, and nodal blocks went on
 };
 
 }  // namespace pliant

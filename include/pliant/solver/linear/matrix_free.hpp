@@ -86,8 +86,7 @@ KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backen
     kept = {backend.record(iterate), parts.revision, matrix, fields, condition};
   };
   auto const begin = [&] {
-    if (by.is_nodal())
-      backend.for_each(n, with_columns(ConditionAt<T, dim>{z, Const{r.data}, {}}));
+    if (by.is_nodal()) backend.for_each(n, with_columns(ConditionAt<T, dim>{z, Const{r.data}, {}}));
     values[Scalars::rz] = values[Scalars::next_rz] = values[Scalars::curvature] = 0;
     values[Scalars::stopped] = values[Scalars::unfit] = 0;
     arrays.scalars.upload(values);

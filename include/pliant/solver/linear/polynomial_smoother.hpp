@@ -114,7 +114,9 @@ template <class T, int Dim>
 struct ConditionAt {
   NodeField<T, Dim> z;
   NodeField<T const, Dim> r, columns[Dim];
-  PLIANT_HOST_DEVICE void operator()(Index i) const { z.set(i, conditioned_at(columns, r.at(i), i)); }
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    z.set(i, conditioned_at(columns, r.at(i), i));
+  }
 };
 
 /// The largest eigenvalue of D⁻¹ A, from below and closely. All fields but the columns are lost.

@@ -15,7 +15,8 @@ struct StencilView {
   Index const* neighbour;  // (nodes, neighbours); −1: none
 
   static std::size_t size(Index nodes) {
-    return static_cast<std::size_t>((nodes + together - 1) / together) * together * entries_per_node;
+    return static_cast<std::size_t>((nodes + together - 1) / together) * together *
+           entries_per_node;
   }
   PLIANT_HOST_DEVICE T& operator()(Index node, int offset, int k, int l) const {
     return entries[(static_cast<std::ptrdiff_t>(node / together) * entries_per_node +
