@@ -24,7 +24,7 @@ class Multigrid final : public KeptPreconditioner {
   Multigrid(Parts const& parts, Preconditioner kind)
       : kind_(kind),
         polynomial_(kind == Preconditioner::multigrid
-                        ? SmoothingPolynomial::of_fourth_kind(smoothing_degree)
+                        ? SmoothingPolynomial::of_fourth_kind()
                         : SmoothingPolynomial::of_first_kind(degree_alone, ratio_alone)),
         step_(zeros<T>(parts.backend, parts.layout.rest.size())),
         per_largest_(zeros<T>(parts.backend, 1)) {
@@ -160,7 +160,7 @@ class Multigrid final : public KeptPreconditioner {
     parts.backend.synchronize();
   }
 
-  static constexpr int smoothing_degree = 2, degree_alone = 4;
+  static constexpr int degree_alone = 4;
   static constexpr double ratio_alone = 30;
   Preconditioner kind_;
   SmoothingPolynomial polynomial_;
