@@ -101,7 +101,7 @@ struct SetRandom {
       auto x = static_cast<std::uint64_t>(Dim * std::int64_t{i} + k + 1) * 0x9e3779b97f4a7c15u;
       x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
       x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-      value[k] = static_cast<T>(static_cast<double>(x >> 40) / (1 << 24) - 0.5);
+      value[k] = static_cast<T>(x >> 40) / T(1 << 24) - T(0.5);
     }
     field.set(i, value);
   }
