@@ -54,8 +54,8 @@ GridOfBody<Parts::dim> grid_of_body(Parts const& parts) {
     if (!has_element[i]) continue;
     Index box = grid.find_box(grid.place_of(relative(mesh.nodes[i])));
     if (box < 0) box = grid.find_box(at_element[i]);
-    body.boxes_of_nodes[static_cast<std::size_t>(
-        parts.layout.internal_of(static_cast<Index>(i)))] = box;
+    body.boxes_of_nodes[static_cast<std::size_t>(parts.layout.internal_of(static_cast<Index>(i)))] =
+        box;
   }
   auto place = occupied.begin();
   parts.for_each_type([&](auto const& table, auto const&) {
@@ -69,7 +69,7 @@ GridOfBody<Parts::dim> grid_of_body(Parts const& parts) {
 template <Backend B, int Dim>
 struct ElementHomes {
   using T = typename B::scalar;
-  typename B::template Array<T> low;               // (Dim, elements): lowest corners, m
+  typename B::template Array<T> low;                // (Dim, elements): lowest corners, m
   typename B::template Array<Index> first, member;  // elements by boxes
 
   ElementHomes(B const& backend, BackgroundGrid<Dim> const& grid, std::vector<Index> const& boxes) {
