@@ -43,6 +43,8 @@ share(shared/statics
       body/pressure solver/assemble solver/static solver/static_loads solver/static_report)
 share(shared/implicit
       solver/implicit solver/implicit_state solver/schemes solver/without_matrix)
+share(shared/preconditioners
+      solver/multigrid solver/preconditioners)
 share(shared/laws
       law/closed_forms law/derivatives law/fibres law/invariance law/inversion law/limits
       law/plane_stress law/plane_stress_tangents law/plane_stress_values law/precision

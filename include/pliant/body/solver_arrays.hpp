@@ -1,11 +1,19 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
 #include <pliant/backend/backend.hpp>
 
 namespace pliant {
+
+namespace detail {
+/// What a solver keeps of preconditioning a body's matrices.
+struct KeptPreconditioner {
+  virtual ~KeptPreconditioner() = default;
+};
+}  // namespace detail
 
 /// What solvers on a backend work in, kept from call to call: fields of padded rows, (nodes, 4). It holds nothing
 /// that a run goes on with.
@@ -30,8 +38,10 @@ struct SolverArrays {
     long revision;
     std::array<double, 4> matrix;
     std::array<T const*, 2> fields;
+    detail::KeptPreconditioner const* preconditioner;
   };
   std::optional<Recorded> recorded{};
+  std::unique_ptr<detail::KeptPreconditioner> preconditioner{};  // made when first asked for
 
   SolverArrays(B const& backend, std::size_t rows, std::size_t rows_and_scratch, int dim) {
     for (auto* array : {&increment, &trial, &place, &speed, &acceleration, &residual, &solution,

@@ -24,6 +24,8 @@ struct ImplicitOptions {
   double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
   LinearMethod linear = LinearMethod::automatic;  // on a GPU without a matrix, on the host with one
   int max_linear_iterations = 10000;              // without a matrix, per iteration
+  /// Of conjugate gradients without a matrix. Kept from iteration to iteration of a step as long as it serves.
+  Preconditioner preconditioner = Preconditioner::automatic;
   bool accept_folded = false;  // steps that fold the body somewhere, instead of an Error
 };
 
@@ -137,6 +139,7 @@ class Implicit {
           balance_(parts_, options_.mass, options_.stiffness_damping),
           linear_(integrator.template linear<dim>()),
           before_(linear_.report()),
+          preconditioning_(options_.preconditioner),
           report_(report) {
       bool const conservative = detail::is_conservative(body);
       bool const on_host = std::same_as<typename Parts::backend_type::Recording, HostRecording>;
@@ -180,10 +183,13 @@ class Implicit {
     }
     void finish() {
       report_.linear = linear_.report();
-      report_.linear.iterations += gradients_ - before_.iterations;
+      report_.linear.iterations -= before_.iterations;
       report_.linear.hierarchies -= before_.hierarchies;
       report_.factorisations = report_.linear.factorisations -= before_.factorisations;
-      if (!assembled_) report_.linear.method = LinearMethod::matrix_free;
+      if (!assembled_) {
+        report_.linear = preconditioning_.report();
+        report_.linear.method = LinearMethod::matrix_free;
+      }
     }
 
    private:
@@ -239,6 +245,7 @@ class Implicit {
       ask_motions(parts_, state.time + h, h);
       set_step_size(parts_, rule_.force_weight * h);
       linear_.begin_anew();
+      preconditioning_.begin_anew();
       why_not_.clear();
       bool const converged = iterate(h, false) || iterate(h, true);
       if (!converged && !why_not_.empty()) throw NotTaken{why_not_};
@@ -346,8 +353,7 @@ class Implicit {
         }
       } else {
         auto const cg = detail::solve_matrix_free(parts_, own, matrix, tolerance,
-                                                  options_.max_linear_iterations);
-        gradients_ += cg.iterations;
+                                                  options_.max_linear_iterations, preconditioning_);
         // Along a direction of negative curvature the iteration stops where it is: still a way down.
         if (cg.iterations == 0 && cg.indefinite) {
           why_not_ = detail::message({Scheme::name,
@@ -436,11 +442,11 @@ class Implicit {
     detail::Balance<Parts> balance_;
     detail::LinearSolver<dim>& linear_;
     LinearReport before_;
+    detail::Preconditioning<Parts> preconditioning_;
     ImplicitReport& report_;
     std::optional<detail::AssembledSteps<TheBody>> assembled_;
     StepRule rule_{};
     LeastJacobian least_{};
-    int gradients_ = 0;
     std::string why_not_;    // the linear system of a step was not solved; empty where it was
     double start_work_ = 0;  // J: of the residual along the solution, where that begins
   };

@@ -19,7 +19,9 @@ struct NewtonOptions {
   /// unknowns and all forces have a potential. Without one all goes on in the body's precision.
   LinearMethod linear = LinearMethod::automatic;
   int max_linear_iterations = 10000;  // without a matrix, per iteration
-  bool accept_folded = false;         // an answer that is folded somewhere, instead of an Error
+  /// Of conjugate gradients without a matrix. Kept from iteration to iteration as long as it serves.
+  Preconditioner preconditioner = Preconditioner::automatic;
+  bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
 
 /// What solve_static found, and at what cost.

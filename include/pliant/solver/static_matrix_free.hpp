@@ -25,6 +25,7 @@ class MatrixFreeStatics {
       : parts_(parts),
         options_(options),
         balance_(parts, options.gravity, 0),
+        preconditioning_(options.preconditioner),
         nodes_(parts.layout.nodes),
         u_(array()),
         start_(array()),
@@ -56,6 +57,8 @@ class MatrixFreeStatics {
           balance_.scaled(1 - share, field(start_)));
       iterate(step);
     }
+    report_.linear = preconditioning_.report();
+    report_.linear.method = LinearMethod::matrix_free;
     report_.least_J = least_jacobian_on(parts_, {u_.data()}, true);
     return report_;
   }
@@ -138,9 +141,8 @@ class MatrixFreeStatics {
       double const pull = std::sqrt(dot(own.residual, own.residual));
       double const enough = std::max(driving ? driving_forcing : forcing,
                                      0.1 * options_.tolerance * now.scale / pull);
-      auto const cg =
-          solve_matrix_free(parts_, own, a, std::min(enough, 0.1), options_.max_linear_iterations);
-      report_.linear.iterations += cg.iterations;
+      auto const cg = solve_matrix_free(parts_, own, a, std::min(enough, 0.1),
+                                        options_.max_linear_iterations, preconditioning_);
       report_.indefinite = cg.indefinite;
       if (cg.indefinite && cg.iterations == 0)
         throw Error("solve_static: the stiffness is not positive definite in load step ", step,
@@ -180,6 +182,7 @@ class MatrixFreeStatics {
   Parts& parts_;
   NewtonOptions const& options_;
   Balance<Parts> balance_;
+  Preconditioning<Parts> preconditioning_;
   Index nodes_;
   Array u_, start_, external_, grown_;
   NewtonReport report_{};

@@ -151,7 +151,9 @@ class Balance {
     } else {
       ShiftedTangent<Parts> const masses{
           1, mass_, 0, std::as_const(parts_).u(), 0, std::as_const(parts_).u()};
-      solve_matrix_free(parts_, own, masses, 8 * double{std::numeric_limits<T>::epsilon()}, 200);
+      Preconditioning<Parts> by(Preconditioner::nodal_blocks);
+      solve_matrix_free(parts_, own, masses, 8 * double{std::numeric_limits<T>::epsilon()}, 200,
+                        by);
       set_sum(parts_.backend, nodes_, a, scaled(1, field(own.solution)));
     }
     parts_.layout.interpolation.apply(parts_.backend, a);

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
-#include <Eigen/Dense>
-
 #include <pliant/solver/linear/block_matrix.hpp>
+#include <pliant/solver/linear/lanczos_matrix.hpp>
 
 namespace pliant::detail {
 
@@ -36,8 +34,7 @@ class BlockJacobi {
   std::vector<double> inverse_;
 };
 
-/// The largest eigenvalue of D⁻¹ A, from below and closely: Lanczos' method in the inner product of D (see Saad,
-/// Numerical Methods for Large Eigenvalue Problems, 2011), as conjugate gradients make its matrix.
+/// The largest eigenvalue of D⁻¹ A, from below and closely: see LanczosMatrix.
 template <int N>
 double largest_eigenvalue(HostTasks const& tasks, BlockMatrix<N, N> const& a,
                           BlockJacobi<N> const& jacobi, int steps = 12) {
@@ -48,8 +45,8 @@ double largest_eigenvalue(HostTasks const& tasks, BlockMatrix<N, N> const& a,
     seed = 1664525 * seed + 1013904223;
     x = static_cast<double>(seed >> 8) / (1 << 24) - 0.5;
   }
-  std::vector<double> diagonal, beside;
-  double rz = 0, alpha = 1, beta = 0;
+  LanczosMatrix lanczos;
+  double rz = 0;
   for (int step = 0; step < steps; ++step) {
     z.setZero();
     for (Index row = 0; row < a.rows(); ++row)
@@ -57,21 +54,14 @@ double largest_eigenvalue(HostTasks const& tasks, BlockMatrix<N, N> const& a,
                                         z.data() + Eigen::Index{N} * row);
     double const before = std::exchange(rz, r.dot(z));
     if (!(rz > 0)) break;
-    beta = step == 0 ? 0 : rz / before;
+    double const beta = step == 0 ? 0 : rz / before;
     p = step == 0 ? z : Eigen::VectorXd(z + beta * p);
     multiply(tasks, a, p, q);
-    double const alpha_before = std::exchange(alpha, rz / p.dot(q));
-    if (!std::isfinite(alpha) || !(alpha > 0)) break;
-    diagonal.push_back(1 / alpha + beta / alpha_before);
-    if (step > 0) beside.push_back(std::sqrt(beta) / alpha_before);
+    double const alpha = rz / p.dot(q);
+    if (!lanczos.add(alpha, beta)) break;
     r -= alpha * q;
   }
-  if (diagonal.empty()) return 1;
-  Eigen::VectorXd const d = Eigen::VectorXd::Map(diagonal.data(), std::ssize(diagonal));
-  Eigen::VectorXd const e = Eigen::VectorXd::Map(beside.data(), std::ssize(diagonal) - 1);
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-  eigen.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().maxCoeff();
+  return lanczos.largest();
 }
 
 /// Steps towards A x = b that make errors of large eigenvalues small: Chebyshev's polynomial of D⁻¹ A over

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pliant/solver/linear/preconditioner.hpp>
+
 namespace pliant {
 
 /// How linear systems are solved.
@@ -7,15 +9,21 @@ enum class LinearMethod {
   automatic,  // by the number of unknowns and what the matrix turns out to be
   direct,     // by a factorisation
   multilevel,  // by conjugate gradients with smoothed aggregation, as long as the matrix is positive definite
-  matrix_free  // by conjugate gradients on the body's backend, on products of the tangent and inverse blocks of nodes
+  matrix_free  // by conjugate gradients on the body's backend, on products of the tangent: see Preconditioner
 };
 
 /// What the linear systems of a solve took.
 struct LinearReport {
   LinearMethod method = LinearMethod::direct;  // of the last one
   int factorisations = 0;
-  int hierarchies = 0;  // of matrices, made for the multilevel method
+  int hierarchies = 0;  // of matrices, made for the multilevel method or multigrid
   int iterations = 0;   // of conjugate gradients
+  /// Without a matrix: what preconditioned in the end, of how many matrices it was made, and the time that this took.
+  Preconditioner preconditioner = Preconditioner::nodal_blocks;
+  int levels = 1;
+  double setup = 0;  // s, of chebyshev and multigrid
+  int fallbacks =
+      0;  // linear systems in which these turned out not to be positive definite, and nodal blocks went on
 };
 
 }  // namespace pliant
