@@ -22,8 +22,9 @@ struct ImplicitOptions {
   double error = 0;
   int max_iterations = 30;   // of Newton's method, per step
   double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
-  LinearMethod linear = LinearMethod::automatic;  // on a GPU without a matrix, on the host with one
-  int max_linear_iterations = 10000;              // without a matrix, per iteration
+  /// Automatic: on hosts with a matrix, on GPUs without; there with one (on the host) in steps that find no other way.
+  LinearMethod linear = LinearMethod::automatic;
+  int max_linear_iterations = 10000;  // without a matrix, per iteration
   /// Of conjugate gradients without a matrix. Kept from iteration to iteration of a step as long as it serves.
   Preconditioner preconditioner = Preconditioner::automatic;
   bool accept_folded = false;  // steps that fold the body somewhere, instead of an Error
@@ -151,6 +152,7 @@ class Implicit {
           options_.linear == LinearMethod::matrix_free ||
           (options_.linear == LinearMethod::automatic && !on_host && conservative);
       if (!matrix_free) assembled_.emplace(body, options_.mass, linear_);
+      may_assemble_ = matrix_free && options_.linear == LinearMethod::automatic;
       begin_motion();
     }
 
@@ -247,7 +249,14 @@ class Implicit {
       linear_.begin_anew();
       preconditioning_.begin_anew();
       why_not_.clear();
-      bool const converged = iterate(h, false) || iterate(h, true);
+      bool converged = iterate(h, false) || iterate(h, true);
+      if (!converged && may_assemble_) {
+        // Directions of negative curvature end conjugate gradients; a factorisation goes through them.
+        why_not_.clear();
+        assembled_.emplace(body_, options_.mass, linear_);
+        converged = iterate(h, false) || iterate(h, true);
+        assembled_.reset();  // the next step begins as one of another call would
+      }
       if (!converged && !why_not_.empty()) throw NotTaken{why_not_};
       if (!converged)
         throw NotTaken{detail::message({Scheme::name, ": no convergence in the step to time ",
@@ -445,6 +454,7 @@ class Implicit {
     detail::Preconditioning<Parts> preconditioning_;
     ImplicitReport& report_;
     std::optional<detail::AssembledSteps<TheBody>> assembled_;
+    bool may_assemble_ = false;  // where steps without a matrix find no way
     StepRule rule_{};
     LeastJacobian least_{};
     std::string why_not_;    // the linear system of a step was not solved; empty where it was
