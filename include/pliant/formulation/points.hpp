@@ -168,7 +168,7 @@ inline constexpr bool loops = E::degree > 1 ||
 inline constexpr bool loops = E::degree > 1 && K == E::dim;
 #endif
 
-/// Calls f(q) for the first points of the steps from K.
+/// Calls f(p, q) for the steps p from K, with the first point of each.
 template <Element E, int K, int Fields, class Rule, class F>
 PLIANT_HOST_DEVICE void for_each_step(int first, F const& f) {
   constexpr int steps = power(Rule::count, K - next_free<E, K>);

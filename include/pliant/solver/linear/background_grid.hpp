@@ -5,13 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include <pliant/math/power.hpp>
 #include <pliant/mesh/mesh.hpp>
 
 namespace pliant::detail {
-
-PLIANT_HOST_DEVICE constexpr int power_of(int base, int exponent) {
-  return exponent == 0 ? 1 : base * power_of(base, exponent - 1);
-}
 
 /// The number of the neighbour at corner b of a node at corner a of one box: Σ (offset_k + 1) 3ᵏ.
 template <int Dim>
@@ -25,7 +22,7 @@ PLIANT_HOST_DEVICE constexpr int offset_between(int a, int b) {
 /// box lies at its upper end along axis k where bit k of b is set.
 template <int Dim>
 struct BackgroundGrid {
-  static constexpr int corners = power_of(2, Dim), neighbours = power_of(3, Dim);
+  static constexpr int corners = power(2, Dim), neighbours = power(3, Dim);
   using Place = std::array<Index, Dim>;  // along each axis
 
   Point<Dim> low{}, spacing{};   // m

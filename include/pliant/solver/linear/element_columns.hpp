@@ -11,7 +11,7 @@ namespace pliant::detail {
 template <class T, int Dim, class Laws>
 struct ElementColumn {
   static constexpr bool reads_elements = true;
-  static constexpr int counters = 0, corners = power_of(2, Dim), count = corners * Dim;
+  static constexpr int counters = 0, corners = power(2, Dim), count = corners * Dim;
   Laws groups;
   ElementField<T const, Dim> low;  // corners of the boxes, m
   T per_spacing[Dim];              // 1/m

@@ -28,7 +28,7 @@ PLIANT_HOST_DEVICE S local_coordinate(S x, S low, builtin_scalar<S> per_spacing)
 
 template <class T, int Dim>
 struct GridView {
-  static constexpr int corners = power_of(2, Dim), neighbours = power_of(3, Dim);
+  static constexpr int corners = power(2, Dim), neighbours = power(3, Dim);
   Index nodes, boxes;
   Index const *corner, *around, *neighbour;  // as in BackgroundGrid
   NodeField<T const, Dim> low;               // (boxes, 4): their lowest corners, m

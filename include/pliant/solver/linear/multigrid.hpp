@@ -15,7 +15,7 @@ class Multigrid final : public KeptPreconditioner {
   using T = typename Parts::T;
   using B = typename Parts::backend_type;
   static constexpr int dim = Parts::dim;
-  static constexpr int corners = power_of(2, dim);
+  static constexpr int corners = power(2, dim);
   template <class U>
   using Array = typename Parts::template Array<U>;
   using Arrays = SolverArrays<B>;

@@ -9,7 +9,7 @@ namespace pliant::detail {
 /// 32 nodes lie side by side, as threads of a GPU read them.
 template <class T, int Dim>
 struct StencilView {
-  static constexpr int neighbours = power_of(3, Dim), entries_per_node = neighbours * Dim * Dim;
+  static constexpr int neighbours = power(3, Dim), entries_per_node = neighbours * Dim * Dim;
   static constexpr int together = 32;
   T* entries;
   Index const* neighbour;  // (nodes, neighbours); −1: none
@@ -64,7 +64,7 @@ struct StencilProduct {
 /// A block of the coarser grid's matrix Pᵀ A P: numbers (node, offset).
 template <class T, int Dim>
 struct GalerkinBlock {
-  static constexpr int neighbours = power_of(3, Dim);
+  static constexpr int neighbours = power(3, Dim);
   StencilView<T, Dim> coarse, fine;
   GridView<T, Dim> grid;  // the coarser one
   PLIANT_HOST_DEVICE void operator()(Index number) const {
