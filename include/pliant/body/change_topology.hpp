@@ -134,6 +134,7 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.recorded_with_look.reset();
   parts.schedule.reset();
   parts.solver.reset();
+  parts.before_drives = {};
   parts.patch_nodes = std::move(next.patch_nodes);
   parts.awake = std::move(next.awake);
   parts.checkpoint.reset();

@@ -63,7 +63,7 @@ struct Parts {
   std::vector<MakeTerm> term_makers{};
   std::vector<DrivenNodes<B, dim>> driven{};
   std::map<std::string, Motion<dim>> motions{};  // all that were ever given, by name
-  std::vector<Point<dim>> before_drives{};       // see place_before_drives
+  Array<T> before_drives{};                      // see place_before_drives
   std::vector<std::function<void(TopologyChange<M> const&)>> listeners{};
 
   bool forces_current = false;   // while they are not, the nodes' rows of layout.f are zero

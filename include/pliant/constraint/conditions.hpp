@@ -37,24 +37,51 @@ void place_driven_nodes(Parts& parts) {
   parts.layout.interpolation.apply(parts.backend, parts.u());
 }
 
-/// Displacements as they were before conditions put nodes at the start of their motions, in the user's order,
-/// as long as nothing else has moved since; the present ones otherwise. A static solver's increments
-/// start there.
-template <class Parts>
-std::vector<Point<Parts::dim>> place_before_drives(Parts const& parts) {
-  auto const& before = parts.before_drives;
-  auto u = parts.layout.in_user_order(parts.state.u);
-  if (before.size() != u.size()) return u;
-  std::vector<DirectionMask> driven(u.size(), 0);
-  for (auto const& condition : parts.state.prescribed->conditions)
-    for (Index node : condition.nodes)
-      if (condition.motion) driven[static_cast<std::size_t>(node)] |= condition.directions;
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    if (parts.state.topology->interpolation.row_of(static_cast<Index>(i)) != nullptr) continue;
-    for (std::size_t k = 0; k < Parts::dim; ++k)
-      if (!(driven[i] >> k & 1) && u[i][k] != before[i][k]) return u;
+namespace detail {
+/// 1 where two fields differ, at nodes of elements that interpolate no others.
+template <class T, int Dim>
+struct DiffersAt {
+  NodeField<T const, Dim> a, b;
+  T const* mass;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    if (!(mass[i] > T(0))) return 0;
+    for (int k = 0; k < Dim; ++k)
+      if (a(i, k) != b(i, k)) return 1;
+    return 0;
   }
-  return before;
+};
+}  // namespace detail
+
+/// Displacements as they were before conditions put nodes at the start of their motions, (nodes, 4), m, as long as
+/// nothing else has moved since; the present ones otherwise. A static solver's increments start there.
+template <class Parts>
+typename Parts::template Array<typename Parts::T> const& place_before_drives(Parts const& parts) {
+  using T = typename Parts::T;
+  auto const& u = parts.state.u;
+  auto const& before = parts.before_drives;
+  if (before.size() != u.size()) return u;
+  // With the present displacements where nodes are driven.
+  auto same = zeros<T>(parts.backend, u.size());
+  detail::copy_values(parts.backend, before.data(), same.data(), u.size());
+  for (auto const& driven : parts.driven)
+    driven.copy(parts.backend, parts.u(), node_field<Parts::dim>(same));
+  bool const moved =
+      parts.backend.maximum(
+          parts.layout.nodes,
+          detail::DiffersAt<T, Parts::dim>{parts.u(), node_field<Parts::dim>(std::as_const(same)),
+                                           parts.layout.mass.data()}) > 0;
+  return moved ? u : before;
+}
+
+/// For place_before_drives, before a condition puts nodes at the start of its motion.
+template <class Parts>
+void keep_place_before_drives(Parts& parts) {
+  using T = typename Parts::T;
+  auto const& place = place_before_drives(parts);
+  if (&place == &parts.before_drives) return;
+  if (parts.before_drives.size() != place.size())
+    parts.before_drives = zeros<T>(parts.backend, place.size());
+  detail::copy_values(parts.backend, place.data(), parts.before_drives.data(), place.size());
 }
 
 /// Which directions of each node some conditions hold or drive, by internal numbers.
@@ -188,7 +215,7 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
     parts.motions.insert_or_assign(condition.name, condition.motion);
   }
   Handle const handle = condition.handle;
-  if (condition.motion) parts.before_drives = place_before_drives(parts);
+  if (condition.motion) keep_place_before_drives(parts);
   bool const moves = static_cast<bool>(condition.motion);
   auto const own =
       upload(parts.backend, held_directions<Parts>(parts, std::span(&std::as_const(condition), 1)));

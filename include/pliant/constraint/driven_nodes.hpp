@@ -30,6 +30,20 @@ struct Prescribe {
   }
 };
 
+/// Copies the values of the nodes of a list in some directions.
+template <class T, int Dim>
+struct CopyListed {
+  NodeField<T const, Dim> from;
+  NodeField<T, Dim> to;
+  Index const* nodes;
+  DirectionMask directions;
+
+  PLIANT_HOST_DEVICE void operator()(Index n) const {
+    for (int k = 0; k < Dim; ++k)
+      if (directions >> k & 1) to(nodes[n], k) = from(nodes[n], k);
+  }
+};
+
 /// The work of a condition on the nodes that it drives, J, around the present time: the forces F that pull there
 /// are overcome along the half steps before and behind it, and the nodes gain kinetic energy,
 /// −F·(lag v₋ + kick v₊) + m (v₊² − v₋²)/2.
@@ -132,6 +146,11 @@ class DrivenNodes {
                         v, f, mass, load, gravity, nodes_.data(), condition_.directions, velocity_,
                         rows_.size() > 0 ? rows_.data() : nullptr, lag, kick, drifts},
                     to);
+  }
+  /// Copies one field to another where the condition drives nodes.
+  void copy(B const& backend, NodeField<T const, Dim> from, Field to) const {
+    backend.for_each(static_cast<Index>(nodes_.size()),
+                     detail::CopyListed<T, Dim>{from, to, nodes_.data(), condition_.directions});
   }
   void place(B const& backend, Field u, Field v) const {
     backend.for_each(

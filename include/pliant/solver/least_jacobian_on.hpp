@@ -54,6 +54,17 @@ struct NegativeAt {
   PLIANT_HOST_DEVICE double operator()(Index i) const { return -static_cast<double>(values[i]); }
 };
 
+/// Largest at the first of the values that are not above one: minus its number.
+template <class T>
+struct FirstOf {
+  T const* values;
+  double value;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    return static_cast<double>(values[i]) <= value ? -static_cast<double>(i)
+                                                   : -std::numeric_limits<double>::infinity();
+  }
+};
+
 /// Gradients of an element's shape functions on its lattice as one list.
 template <Element E, class T>
 std::vector<T> listed_gradients() {
@@ -96,8 +107,8 @@ LeastJacobian least_jacobian_on(Parts& parts, typename Parts::ConstField u, bool
     double const least =
         -parts.backend.maximum(table.count(), detail::NegativeAt<T>{table.scratch.data()});
     if (!(least < found.value)) return;
-    auto const values = download<T>(table.scratch);
-    auto const at = std::ranges::min_element(values) - values.begin();
+    double const at =
+        -parts.backend.maximum(table.count(), detail::FirstOf<T>{table.scratch.data(), least});
     found = {least, E::name(), table.user_element[static_cast<std::size_t>(at)]};
   });
   return found;

@@ -5,6 +5,7 @@
 
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
+#include <pliant/solver/load_steps.hpp>
 #include <pliant/solver/static_matrix_free.hpp>
 #include <pliant/solver/static_problem.hpp>
 
@@ -17,17 +18,11 @@ inline void check_options(NewtonOptions const& options) {
     throw Error("solve_static: load_steps ", options.load_steps, ", max_iterations ",
                 options.max_iterations, " and max_linear_iterations ",
                 options.max_linear_iterations, "; give 1 or more");
+  if (options.load_halvings < 0 || options.load_halvings > 30)
+    throw Error("solve_static: load_halvings ", options.load_halvings, "; give 0 to 30");
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw Error("solve_static: a tolerance of ", options.tolerance,
                 "; give a number between 0 and 1, relative to the forces");
-}
-
-inline void refuse_folds(NewtonOptions const& options, LeastJacobian const& folded) {
-  if (!options.accept_folded && !(folded.value > 0))
-    throw Error("solve_static: the answer is folded: det F comes to ", folded.value, " in ",
-                folded.element, " element ", folded.number,
-                ", perhaps between the points of its quadrature; take more points, a finer mesh "
-                "there or more load_steps, or accept it by accept_folded");
 }
 
 /// Newton's method on one body: see solve_static.
@@ -43,7 +38,8 @@ class StaticNewton {
         problem_(body, options.gravity),
         conservative_(is_conservative(body)),
         linear_("solve_static", options.linear),
-        u_(StaticProblem<TheBody>::flat(place_before_drives(body.parts()))) {
+        u_(StaticProblem<TheBody>::flat(
+            body.parts().layout.in_user_order(place_before_drives(body.parts())))) {
     report_.unknowns = problem_.unknowns.count();
     report_.gravity = options.gravity;
   }
@@ -53,26 +49,34 @@ class StaticNewton {
     Vector const from = u_;
     Vector to = u_;
     problem_.prescribe(to, body_.time());
-    // What is in balance where the body is: loads grow from there.
-    Vector balance = Vector::Zero(problem_.size());
-    if (options_.load_steps > 1) {
-      share_ = 0;
-      balance = evaluate(u_).force;
-      problem_.unknowns.keep(balance);
-    }
-    for (int step = 1; step <= options_.load_steps; ++step) {
+    Vector balance, reached = u_;
+    auto const take = [&](LoadStep const& step) {
       step_ = step;
-      share_ = static_cast<double>(step) / options_.load_steps;
-      load_ = share_ * problem_.external - (1 - share_) * balance;
-      target_ = from + share_ * (to - from);
-      if (step == options_.load_steps) target_ = to;
+      if (step.to == 1) {
+        load_ = problem_.external;
+        target_ = to;
+      } else {
+        if (balance.size() == 0) {  // what is in balance where the body is: loads grow from there
+          step_.to = 0;
+          balance = evaluate(from).force;
+          problem_.unknowns.keep(balance);
+          step_ = step;
+        }
+        load_ = step.to * problem_.external - (1 - step.to) * balance;
+        target_ = from + step.to * (to - from);
+      }
       iterate();
-    }
+      if (step.to == 1) refuse_folds(options_, least_jacobian_at(body_.parts(), u_, false));
+      reached = u_;
+    };
+    report_.load_steps = follow_loads(options_, take, [&] {
+      u_ = reached;
+      linear_.begin_anew();
+    });
     report_.indefinite = conservative_ && linear_.indefinite();
     report_.linear = linear_.report();
     report_.factorisations = report_.linear.factorisations;
     report_.least_J = least_jacobian_at(body_.parts(), u_, true);
-    refuse_folds(options_, least_jacobian_at(body_.parts(), u_, false));
     return u_;
   }
   NewtonReport const& report() const { return report_; }
@@ -83,7 +87,7 @@ class StaticNewton {
     Vector force;   // N
   };
   void assemble_at(Vector const& u, Assemble what) {
-    assemble_into(sum_, body_.parts(), u, what, std::numeric_limits<double>::infinity(), share_);
+    assemble_into(sum_, body_.parts(), u, what, std::numeric_limits<double>::infinity(), step_.to);
   }
   Evaluated evaluate(Vector const& u) {
     assemble_at(u, Assemble::energy_and_force);
@@ -110,17 +114,14 @@ class StaticNewton {
       Vector const residual = out_of_balance(now);
       double const scale = std::max(load_.norm(), now.force.norm());
       report_.residual = residual.norm();
+      if (iteration == 0) report_.residuals.clear();
+      report_.residuals.push_back(report_.residual);
       report_.energy = now.energy;
       bool const finite = std::isfinite(report_.residual) && std::isfinite(now.energy);
       if (!driving && finite && (settled || report_.residual <= options_.tolerance * scale)) return;
-      if (!finite && iteration == 0)
-        throw Error("solve_static: energy or forces are not finite where load step ", step_, " of ",
-                    options_.load_steps,
-                    " starts: an element is folded there; start from displacements without folds");
+      if (!finite && iteration == 0) throw Error(folded_start());
       if (iteration == options_.max_iterations || !finite)
-        throw Error("solve_static: no convergence in load step ", step_, " of ",
-                    options_.load_steps, " after ", iteration, " iterations, residual ",
-                    report_.residual, " N; use more load_steps, or a law that does not soften");
+        throw LoadStepFailed(no_convergence(step_, iteration, report_.residual));
       if (!linear_so_far) {
         assemble_at(u_, Assemble::stiffness);
         ++report_.assemblies;
@@ -136,9 +137,7 @@ class StaticNewton {
       // Nothing but folds bounds a step that moves driven nodes: it has to be right.
       double const enough = std::max(driving ? driving_forcing : forcing,
                                      0.1 * options_.tolerance * scale / pull.norm());
-      Vector const du = linear_.solve(
-          tasks_, {sum_.stiffness, problem_.unknowns, body_.mesh().nodes, conservative_}, pull,
-          std::min(enough, 0.1));
+      Vector const du = solve_linear(pull, std::min(enough, 0.1), iteration);
       double const factor = search(now, residual, du, prescribed, driving);
       largest_ = std::max(largest_, u_.norm());
       settled = factor == 1 && !driving && du.norm() <= 1e-14 * largest_;
@@ -147,6 +146,17 @@ class StaticNewton {
       forcing = std::clamp(surprise, 0.0, first_forcing);
       linear_so_far = factor == 1 && surprise < 1e-9;
       ++report_.iterations;
+    }
+  }
+  /// Only the first matrix of a load step stays the same in a shorter one.
+  Vector solve_linear(Vector const& pull, double tolerance, int iteration) {
+    try {
+      return linear_.solve(tasks_,
+                           {sum_.stiffness, problem_.unknowns, body_.mesh().nodes, conservative_},
+                           pull, tolerance);
+    } catch (Error const& error) {
+      if (iteration == 0) throw;
+      throw LoadStepFailed(error.what());
     }
   }
   bool is_driven_by(Vector const& increment) const {
@@ -195,9 +205,8 @@ class StaticNewton {
   LinearSolver<TheBody::dim> linear_;
   AssembledBlocks<TheBody::dim> sum_;
   Vector u_, load_, target_;
-  double share_ = 1;
   double largest_ = 0;  // m: of all displacements so far
-  int step_ = 1;
+  LoadStep step_;
   NewtonReport report_;
 };
 
@@ -214,7 +223,6 @@ NewtonReport solve_static_matrix_free(TheBody& body, NewtonOptions const& option
   MatrixFreeStatics<typename TheBody::parts_type> statics(parts, options,
                                                           place_before_drives(parts));
   auto const report = statics.solve();
-  refuse_folds(options, least_jacobian_on(parts, {statics.displacements().data()}, false));
   change_by_hand(parts, [&] {
     copy_values(parts.backend, statics.displacements().data(), parts.state.u.data(),
                 parts.state.u.size());
@@ -235,13 +243,13 @@ bool lies_better_on_backend(TheBody const& body) {
 
 /// Brings a body into static equilibrium with its gravity, loads and conditions: Newton's method on
 /// the assembled matrix, in double precision whatever the body's own, or without a matrix where the body's arrays lie
-/// (NewtonOptions::linear), with load steps and a line search: on the potential energy, or, as pressures that follow a surface have none, on the work of
-/// the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
+/// (NewtonOptions::linear), with load steps and a line search: on the potential energy, or, as pressures that follow a
+/// surface have none, on the work of the residual along the step (Matthies and Strang, International Journal for Numerical Methods in
 /// Engineering 14 (1979) 1613). The first linear solve of a load step carries its increment of driven
 /// nodes. Load steps lead from where the body is, in balance with what it then bears, to all of its
-/// loads; the user's own force terms act in full. Done within the tolerance, or when a step no longer
+/// loads, and are halved where they fail; the user's own force terms act in full. Done within the tolerance, or when a step no longer
 /// moves anything but the last digits. Internal variables are brought to rest. Velocities are left alone. Throws
-/// Error, with the body as it was, where the matrix is singular, the iteration does not converge, or the
+/// Error, with the body as it was, where the matrix is singular, the iteration does not converge in the shortest load steps, or the
 /// answer is folded (det F ≤ 0, looked for all over each element whose law is not linear).
 template <DeformableBody TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
@@ -263,7 +271,7 @@ NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
     body.set_displacements(detail::StaticProblem<TheBody>::per_node(newton.solve()));
     report = newton.report();
   }
-  body.parts().before_drives.clear();
+  body.parts().before_drives = {};
   if constexpr (TheBody::has_internal_variables)
     change_by_hand(body.parts(), [&] { equilibrate(body.parts()); });
   return report;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/linear_method.hpp>
 #include <pliant/solver/mass_product.hpp>
@@ -8,7 +10,9 @@ namespace pliant {
 
 /// How solve_static looks for equilibrium.
 struct NewtonOptions {
-  int load_steps = 1;       // gravity, loads, pressures and motions grow in so many equal steps
+  int load_steps = 1;  // gravity, loads, pressures and motions grow in so many equal steps
+  /// How often a load step may be halved where Newton's method does not converge or the answer is folded.
+  int load_halvings = 5;
   int max_iterations = 50;  // per load step
   double tolerance =
       1e-11;  // of the residual, relative to the external forces and reactions; below 1
@@ -27,12 +31,14 @@ struct NewtonOptions {
 /// What solve_static found, and at what cost.
 struct NewtonReport {
   Index unknowns = 0;
-  int iterations = 0;                           // in all
-  int factorisations = 0;                       // of the stiffness
-  LinearReport linear;                          // what the linear systems took
-  int assemblies = 0;                           // of the stiffness
-  double residual = 0;                          // N, the last
-  double energy = 0;                            // strain energy, J
+  int load_steps = 0;             // that were taken
+  int iterations = 0;             // in all, those of halved load steps included
+  int factorisations = 0;         // of the stiffness
+  LinearReport linear;            // what the linear systems took
+  int assemblies = 0;             // of the stiffness
+  double residual = 0;            // N, the last
+  std::vector<double> residuals;  // N: where each iteration of the last load step began
+  double energy = 0;              // strain energy, J
   MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
   /// Of the last stiffness: where it has a negative pivot, or conjugate gradients met a direction of negative curvature.
   /// The answer is a saddle then, in balance but not stable. Not told where forces have no potential.

@@ -6,7 +6,7 @@
 
 #include <pliant/solver/implicit/balance.hpp>
 #include <pliant/solver/least_jacobian_on.hpp>
-#include <pliant/solver/newton_options.hpp>
+#include <pliant/solver/load_steps.hpp>
 
 namespace pliant::detail {
 
@@ -18,10 +18,11 @@ class MatrixFreeStatics {
   static constexpr int dim = Parts::dim;
   using Field = typename Parts::Field;
   using ConstField = typename Parts::ConstField;
+  using Array = typename Parts::template Array<T>;
 
  public:
-  /// `from`: displacements in the user's order, where load steps begin.
-  MatrixFreeStatics(Parts& parts, NewtonOptions const& options, std::vector<Point<dim>> const& from)
+  /// `from`: displacements, where load steps begin.
+  MatrixFreeStatics(Parts& parts, NewtonOptions const& options, Array const& from)
       : parts_(parts),
         options_(options),
         balance_(parts, options.gravity, 0),
@@ -31,7 +32,7 @@ class MatrixFreeStatics {
         start_(array()),
         external_(array()),
         grown_(array()) {
-    u_.upload(parts.layout.padded(from));
+    copy(from, u_);
     parts.layout.interpolation.apply(parts.backend, field(u_));
     copy(u_, start_);
     balance_.weigh(field(external_));
@@ -40,15 +41,20 @@ class MatrixFreeStatics {
   NewtonReport solve() {
     auto& own = balance_.arrays();
     auto const prescribed = field(own.speed);
-    // What is in balance where the body is: loads grow from there.
-    evaluate(u_, 0);
-    auto const balance = array();
-    set(field(balance), balance_.scaled(1, field(own.residual)));
+    Array balance;
+    Array& reached = own.increment;
+    copy(u_, reached);
     ask_motions(parts_, parts_.state.time, 0);
-    for (int step = 1; step <= options_.load_steps; ++step) {
-      double const share = static_cast<double>(step) / options_.load_steps;
+    auto const take = [&](LoadStep const& step) {
+      double const share = step.to;
+      if (share < 1 && balance.size() == 0) {
+        // What is in balance where the body is: loads grow from there.
+        evaluate(start_, 0);
+        balance = array();
+        copy(own.residual, balance);
+      }
       set(field(grown_), balance_.scaled(share, field(external_)),
-          balance_.scaled(options_.load_steps > 1 ? -(1 - share) : 0, field(balance)));
+          balance_.scaled(share < 1 ? -(1 - share) : 0, field(balance)));
       // Where driven nodes are to be: start + share (end − start).
       set(prescribed, balance_.scaled(1, field(start_)));
       for (auto const& driven : parts_.driven)
@@ -56,16 +62,21 @@ class MatrixFreeStatics {
       set(prescribed, balance_.scaled(share, prescribed),
           balance_.scaled(1 - share, field(start_)));
       iterate(step);
-    }
+      if (share == 1) refuse_folds(options_, least_jacobian_on(parts_, {u_.data()}, false));
+      copy(u_, reached);
+    };
+    report_.load_steps = follow_loads(options_, take, [&] {
+      copy(reached, u_);
+      preconditioning_.begin_anew();
+    });
     report_.linear = preconditioning_.report();
     report_.linear.method = LinearMethod::matrix_free;
     report_.least_J = least_jacobian_on(parts_, {u_.data()}, true);
     return report_;
   }
-  typename Parts::template Array<T> const& displacements() const { return u_; }
+  Array const& displacements() const { return u_; }
 
  private:
-  using Array = typename Parts::template Array<T>;
   Array array() const { return zeros<T>(parts_.backend, parts_.layout.rest.size()); }
   Field field(Array const& array) const { return {const_cast<T*>(array.data())}; }
   template <class... Terms>
@@ -105,7 +116,7 @@ class MatrixFreeStatics {
   }
 
   /// One load step.
-  void iterate(int step) {
+  void iterate(LoadStep const& step) {
     auto& own = balance_.arrays();
     auto const increment = field(own.trial), target = field(own.speed);
     double const eps = 45 * double{std::numeric_limits<T>::epsilon()};
@@ -122,16 +133,13 @@ class MatrixFreeStatics {
       parts_.layout.interpolation.apply(parts_.backend, increment);
       bool const driving = dot(own.trial, own.trial) > 0;
       report_.residual = now.residual;
+      if (iteration == 0) report_.residuals.clear();
+      report_.residuals.push_back(now.residual);
       bool const finite = std::isfinite(now.residual) && std::isfinite(now.potential);
       if (!driving && finite && (settled || now.residual <= options_.tolerance * now.scale)) return;
-      if (!finite && iteration == 0)
-        throw Error("solve_static: energy or forces are not finite where load step ", step, " of ",
-                    options_.load_steps,
-                    " starts: an element is folded there; start from displacements without folds");
+      if (!finite && iteration == 0) throw Error(folded_start());
       if (iteration == options_.max_iterations || !finite)
-        throw Error("solve_static: no convergence in load step ", step, " of ", options_.load_steps,
-                    " after ", iteration, " iterations, residual ", report_.residual,
-                    " N; use more load_steps, or a law that does not soften");
+        throw LoadStepFailed(no_convergence(step, iteration, report_.residual));
       ShiftedTangent<Parts> const a{0, MassMatrix::lumped, 1, {u_.data()}, 0, {u_.data()}};
       if (driving) {
         a.apply(parts_, increment, field(own.image));
@@ -144,9 +152,12 @@ class MatrixFreeStatics {
       auto const cg = solve_matrix_free(parts_, own, a, std::min(enough, 0.1),
                                         options_.max_linear_iterations, preconditioning_);
       report_.indefinite = cg.indefinite;
-      if (cg.indefinite && cg.iterations == 0)
-        throw Error("solve_static: the stiffness is not positive definite in load step ", step,
-                    "; use more load_steps, or LinearMethod::direct");
+      if (cg.indefinite && cg.iterations == 0) {
+        auto const text = message({"solve_static: the stiffness is not positive definite ",
+                                   step.name(), "; use more load_steps, or LinearMethod::direct"});
+        if (iteration == 0) throw Error(text);
+        throw LoadStepFailed(text);
+      }
       settled = search(now, driving);
       forcing = std::clamp(0.9 * square(now.residual / pull), 1e-6, first_forcing);
       settled = settled && !driving &&
