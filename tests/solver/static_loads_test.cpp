@@ -116,6 +116,17 @@ TEST_CASE("a way in load steps begins before the body was driven", "[solver]") {
   CHECK(body.displacements()[static_cast<std::size_t>(top[0])][1] == 0.25);
 }
 
+TEST_CASE("a way in load steps begins where the body was put after it was driven", "[solver]") {
+  auto const drive = [](double) { return Point<2>{0, -0.05}; };
+  auto const rest = pressed_block(drive);
+  auto solved = pressed_block(drive);
+  solve_static(solved);
+  auto body = pressed_block(drive);
+  REQUIRE(difference(body.displacements(), rest.displacements()) == 0);
+  body.set_displacements(solved.displacements());
+  CHECK(solve_static(body, {.tolerance = 1e-9}).iterations == 0);
+}
+
 TEST_CASE("a second solution starts where the body is", "[solver]") {
   double way = -0.05;
   auto body = pressed_block([&](double) { return Point<2>{0, way}; });
