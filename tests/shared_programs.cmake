@@ -40,7 +40,7 @@ share(shared/elements
       formulation/coefficients mesh/check mesh/generators mesh/loads mesh/middles
       topology/transfer)
 share(shared/statics
-      body/pressure solver/assemble solver/load_steps solver/static solver/static_loads solver/static_report)
+      body/pressure solver/assemble solver/equilibrium_path solver/load_steps solver/static solver/static_loads solver/static_report)
 share(shared/implicit
       solver/implicit solver/implicit_state solver/schemes solver/without_matrix)
 share(shared/preconditioners
