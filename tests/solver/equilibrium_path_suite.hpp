@@ -60,7 +60,7 @@ TEST_CASE("an arch snaps through along its equilibria", "[solver]") {
     PathReport report;
     auto const seen = follow(body, {.first = 0.1, .longest = 1}, report);
 
-    CHECK(report.end == PathEnd::reached);
+    REQUIRE(report.end == PathEnd::reached);
     CHECK(report.points == std::ssize(seen.points));
     CHECK(report.last.share == 1);
     CHECK(seen.points.front().stable);
