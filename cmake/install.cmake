@@ -11,11 +11,19 @@ if(NOT PLIANT_INSTALL)
   list(APPEND rule EXCLUDE_FROM_ALL)
 endif()
 
-foreach(target IN ITEMS pliant pliant_openmp pliant_cuda)
-  install(TARGETS ${target} EXPORT ${target} FILE_SET HEADERS ${rule})
+foreach(target IN ITEMS pliant pliant_solvers pliant_openmp pliant_cuda)
+  if(target STREQUAL pliant_solvers)
+    install(TARGETS ${target} EXPORT ${target} ${rule})
+  else()
+    install(TARGETS ${target} EXPORT ${target} FILE_SET HEADERS ${rule})
+  endif()
   install(EXPORT ${target} NAMESPACE pliant:: DESTINATION "${package_folder}" ${rule})
   export(EXPORT ${target} NAMESPACE pliant:: FILE "${PROJECT_BINARY_DIR}/exports/${target}.cmake")
 endforeach()
+
+# Where its target looks for it, which CMAKE_INSTALL_INCLUDEDIR does not move.
+install(FILES "${PROJECT_SOURCE_DIR}/${pliant_solvers_source}" DESTINATION include/pliant/solver
+        ${rule})
 
 configure_package_config_file(cmake/pliantConfig.cmake.in pliantConfig.cmake
                               INSTALL_DESTINATION "${package_folder}" NO_SET_AND_CHECK_MACRO)

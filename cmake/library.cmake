@@ -1,8 +1,10 @@
-# The three targets, header-only all of them:
+# The targets, header-only all of them:
 #   pliant::pliant   the library and its serial Reference backend; needs Eigen
 #   pliant::openmp   with the OpenMP backend
 #   pliant::cuda     with the CUDA backend
-# The last two exist under these names only where this build has what they need. They are
+#   pliant::solvers  beside one of these, for programs that take long to compile: the solvers of matrices that solve.hpp
+#                    rests on are one more source of the program, instead of a part of each
+# Those of OpenMP and CUDA exist under these names only where this build has what they need. They are
 # installed all the same: an installed copy looks for OpenMP or CUDA when a project asks for them.
 
 # pliant_add_headers(<target> <include root>...): an interface library of all headers there.
@@ -20,6 +22,16 @@ pliant_add_headers(pliant include backends/reference)
 add_library(pliant::pliant ALIAS pliant)
 target_compile_features(pliant INTERFACE cxx_std_20)
 target_link_libraries(pliant INTERFACE Eigen3::Eigen)
+
+add_library(pliant_solvers INTERFACE)
+add_library(pliant::solvers ALIAS pliant_solvers)
+set_target_properties(pliant_solvers PROPERTIES EXPORT_NAME solvers)
+set(pliant_solvers_source include/pliant/solver/compiled.cpp)
+target_sources(
+  pliant_solvers INTERFACE "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${pliant_solvers_source}>"
+                           "$<INSTALL_INTERFACE:${pliant_solvers_source}>")
+target_compile_definitions(pliant_solvers INTERFACE PLIANT_COMPILED_SOLVERS)
+target_link_libraries(pliant_solvers INTERFACE pliant)
 
 pliant_add_headers(pliant_openmp backends/openmp)
 set_target_properties(pliant_openmp PROPERTIES EXPORT_NAME openmp)

@@ -24,13 +24,14 @@ function(pliant_test)
   # Most tests take longer to optimise than to run. What the optimiser makes of kernels is looked at by
   # those that compare backends, on one law for each linear element.
   set(level -O0)
-  if(arg_NAME MATCHES "^(adaptation/(marking|sleep)|openmp/threads|solver/(linear|local_steps))$")
+  if(arg_NAME MATCHES "^(adaptation/(marking|sleep)|openmp/threads|solver/local_steps)$")
     set(level -O1)
   elseif(arg_NAME MATCHES "^(backend|openmp)/" AND NOT arg_NAME MATCHES "^backend/agreement_")
     set(level -O3)
   endif()
-  target_compile_options(${target}
-                         PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:${level}>)
+  if(NOT arg_CUDA)
+    pliant_precompile(${target} ${level})
+  endif()
   add_dependencies(pliant_tests ${target})
 
   if(arg_TESTS)

@@ -7,7 +7,9 @@ find_program(PLIANT_CCACHE ccache)
 if(PLIANT_CCACHE)
   foreach(language IN ITEMS CXX CUDA)
     if(NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
-      set(CMAKE_${language}_COMPILER_LAUNCHER "${PLIANT_CCACHE}")
+      # What it needs to know precompiled headers by their contents.
+      set(CMAKE_${language}_COMPILER_LAUNCHER
+          "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${PLIANT_CCACHE}")
     endif()
   endforeach()
 endif()
@@ -47,6 +49,11 @@ if(pliant_has_cuda)
   add_custom_target(pliant_gpu)
 endif()
 
+# Solvers of matrices, compiled once for all programs of the CPU.
+add_library(pliant_program_solvers STATIC EXCLUDE_FROM_ALL "${PROJECT_SOURCE_DIR}/${pliant_solvers_source}")
+target_compile_definitions(pliant_program_solvers PUBLIC PLIANT_COMPILED_SOLVERS)
+target_link_libraries(pliant_program_solvers PRIVATE pliant_program PUBLIC pliant::pliant)
+
 # pliant_add_program(<target> SOURCES <file>... [CUDA] [LINK <library>...])
 # An executable against the library and the backends that this build has; .cu files get
 # pliant::cuda alone, since nvcc compiles no SIMD packs.
@@ -57,7 +64,10 @@ function(pliant_add_program target)
   if(arg_CUDA)
     target_link_libraries(${target} PRIVATE pliant::cuda)
     add_dependencies(pliant_gpu ${target})
-  elseif(pliant_has_openmp)
-    target_link_libraries(${target} PRIVATE pliant::openmp)
+  else()
+    target_link_libraries(${target} PRIVATE pliant_program_solvers)
+    if(pliant_has_openmp)
+      target_link_libraries(${target} PRIVATE pliant::openmp)
+    endif()
   endif()
 endfunction()

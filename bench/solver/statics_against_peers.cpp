@@ -11,6 +11,8 @@
 #include <pliant/openmp.hpp>
 #include <pliant/pliant.hpp>
 #include <pliant/solve.hpp>
+#include <pliant/solver/linear/conjugate_gradients.hpp>
+#include <pliant/solver/linear/multilevel.hpp>
 
 #if defined(PLIANT_BENCH_CHOLMOD)
 #include <Eigen/CholmodSupport>

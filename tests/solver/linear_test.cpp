@@ -2,6 +2,9 @@
 
 #include <pliant/reference.hpp>
 #include <pliant/solve.hpp>
+#include <pliant/solver/linear/conjugate_gradients.hpp>
+#include <pliant/solver/linear/definitions/multilevel.hpp>
+#include <pliant/solver/linear/direct_solver.hpp>
 
 #include "support/formulations.hpp"
 #include "support/random.hpp"

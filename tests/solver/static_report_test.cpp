@@ -1,6 +1,7 @@
 #include <limits>
 
 #include <pliant/solve.hpp>
+#include <pliant/solver/linear/direct_solver.hpp>
 
 #include "support/formulations.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <pliant/solver/linear/compiled_once.hpp>
 
 namespace pliant::detail {
 
@@ -21,14 +21,7 @@ class LanczosMatrix {
     return true;
   }
   /// The largest eigenvalue, which comes from below and closely to that of the preconditioned matrix; 1 without steps.
-  double largest() const {
-    if (diagonal_.empty()) return 1;
-    Eigen::VectorXd const d = Eigen::VectorXd::Map(diagonal_.data(), std::ssize(diagonal_));
-    Eigen::VectorXd const e = Eigen::VectorXd::Map(beside_.data(), std::ssize(beside_));
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-    eigen.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
-    return eigen.eigenvalues().maxCoeff();
-  }
+  double largest() const;
 
  private:
   std::vector<double> diagonal_, beside_;
@@ -36,3 +29,7 @@ class LanczosMatrix {
 };
 
 }  // namespace pliant::detail
+
+#if !defined(PLIANT_COMPILED_SOLVERS)
+#include <pliant/solver/linear/definitions/lanczos_matrix.hpp>
+#endif

@@ -1,0 +1,30 @@
+# pliant_precompile(<program> <level>): compiles a test program of the CPU with optimisation <level>, and has it take
+# what nearly all of them include as a header that is compiled once for each level.
+option(PLIANT_PRECOMPILE "Precompile what test programs include" ON)
+
+function(pliant_precompile program level)
+  target_compile_options(${program} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:${level}>)
+  if(NOT PLIANT_PRECOMPILE)
+    return()
+  endif()
+  set(owner "pliant_headers${level}")
+  if(NOT TARGET ${owner})
+    set(source "${PROJECT_BINARY_DIR}/${owner}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "" @ONLY)
+    set(backends <pliant/reference.hpp>)
+    add_library(${owner} OBJECT EXCLUDE_FROM_ALL "${source}")
+    target_link_libraries(${owner} PRIVATE pliant_program pliant::pliant pliant_program_solvers Catch2::Catch2)
+    if(pliant_has_openmp)
+      target_link_libraries(${owner} PRIVATE pliant::openmp)
+      list(APPEND backends <pliant/openmp.hpp>)
+    endif()
+    target_compile_options(${owner} PRIVATE $<$<CONFIG:Release>:${level}>)
+    target_precompile_headers(${owner} PRIVATE <catch2/catch.hpp> <pliant/pliant.hpp> ${backends} <pliant/solve.hpp>)
+  endif()
+  target_precompile_headers(${program} REUSE_FROM ${owner})
+endfunction()
+
+# g++ keeps what it needs to read a precompiled header with a cache of compilations.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND PLIANT_CCACHE)
+  target_compile_options(pliant_program INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+endif()
