@@ -34,6 +34,15 @@ compiles without these checks."
 #define PLIANT_HOST_DEVICE inline PLIANT_INLINE
 #endif
 
+/// Marks functions that few elements call. On a CPU they stay out of line, where they take no registers from what
+/// surrounds them (constexpr is what lets a function be that and belong to no source); on a device a call would pass
+/// the fields of an element through memory.
+#if defined(__CUDACC__)
+#define PLIANT_SELDOM PLIANT_HOST_DEVICE
+#else
+#define PLIANT_SELDOM [[gnu::noinline]] constexpr
+#endif
+
 namespace pliant {
 
 /// The version of the library (semantic); its CMake package has the same.

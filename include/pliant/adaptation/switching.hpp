@@ -80,12 +80,11 @@ struct ActVisitor {
       return false;
   }
 
-  /// Seldom called, so kept out of line; constexpr is what lets device code call it. What leapfrog keeps is
-  /// W + v₋·M·v₊/2 with the velocities v∓ of the half steps around the present time. While a half-kick is
-  /// pending, the next step finds v₊ = v₋ + Δt M⁻¹ F, so that a change ΔF of an element's forces adds
+  /// What leapfrog keeps is W + v₋·M·v₊/2 with the velocities v∓ of the half steps around the present time.
+  /// While a half-kick is pending, the next step finds v₊ = v₋ + Δt M⁻¹ F, so that a change ΔF of an element's forces adds
   /// Δt/2 v₋·ΔF to the change of W. (Of velocities of the present time: see book_switching.)
   template <int From, int To, class Again, class Tally>
-  [[gnu::noinline]] constexpr void move(Index e, Again const& again, Tally const& tally) const {
+  PLIANT_SELDOM void move(Index e, Again const& again, Tally const& tally) const {
     using Old = typename Table::template formulation<From>;
     using New = typename Table::template formulation<To>;
     OneElement const own{e};
