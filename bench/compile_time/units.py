@@ -16,6 +16,7 @@ class Unit:
     includes: list  # of pliant/, without the backend's
     main: str = ""
     backend: bool = True  # whether the backend's header is included too
+    define: str = ""
 
 
 ONE = """
@@ -29,6 +30,7 @@ int main() {{
 }}
 """
 FORCES = ONE.replace("{use}", "return body.forces().empty();")
+REST = ONE.replace("{use}", "return solve_static(body).iterations;")
 STEP = ONE.replace("{use}", "CentralDifference step;\n  step(body);\n  return body.forces().empty();")
 
 LAWS = ["Hooke", "SaintVenantKirchhoff", "NeoHookean", "StableNeoHookean", "MooneyRivlin", "Yeoh"]
@@ -65,6 +67,10 @@ UNITS = [
     Unit("one_formulation", "the same from pliant.hpp", ["pliant"], STEP),
     Unit("twelve_groups", "six laws on Tet4 and on Hex8 in one body, and an explicit step",
          ["pliant"], TWELVE),  # fmt: skip
+    Unit("static", "one formulation brought to rest, from pliant.hpp and solve.hpp",
+         ["pliant", "solve"], REST),  # fmt: skip
+    Unit("static_with_solvers", "the same beside pliant::solvers", ["pliant", "solve"], REST,
+         define="PLIANT_COMPILED_SOLVERS"),  # fmt: skip
 ]
 
 
@@ -73,7 +79,8 @@ def source_of(unit, backend):
     includes = [f"pliant/{name}.hpp" for name in unit.includes]
     if unit.backend:
         includes.append(header)
-    lines = [f"#include <{name}>" for name in includes]
+    lines = [f"#define {unit.define}"] if unit.define else []
+    lines += [f"#include <{name}>" for name in includes]
     if includes:
         lines.append("using namespace pliant;")
     return "\n".join(lines) + "\n" + unit.main.format(backend=constructor)
