@@ -25,8 +25,9 @@ struct TakeAction {
   S strategy;
   Index const* number;  // (elements)
 
-  template <int G, class V, class Tally>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
+  template <int G, class V, class Again, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Again const&,
+                                     Tally const&) const {
     if constexpr (G == Group) {
       T const value = own[0];
       if (value == value && strategy.action_needed(value)) strategy.action(number[e], value);

@@ -54,8 +54,8 @@ class Adaptation {
     if (rules_.limits_milliseconds()) take_time(parts);
     auto const look = look_at(parts);  // with the budget of now
     look.begin(0);
-    look.decide();
     if constexpr (List::changes_mesh) {
+      look.decide();
       auto const plan = [&] {
         if constexpr (List::switches)
           return look.switch_and_change_mesh();
@@ -119,7 +119,6 @@ class Adaptation {
     void loop_over_look(Parts& parts) const {
       auto const look = adapt_.look_at(parts);
       look.begin(adapt_.interval_);
-      look.decide();
       if constexpr (List::switches) look.switch_groups();
     }
 

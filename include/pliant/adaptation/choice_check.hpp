@@ -19,8 +19,9 @@ struct StoreRows {
   static constexpr bool bounded = false;
   T* values;  // (rows, elements)
   Index elements;
-  template <int G, class V, class Tally>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
+  template <int G, class V, class Again, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Again const&,
+                                     Tally const&) const {
     for (int k = 0; k < Rows; ++k)
       values[static_cast<std::ptrdiff_t>(elements) * k + e] = rounded_up(own[k]);
   }
@@ -129,6 +130,10 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
                       parts_.moves.data());
   }
   void act() const { this->move_by(Moves{}); }
+  void decide_and_act() const {
+    decide();
+    act();
+  }
   void bound_movers() const { this->bound_those_that_move(); }
   void count_stiffened(StepAllowance const& allowance) const {
     this->count_those_stiffened(allowance);

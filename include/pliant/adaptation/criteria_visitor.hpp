@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <tuple>
 
 #include <pliant/adaptation/nodal_means.hpp>
 #include <pliant/adaptation/rule_context.hpp>
 #include <pliant/adaptation/young_at_rest.hpp>
+#include <pliant/backend/kernel.hpp>
 
 namespace pliant::detail {
 
@@ -139,11 +141,13 @@ struct TableRules {
 };
 
 /// Evaluates the criteria of rules, each once for each element that it looks at, and hands them over:
-/// take(GroupNumber<G>{}, element, values, tally).
+/// take(GroupNumber<G>{}, element, values, again, tally), where again() gives the fields at its nodes. Those behind
+/// coordinates and displacements are for `take` alone.
 template <class Table, class TheRules, class Around, class Take>
 struct CriteriaVisitor {
   using T = typename Table::scalar;
   static constexpr int counters = Take::counters;
+  static constexpr bool finishes_few = FinishesFew<Take>;
   static constexpr int slots = TheRules::Places::count;
   static constexpr bool reads_elements = Table::Laws::reads_elements || slots > 0;
   typename Table::Laws groups;
@@ -151,20 +155,24 @@ struct CriteriaVisitor {
   Around around;
   Take take;
 
-  template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u) const {
+  template <int G, class V, std::same_as<V>... More>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u, More const&...) const
+    requires(!reads_elements)
+  {
     return at<G>(NoElement{}, rest, u);
   }
-  template <int G, class Own, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, Own const& own, V const& rest,
-                                   V const& u) const {
+  template <int G, class Own, class V, std::same_as<V>... More>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, Own const& own, V const& rest, V const& u,
+                                   More const&...) const
+    requires reads_elements
+  {
     return at<G>(own, rest, u);
   }
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G> group, Index e,
-                                 Vector<T, TheRules::rows> const& values, Again const&,
+                                 Vector<T, TheRules::rows> const& values, Again const& again,
                                  Tally const& tally) const {
-    take(group, e, values, tally);
+    take(group, e, values, again, tally);
   }
 
  private:
@@ -174,7 +182,7 @@ struct CriteriaVisitor {
     if constexpr (Take::template bounded<G>) {
       using S = std::remove_cvref_t<decltype(rest(0, 0))>;
       auto const h = state_of<typename Table::template formulation<G>>(law, rest, u).gradient();
-      if (!any_less(S(take.quiet[G]), dot(h, h))) {
+      if (!any_less(S(take.quiet_below(G)), dot(h, h))) {
         Vector<S, TheRules::rows> none;
         for (int k = 0; k < TheRules::rows; ++k) none[k] = S(std::numeric_limits<T>::lowest());
         return none;
@@ -212,12 +220,13 @@ auto surroundings(Parts const& parts, Table const& table,
   return around;
 }
 
-/// Evaluates the criteria of rules on the present state of a body, at some elements of a table.
-template <class Parts, class Table, class Elements, class TheRules, class Take>
+/// Evaluates the criteria of rules on the present state of a body, at some elements of a table. `fields` are what else
+/// `take` reads at nodes.
+template <class Parts, class Table, class Elements, class TheRules, class Take, class... Fields>
 void evaluate_criteria(Parts const& parts, Table const& table,
                        ActiveElements<Elements> const& elements, TheRules const& rules,
                        CriteriaWorkspace<typename Parts::backend_type>& workspace, Take const& take,
-                       typename Parts::template Array<double>& counters) {
+                       typename Parts::template Array<double>& counters, Fields const&... fields) {
   using T = typename Parts::T;
   find_values_from_means(parts, table, rules, workspace);
   auto const around = surroundings<T, TheRules>(parts, table, workspace);
@@ -225,7 +234,7 @@ void evaluate_criteria(Parts const& parts, Table const& table,
       elements,
       CriteriaVisitor<Table, TheRules, std::remove_const_t<decltype(around)>, Take>{
           table.laws, rules, around, take},
-      counters, parts.rest(), parts.u());
+      counters, parts.rest(), parts.u(), fields...);
 }
 
 }  // namespace pliant::detail

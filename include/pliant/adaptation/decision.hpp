@@ -42,8 +42,8 @@ struct Decision {
                                     BoundedCriterion<decltype(Rules::criterion)>)&&...);
 
   /// Takes the values of an element; decides at once if no rule ranks.
-  template <int G, class V, class Tally>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own,
+  template <int G, class V, class Again, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Again const&,
                                      Tally const& tally) const {
     if (stores)
       for (int k = 0; k < All::rows; ++k) value(e, k) = own[k];
@@ -68,6 +68,12 @@ struct Decision {
     std::uint32_t mask = 0;
     dispatch<Table::groups>(tags[e], [&]<int G>(GroupNumber<G>) { add_marks<G, 0>(e, mask); });
     mesh_marks[e] = mask;
+  }
+  PLIANT_HOST_DEVICE T quiet_below(int group) const { return quiet[group]; }
+  /// The group that an element goes to, or stays in, by its own values, where no rule ranks.
+  template <int G, class V>
+  PLIANT_HOST_DEVICE Tag next_group_by(Index e, V const& own) const {
+    return next_group<G, 0>(e, [&](int k) { return own[k]; });
   }
   PLIANT_HOST_DEVICE T& value(Index e, int row) const {
     return values[static_cast<std::ptrdiff_t>(elements) * row + e];

@@ -24,18 +24,24 @@ class ElementCheck {
     return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
             parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
   }
+  /// What moves elements by some rules.
+  template <class... Rules>
+  ActVisitor<Table, Parts::dim, Rules...> mover_by(TableRules<Table, Rules...> const& rules) const {
+    return {table_.laws,
+            rules,
+            surroundings<T, TableRules<Table, Rules...>>(std::as_const(parts_),
+                                                         std::as_const(table_), workspace()),
+            workspace().next.data(),
+            workspace().values.data(),
+            table_.count(),
+            target()};
+  }
   /// Moves the elements that are awake to their next groups, by the moves of some rules.
   template <class... Rules>
   void move_by(TableRules<Table, Rules...> const& rules) const {
-    backend().template visit<Table::groups>(
-        parts_.awake_in(table_),
-        ActVisitor<Table, Parts::dim, Rules...>{
-            table_.laws, rules,
-            surroundings<T, TableRules<Table, Rules...>>(std::as_const(parts_),
-                                                         std::as_const(table_), workspace()),
-            workspace().next.data(), workspace().values.data(), table_.count(), target()},
-        elements_.statistics.counters, parts_.rest(), std::as_const(parts_).u(),
-        std::as_const(parts_).v());
+    backend().template visit<Table::groups>(parts_.awake_in(table_), mover_by(rules),
+                                            elements_.statistics.counters, parts_.rest(),
+                                            std::as_const(parts_).u(), std::as_const(parts_).v());
   }
 
   /// Before and after moves: how stiff the elements are that they concern.

@@ -13,8 +13,9 @@ struct Store {
   template <int>
   static constexpr bool bounded = false;
   T* values;  // (elements)
-  template <int G, class V, class Tally>
-  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Tally const&) const {
+  template <int G, class V, class Again, class Tally>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, Index e, V const& own, Again const&,
+                                     Tally const&) const {
     values[e] = own[0];
   }
 };

@@ -49,9 +49,13 @@ class LookAt {
     for_each_check([](auto const& check) { check.decide(); });
   }
 
-  /// Moves elements between groups.
+  /// Decides and moves elements between groups.
   void switch_groups() const {
     bool const asks = asks_whether_to_switch();
+    // Those that move are compared with the step that is allowed.
+    if constexpr (can_move_unasked)
+      if (!asks && !step_allowance(parts_)) return decide_and_move();
+    decide();
     if (asks && !something_moves()) return;
     move_elements();
     if (asks) follow_moves();
@@ -118,19 +122,25 @@ class LookAt {
     });
   }
 
+  using B = typename Parts::backend_type;
+  static constexpr bool can_move_unasked =
+      !B::orders_by_group && !std::same_as<typename B::Recording, HostRecording>;
   /// Between the steps of leapfrog, and where no integrator has a step or accelerations, nothing follows from a
   /// switch at once but the elements' own: where the host would wait for the answer, and loops look at each
   /// tag as they go, it need not know, unless the integrator may have to follow before the next step.
   bool asks_whether_to_switch() const {
-    using B = typename Parts::backend_type;
     auto const& state = parts_.state;
-    return B::orders_by_group || std::same_as<typename B::Recording, HostRecording> ||
-           parts_.forces_current || !state.implicit.empty() || rules_.may_stiffen(parts_) ||
-           state.integrator.macro_step > 0 ||
+    return !can_move_unasked || parts_.forces_current || !state.implicit.empty() ||
+           rules_.may_stiffen(parts_) || state.integrator.macro_step > 0 ||
            (state.pending_half_kick == 0 && state.integrator.step > 0);
   }
   bool something_moves() const {
     return parts_.backend.sum(1, ValueAt<double>{parts_.moves.data()}) != 0;
+  }
+  void decide_and_move() const {
+    auto const measured = parts_.timers.criteria.measure();
+    for_each_check([](auto const& check) { check.decide_and_act(); });
+    forget_forces(parts_);
   }
   void move_elements() const {
     auto const allowance = step_allowance(parts_);

@@ -49,18 +49,20 @@ struct ActVisitor {
   template <int G, class Again, class Tally>
   PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index e, Vector<T, 1> const&, Again const& again,
                                  Tally const& tally) const {
-    if (next[e] != G) act<G, 0>(e, again, tally);
+    if (Tag const to = next[e]; to != G) move_to<G>(to, e, again, tally);
+  }
+  /// Moves an element of group From to another one to which some rule moves those. again() gives coordinates, displacements
+  /// and velocities at its nodes.
+  template <int From, int To = 0, class Again, class Tally>
+  PLIANT_HOST_DEVICE void move_to(Tag to, Index e, Again const& again, Tally const& tally) const {
+    if constexpr (To < Table::groups) {
+      if constexpr (goes<From, To>)
+        if (to == To) return move<From, To>(e, again, tally);
+      move_to<From, To + 1>(to, e, again, tally);
+    }
   }
 
  private:
-  template <int From, int To, class Again, class Tally>
-  PLIANT_HOST_DEVICE void act(Index e, Again const& again, Tally const& tally) const {
-    if constexpr (To < Table::groups) {
-      if constexpr (goes<From, To>)
-        if (next[e] == To) return move<From, To>(e, again, tally);
-      act<From, To + 1>(e, again, tally);
-    }
-  }
   template <int From, int To, class TheRule>
   static constexpr bool goes_by() {
     if constexpr (SwitchingRule<TheRule>)

@@ -2,6 +2,7 @@
 
 #include <pliant/adaptation/decision.hpp>
 #include <pliant/adaptation/element_check.hpp>
+#include <pliant/adaptation/move_at_once.hpp>
 #include <pliant/adaptation/ranking.hpp>
 #include <pliant/adaptation/refinement.hpp>
 
@@ -74,6 +75,18 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
   }
   void act() const {
     if constexpr (switches) this->move_by(rules_);
+  }
+  /// Both, in one loop where each element's own values say where it goes. Of linear simplices alone: what moves other
+  /// elements takes so many registers that it slows their criteria down.
+  void decide_and_act() const {
+    if constexpr (LinearSimplex<typename Table::element> && switches && !changes_mesh)
+      if (!ranks())
+        return evaluate_criteria(
+            std::as_const(parts_), std::as_const(table_), elements(), rules_, workspace(),
+            MoveAtOnce<Table, Parts::dim, Rules...>{decision(), this->mover_by(rules_)},
+            elements_.statistics.counters, std::as_const(parts_).v());
+    decide();
+    act();
   }
 
   void bound_movers() const {

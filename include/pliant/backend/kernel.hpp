@@ -74,6 +74,10 @@ concept Selects = requires(F const& f, Index element, Tag group) {
   { f.selects(element, group) } -> std::same_as<bool>;
 };
 
+/// A visitor whose `finish` has work with few elements: what that takes should not slow `evaluate`, which all go through.
+template <class F>
+concept FinishesFew = requires { requires F::finishes_few; };
+
 /// Verbs call these first, so that a functor which lacks a part is told by a sentence.
 template <class F, class Result, int Groups, class Own, class... V>
 constexpr void require_kernel() {

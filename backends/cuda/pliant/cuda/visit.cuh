@@ -14,9 +14,15 @@ namespace pliant::detail {
 template <class Visitor>
 inline constexpr int visits_per_thread = Selects<Visitor> ? 8 : 1;
 
+/// Blocks that a multiprocessor holds at least: 64 registers for a thread, 128 in double, where few elements would
+/// take more (bench/adaptation, migration).
+template <class Visitor, class Field, class...>
+inline constexpr int visit_blocks =
+    FinishesFew<Visitor> ? 32 / static_cast<int>(sizeof(typename Field::value_type)) : 1;
+
 /// Tallies are collected per block, so that few reach global memory.
 template <int Groups, int Nodes, class Visitor, class... Fields>
-__global__ void __launch_bounds__(visit_threads)
+__global__ void __launch_bounds__(visit_threads, visit_blocks<Visitor, Fields...>)
     visit_elements(ElementView<Nodes> const elements, __grid_constant__ Visitor const visitor,
                    double* counters, Fields... fields) {
   constexpr int count = Visitor::counters;
