@@ -11,8 +11,8 @@ if(NOT PLIANT_INSTALL)
   list(APPEND rule EXCLUDE_FROM_ALL)
 endif()
 
-foreach(target IN ITEMS pliant pliant_solvers pliant_openmp pliant_cuda)
-  if(target STREQUAL pliant_solvers)
+foreach(target IN ITEMS pliant pliant_solvers pliant_cholmod pliant_openmp pliant_cuda)
+  if(target MATCHES "solvers|cholmod")
     install(TARGETS ${target} EXPORT ${target} ${rule})
   else()
     install(TARGETS ${target} EXPORT ${target} FILE_SET HEADERS ${rule})
@@ -32,6 +32,7 @@ write_basic_package_version_file(pliantConfigVersion.cmake COMPATIBILITY SameMin
                                  ARCH_INDEPENDENT)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/pliantConfig.cmake"
               "${CMAKE_CURRENT_BINARY_DIR}/pliantConfigVersion.cmake" cmake/simd_message.cmake
+              cmake/find_cholmod.cmake
         DESTINATION "${package_folder}" ${rule})
 # The folder of documents that a project above has set is for its own licence.
 if(PROJECT_IS_TOP_LEVEL)

@@ -4,8 +4,10 @@
 #   pliant::cuda     with the CUDA backend
 #   pliant::solvers  beside one of these, for programs that take long to compile: the solvers of matrices that solve.hpp
 #                    rests on are one more source of the program, instead of a part of each
-# Those of OpenMP and CUDA exist under these names only where this build has what they need. They are
-# installed all the same: an installed copy looks for OpenMP or CUDA when a project asks for them.
+#   pliant::cholmod  beside one of these, in all sources of a program: large symmetric matrices are factorised by
+#                    SuiteSparse's CHOLMOD (GNU licences: its supernodal part is under the GPL)
+# Those of OpenMP, CUDA and CHOLMOD exist under these names only where this build has what they need. They are
+# installed all the same: an installed copy looks for them when a project asks for them.
 
 # pliant_add_headers(<target> <include root>...): an interface library of all headers there.
 function(pliant_add_headers target)
@@ -32,6 +34,14 @@ target_sources(
                            "$<INSTALL_INTERFACE:${pliant_solvers_source}>")
 target_compile_definitions(pliant_solvers INTERFACE PLIANT_COMPILED_SOLVERS)
 target_link_libraries(pliant_solvers INTERFACE pliant)
+
+add_library(pliant_cholmod INTERFACE)
+set_target_properties(pliant_cholmod PROPERTIES EXPORT_NAME cholmod)
+target_compile_definitions(pliant_cholmod INTERFACE PLIANT_CHOLMOD)
+target_link_libraries(pliant_cholmod INTERFACE pliant SuiteSparse::CHOLMOD)
+if(pliant_has_cholmod)
+  add_library(pliant::cholmod ALIAS pliant_cholmod)
+endif()
 
 pliant_add_headers(pliant_openmp backends/openmp)
 set_target_properties(pliant_openmp PROPERTIES EXPORT_NAME openmp)

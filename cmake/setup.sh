@@ -37,7 +37,7 @@ pkg-config pkg-config
 TOOLS
   # Libraries are asked of the package manager; without one, CMake tells what it cannot find.
   command -v dpkg-query >/dev/null || return 0
-  for package in libeigen3-dev catch2 libcairo2-dev libcli11-dev libbenchmark-dev; do
+  for package in libeigen3-dev catch2 libcairo2-dev libcli11-dev libbenchmark-dev libsuitesparse-dev; do
     dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
       echo "$package"
   done

@@ -5,7 +5,8 @@ include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 file(REMOVE_RECURSE "${BUILD}")
 if(WAY STREQUAL find_package)
   run("${CMAKE_COMMAND}" --install "${PLIANT_BUILD}" --prefix "${BUILD}/prefix")
-  set(arguments "-DCMAKE_PREFIX_PATH=${BUILD}/prefix" "-DEigen3_DIR=${Eigen3_DIR}")
+  set(arguments "-DCMAKE_PREFIX_PATH=${BUILD}/prefix" "-DEigen3_DIR=${Eigen3_DIR}"
+                "-DCHOLMOD=${CHOLMOD}")
 else()
   set(arguments "-DPLIANT_SOURCE=${PLIANT_SOURCE}" "-DPLIANT_OPENMP=${OPENMP}" -DPLIANT_CUDA=OFF
                 "-DPLIANT_EIGEN_INCLUDE=${PLIANT_EIGEN_INCLUDE}" "-DEigen3_DIR=${Eigen3_DIR}")

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
 #include <pliant/error.hpp>
+#include <pliant/solver/linear/definitions/symmetric_factors.hpp>
 #include <pliant/solver/linear/direct_solver.hpp>
 
 namespace pliant::detail {
@@ -18,18 +18,21 @@ class DirectSolver::Factors {
   int analyses() const { return analyses_; }
   int factorisations() const { return factorisations_; }
 
-  int solves_worth_a_factorisation() const {
-    return has_factors_ && by_symmetric_ ? solves_worth_ : 0;
+  int solves_worth_a_factorisation() const { return is_symmetric_by() ? solves_worth_ : 0; }
+  bool indefinite() const { return is_symmetric_by() && indefinite_; }
+  bool fits(Eigen::Index rows) const { return by_ != By::none && matrix_.rows() == rows; }
+  Eigen::VectorXd apply(Eigen::VectorXd const& r) const {
+#if defined(PLIANT_CHOLMOD)
+    if (by_ == By::supernodal) return supernodal_.solve(r);
+#endif
+    return simplicial_.solve(r);
   }
-  bool indefinite() const { return has_factors_ && by_symmetric_ && negative_pivots_; }
-  bool fits(Eigen::Index rows) const { return has_factors_ && matrix_.rows() == rows; }
-  Eigen::VectorXd apply(Eigen::VectorXd const& r) const { return symmetric_.solve(r); }
 
   Eigen::VectorXd solve(Matrix const& k, Eigen::VectorXd const& r, bool is_symmetric) {
-    if (!has_factors_ || is_symmetric != is_symmetric_ || !same_pattern(k) || !same_values(k))
+    if (by_ == By::none || is_symmetric != is_symmetric_ || !same_pattern(k) || !same_values(k))
       factorise(k, is_symmetric);
-    if (by_symmetric_) {
-      Eigen::VectorXd x = symmetric_.solve(r);
+    if (by_ != By::general) {
+      Eigen::VectorXd x = apply(r);
       if (x.allFinite()) return x;
       factorise_general(true);
     }
@@ -39,46 +42,47 @@ class DirectSolver::Factors {
   }
 
  private:
+  enum class By { none, simplicial, supernodal, general };
+
+  bool is_symmetric_by() const { return by_ == By::simplicial || by_ == By::supernodal; }
   void factorise(Matrix const& k, bool is_symmetric) {
     bool const same = has_matrix_ && is_symmetric == is_symmetric_ && same_pattern(k);
     matrix_ = k;
     has_matrix_ = true;
     is_symmetric_ = is_symmetric;
-    has_factors_ = by_symmetric_ = false;
-    if (!same) symmetric_analysed_ = general_analysed_ = false;
+    by_ = By::none;
+    if (!same) simplicial_analysed_ = supernodal_analysed_ = general_analysed_ = false;
     if (is_symmetric) {
-      if (!symmetric_analysed_) {
-        symmetric_.analyzePattern(matrix_);
-        symmetric_analysed_ = true;
-        ++analyses_;
-      }
-      symmetric_.factorize(matrix_);
-      ++factorisations_;
-      if (symmetric_.info() == Eigen::Success) {
-        Eigen::VectorXd const pivots = symmetric_.vectorD().cwiseAbs();
-        // Rounding makes a pivot that should be zero some 1e-16 of the others.
-        if (pivots.size() > 0 && pivots.minCoeff() < 1e-13 * pivots.maxCoeff()) refuse();
-        by_symmetric_ = has_factors_ = true;
-        negative_pivots_ = symmetric_.vectorD().size() > 0 && symmetric_.vectorD().minCoeff() < 0;
-        count_operations();
+#if defined(PLIANT_CHOLMOD)
+      if (matrix_.rows() >= many_ &&
+          factorise_symmetric(supernodal_, By::supernodal, supernodal_analysed_))
         return;
-      }
+#endif
+      if (factorise_symmetric(simplicial_, By::simplicial, simplicial_analysed_)) return;
     }
     factorise_general(!general_analysed_);
   }
-  void count_operations() {
-    auto const& factor = symmetric_.matrixL().nestedExpression();
-    double multiplications = 0;
-    for (Eigen::Index column = 0; column < factor.cols(); ++column) {
-      auto const below =
-          static_cast<double>(factor.outerIndexPtr()[column + 1] - factor.outerIndexPtr()[column]);
-      multiplications += below * below / 2;
+  /// False where these factors are not for the matrix.
+  template <class SymmetricFactors>
+  bool factorise_symmetric(SymmetricFactors& factors, By by, bool& analysed) {
+    if (!analysed) {
+      factors.analyse(matrix_);
+      analysed = true;
+      ++analyses_;
     }
-    solves_worth_ = static_cast<int>(
-        multiplications / (2.0 * static_cast<double>(factor.nonZeros() + matrix_.nonZeros()) + 1));
+    if constexpr (requires { factors.pays(); })
+      if (!factors.pays()) return false;
+    ++factorisations_;
+    auto const found = factors.factorise(matrix_);
+    if (found == Definiteness::not_factorised) return false;
+    if (found == Definiteness::singular) refuse();
+    by_ = by;
+    indefinite_ = found == Definiteness::indefinite;
+    solves_worth_ = static_cast<int>(factors.solves_worth_a_factorisation());
+    return true;
   }
   void factorise_general(bool analyse) {
-    has_factors_ = by_symmetric_ = false;
+    by_ = By::none;
     if (analyse) {
       general_.analyzePattern(matrix_);
       general_analysed_ = true;
@@ -87,10 +91,10 @@ class DirectSolver::Factors {
     general_.factorize(matrix_);
     ++factorisations_;
     if (general_.info() != Eigen::Success) refuse();
-    has_factors_ = true;
+    by_ = By::general;
   }
   [[noreturn]] void refuse() {
-    has_factors_ = false;
+    by_ = By::none;
     throw Error(name_,
                 ": the matrix is singular; hold the body against rigid motion, or look for a "
                 "collapsed element");
@@ -107,11 +111,16 @@ class DirectSolver::Factors {
 
   std::string name_;
   Matrix matrix_;
-  Eigen::SimplicialLDLT<Matrix> symmetric_;
+  SimplicialFactors simplicial_;
+#if defined(PLIANT_CHOLMOD)
+  /// Rows from where on dense blocks may be faster.
+  static constexpr Eigen::Index many_ = 1000;
+  SupernodalFactors supernodal_;
+#endif
   Eigen::SparseLU<Matrix> general_;
-  bool has_matrix_ = false, has_factors_ = false, by_symmetric_ = false, is_symmetric_ = false;
-  bool negative_pivots_ = false;
-  bool symmetric_analysed_ = false, general_analysed_ = false;
+  By by_ = By::none;
+  bool has_matrix_ = false, is_symmetric_ = false, indefinite_ = false;
+  bool simplicial_analysed_ = false, supernodal_analysed_ = false, general_analysed_ = false;
   int analyses_ = 0, factorisations_ = 0, solves_worth_ = 0;
 };
 
