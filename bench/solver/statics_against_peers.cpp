@@ -12,18 +12,16 @@
 #include <pliant/pliant.hpp>
 #include <pliant/solve.hpp>
 #include <pliant/solver/linear/conjugate_gradients.hpp>
+#include <pliant/solver/linear/direct_solver.hpp>
 #include <pliant/solver/linear/multilevel.hpp>
 
-#if defined(PLIANT_BENCH_CHOLMOD)
-#include <Eigen/CholmodSupport>
-#endif
 #if defined(PLIANT_BENCH_PETSC)
 #include <petscksp.h>
 #endif
 
 // How long statics take: a block of Hex8 under neo-Hooke's law, compressed by 20% in one step; and one system with
 // its stiffness at rest, solved to 1e-6 by the multilevel method and by direct and multilevel solvers of others that are
-// here (CHOLMOD, PETSc's GAMG with the rigid motions), in turns in one program; the least times count. A line of JSON each.
+// here (Eigen's, CHOLMOD where the program links it, PETSc's GAMG with the rigid motions), in turns in one program; the least times count. A line of JSON each.
 // Arguments, all optional: cells along an edge, threads, turns.
 namespace pliant::bench {
 
@@ -31,6 +29,12 @@ using F = Formulation<Hex8, Gauss<2>, NeoHookean>;
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double>;
 constexpr double tolerance = 1e-6;
+/// Cells along an edge up to which factors take seconds.
+#if defined(PLIANT_CHOLMOD)
+constexpr int most_factorised = 40;
+#else
+constexpr int most_factorised = 16;
+#endif
 
 auto block(int cells, int threads) {
   auto const mesh = mesh::box<Hex8>({.size = {1, 1, 1}, .cells = {cells, cells, cells}});
@@ -108,21 +112,25 @@ class Gamg {
 };
 #endif
 
-void compare(int cells, int threads, int turns) {
+void time_static(int cells, int threads, int turns, LinearMethod method, char const* name) {
   double whole = 1e30;
   NewtonReport report;
   for (int turn = 0; turn < turns; ++turn) {
     auto body = block(cells, threads);
-    whole = std::min(whole, seconds([&] { report = solve_static(body); }));
+    whole = std::min(
+        whole, seconds([&] { report = solve_static(body, NewtonOptions{.linear = method}); }));
   }
   std::printf(
-      "{\"case\": \"solve_static\", \"cells\": %d, \"threads\": %d, \"unknowns\": %d, \"seconds\": "
-      "%.4g, "
-      "\"iterations\": %d, \"of_conjugate_gradients\": %d, \"hierarchies\": %d, "
-      "\"factorisations\": %d, "
-      "\"energy\": %.12g}\n",
-      cells, threads, report.unknowns, whole, report.iterations, report.linear.iterations,
+      "{\"case\": \"solve_static, %s\", \"cells\": %d, \"threads\": %d, \"unknowns\": %d, "
+      "\"seconds\": %.4g, \"iterations\": %d, \"of_conjugate_gradients\": %d, \"hierarchies\": %d, "
+      "\"factorisations\": %d, \"energy\": %.12g}\n",
+      name, cells, threads, report.unknowns, whole, report.iterations, report.linear.iterations,
       report.linear.hierarchies, report.factorisations, report.energy);
+}
+
+void compare(int cells, int threads, int turns) {
+  time_static(cells, threads, turns, LinearMethod::automatic, "automatic");
+  if (cells <= most_factorised) time_static(cells, threads, turns, LinearMethod::direct, "direct");
 
   auto const body = block(cells, threads);
   detail::StaticProblem<std::remove_const_t<decltype(body)>> const problem(body);
@@ -162,11 +170,15 @@ void compare(int cells, int threads, int turns) {
   if (unknowns.count() < 12000)
     solvers.push_back({"Eigen, SimplicialLDLT", [&] { simplicial.compute(k); },
                        [&] { return Vector(simplicial.solve(r)); }});
-#if defined(PLIANT_BENCH_CHOLMOD)
-  Eigen::CholmodSupernodalLLT<Matrix> cholmod;
+#if defined(PLIANT_CHOLMOD)
+  std::unique_ptr<detail::DirectSolver> direct;
   if (unknowns.count() < 250000)
-    solvers.push_back({"CHOLMOD, supernodal", [&] { cholmod.compute(k); },
-                       [&] { return Vector(cholmod.solve(r)); }});
+    solvers.push_back({"Pliant, direct by CHOLMOD",
+                       [&] {
+                         direct = std::make_unique<detail::DirectSolver>("bench");
+                         (void)direct->solve(k, r, true);
+                       },
+                       [&] { return direct->apply(r); }});
 #endif
 #if defined(PLIANT_BENCH_PETSC)
   std::vector<double> places;
