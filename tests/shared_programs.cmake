@@ -2,6 +2,9 @@
 # run by itself, except those over all formulations. Tests that are not named here have a program of their
 # own. A program should fit into 4 GB of the compiler's memory.
 
+# On GPUs these suites alone share a program, for CI to compile.
+set(shared_on_gpu adaptation/switching body/state law/user_law solver/trajectory)
+
 # share(<program> <area>/<name>...)
 function(share program)
   foreach(name IN LISTS ARGN)
