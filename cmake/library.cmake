@@ -5,7 +5,7 @@
 #   pliant::solvers  beside one of these, for programs that take long to compile: the solvers of matrices that solve.hpp
 #                    rests on are one more source of the program, instead of a part of each
 #   pliant::cholmod  beside one of these, in all sources of a program: large symmetric matrices are factorised by
-#                    SuiteSparse's CHOLMOD (GNU licences: its supernodal part is under the GPL)
+#                    SuiteSparse's CHOLMOD (its supernodal part is under the GPL)
 # Those of OpenMP, CUDA and CHOLMOD exist under these names only where this build has what they need. They are
 # installed all the same: an installed copy looks for them when a project asks for them.
 

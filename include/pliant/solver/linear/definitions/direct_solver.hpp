@@ -78,7 +78,7 @@ class DirectSolver::Factors {
     if (found == Definiteness::singular) refuse();
     by_ = by;
     indefinite_ = found == Definiteness::indefinite;
-    solves_worth_ = static_cast<int>(factors.solves_worth_a_factorisation());
+    solves_worth_ = static_cast<int>(factors.solves_worth_a_factorisation(matrix_.nonZeros()));
     return true;
   }
   void factorise_general(bool analyse) {

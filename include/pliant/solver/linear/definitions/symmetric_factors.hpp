@@ -31,8 +31,9 @@ class SimplicialFactors {
   }
   Eigen::VectorXd solve(Eigen::VectorXd const& r) const { return factors_.solve(r); }
 
-  /// How many solves take as many operations as the last factorisation.
-  double solves_worth_a_factorisation() const {
+  /// How many solves, each with a product by the matrix of so many entries, take as many operations as the last
+  /// factorisation.
+  double solves_worth_a_factorisation(Eigen::Index entries) const {
     auto const& factor = factors_.matrixL().nestedExpression();
     double multiplications = 0;
     for (Eigen::Index column = 0; column < factor.cols(); ++column) {
@@ -40,7 +41,7 @@ class SimplicialFactors {
           static_cast<double>(factor.outerIndexPtr()[column + 1] - factor.outerIndexPtr()[column]);
       multiplications += below * below / 2;
     }
-    return multiplications / (2.0 * static_cast<double>(factor.nonZeros()) + 1);
+    return multiplications / (2.0 * static_cast<double>(factor.nonZeros() + entries) + 1);
   }
 
  private:
@@ -62,10 +63,11 @@ class SupernodalFactors : private Eigen::CholmodSupernodalLLT<Eigen::SparseMatri
   }
   void analyse(Matrix const& k) {
     analyzePattern(k);
-    operations_per_entry_ = cholmod().fl / (cholmod().lnz + 1);
+    operations_ = cholmod().fl;
+    entries_ = cholmod().lnz;
   }
   /// Whether the matrix that was analysed is factorised faster than column by column.
-  bool pays() const { return operations_per_entry_ >= 100; }
+  bool pays() const { return operations_ >= 100 * entries_; }
   Definiteness factorise(Matrix const& k) {
     factorize(k);
     if (info() != Eigen::Success) return Definiteness::not_factorised;
@@ -74,12 +76,15 @@ class SupernodalFactors : private Eigen::CholmodSupernodalLLT<Eigen::SparseMatri
     return regular ? Definiteness::definite : Definiteness::singular;
   }
   Eigen::VectorXd solve(Eigen::VectorXd const& r) const { return Base::solve(r); }
-  double solves_worth_a_factorisation() const { return operations_per_entry_ / 4 / faster_; }
+  double solves_worth_a_factorisation(Eigen::Index entries) const {
+    double const multiplications = operations_ / 2;
+    return multiplications / (2 * (entries_ + static_cast<double>(entries)) + 1) / faster_;
+  }
 
  private:
   /// The rate of factorisations over that of solves.
   static constexpr double faster_ = 2.5;
-  double operations_per_entry_ = 0;
+  double operations_ = 0, entries_ = 0;  // of the factor
 };
 #endif
 
