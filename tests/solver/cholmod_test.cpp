@@ -52,7 +52,8 @@ TEST_CASE("supernodal factors solve definite systems, and keep their analysis", 
     CHECK(residual(k, solver.apply(r), r) < 1e-12);
     CHECK_FALSE(solver.indefinite());
     CHECK(solver.fits(nodes));
-    CHECK(solver.solves_worth_a_factorisation() > 0);
+    // Factors of small matrices are made anew as fast as they solve.
+    if (nodes > 1000) CHECK(solver.solves_worth_a_factorisation() > 10);
   }
   CHECK(solver.analyses() == 1);
   CHECK(solver.factorisations() == 3);
