@@ -4,21 +4,51 @@
 #include "support/measure.hpp"
 #include "support/registration.hpp"
 
-// Refinement of a tenth of a plane mesh: new nodes, hanging nodes, state, layout and groups. The rate
-// counts the elements before.
+// Changes of the mesh: new nodes, hanging nodes, state, layout and groups. The rate counts the elements before.
 namespace pliant::bench {
 
+/// The first elements of a mesh.
+inline std::vector<Index> first_elements(std::size_t count) {
+  std::vector<Index> marked;
+  for (std::size_t e = 0; e < count; ++e) marked.push_back(static_cast<Index>(e));
+  return marked;
+}
+
+/// A tenth of a mesh that nobody has refined, whose refinement tree is made too.
 template <class E, class B>
 void time_refinement(benchmark::State& state, B const& backend, int cells) {
   auto const fresh = [&] { return shaken_body<Usual<E, SaintVenantKirchhoff>>(backend, cells); };
-  std::vector<Index> marked;
-  for (Index e = 0; e < static_cast<Index>(element_count<E>(cells) / 10); ++e) marked.push_back(e);
+  auto const marked = first_elements(element_count<E>(cells) / 10);
   for (auto _ : state) {
     auto body = fresh();
     state.SetIterationTime(seconds(backend, [&] { refine(body, {marked}); }));
   }
   auto body = fresh();
   report_elements(state, body);
+}
+
+/// So many elements of a mesh in which one was refined before, or what that made of them back to what they were.
+template <class E, class B>
+void time_change(benchmark::State& state, B const& backend, int cells, std::size_t count,
+                 bool back) {
+  auto body = shaken_body<Usual<E, SaintVenantKirchhoff>>(backend, cells);
+  report_elements(state, body);
+  auto const marked = first_elements(count);
+  auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
+  auto const children = [&] {
+    std::vector<Index> found;
+    auto const levels = refinement_levels<E>(body);
+    for (std::size_t e = 0; e < levels.size(); ++e)
+      if (levels[e] > 0) found.push_back(static_cast<Index>(e));
+    return found;
+  };
+  for (auto _ : state) {
+    refine(body, {{last}});
+    double const there = seconds(backend, [&] { refine(body, {marked}); });
+    auto const made = children();
+    double const again = seconds(backend, [&] { coarsen(body, {made}); });
+    state.SetIterationTime(back ? again : there);
+  }
 }
 
 inline void add_refinements() {
@@ -31,9 +61,20 @@ inline void add_refinements() {
       add<Usual<E, SaintVenantKirchhoff>, T>(
           "refine", name, cells,
           [backend, cells](benchmark::State& state) { time_refinement<E>(state, backend, cells); });
+      auto const change = [&](char const* what, std::size_t count, bool back) {
+        add<Usual<E, SaintVenantKirchhoff>, T>(what, name, cells, [=](benchmark::State& state) {
+          time_change<E>(state, backend, cells, count, back);
+        });
+      };
+      change("refine two", 2, false);
+      change("refine again", element_count<E>(cells) / 10, false);
+      change("coarsen two", 2, true);
+      change("coarsen", element_count<E>(cells) / 10, true);
     };
     one(Tri3{});
     one(Quad4{});
+    one(Tet4{});
+    one(Hex8{});
   });
 }
 

@@ -17,7 +17,8 @@ std::vector<int> levels_of(Parts const& parts) {
   auto const& topology = *parts.state.topology;
   if (!topology.tree) return std::vector<int>(topology.mesh.template elements<E>().size(), 0);
   std::vector<int> levels;
-  for (Index c : leaves_of<E>(*topology.tree)) levels.push_back(topology.tree->cell(c).level);
+  for (Index c : topology.cells[Parts::layout_type::template type_of<E>])
+    levels.push_back(topology.tree->cell(c).level);
   return levels;
 }
 

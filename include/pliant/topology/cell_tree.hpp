@@ -3,20 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <unordered_map>
+#include <iterator>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
+#include <pliant/topology/number_table.hpp>
+#include <pliant/topology/shared_list.hpp>
 #include <pliant/topology/tree_cell.hpp>
 
 namespace pliant {
 
 /// The cells, edges and sides of a mesh under refinement, plane or solid, without geometry: the topology of
-/// Hierarchy. Numbers ascend from older to newer.
+/// Hierarchy. Numbers ascend from older to newer. Copies share what neither changes.
 class CellTree {
  public:
   CellTree() = default;
@@ -34,31 +36,29 @@ class CellTree {
     auto const c = static_cast<Index>(cells_.size());
     for (std::size_t e = 0; e < at(p.edges); ++e) {
       std::array const ends{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
-      auto const [entry, is_new] =
-          initial_edges_.try_emplace({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])},
-                                     static_cast<Index>(edges_.size()));
+      auto const [edge, is_new] =
+          initial_edges_.find_or_add({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
       if (is_new) edges_.push_back({.nodes = ends, .has = has});
-      auto const& known = edges_[at(entry->second)];
+      auto const& known = edges_[at(edge)];
       // Counter-clockwise neighbours run along their common edge in opposite directions.
       if (p.dim == 2 && !is_new && (known.leaves > 1 || known.nodes == ends))
         throw Error("Hierarchy: cell ", c, " overlaps another one at the edge from node ", ends[0],
                     " to ", ends[1], "; give each edge one cell on either side at most");
-      cell.edges[e] = entry->second;
-      if (has != CellNodes::corners) edges_[at(entry->second)].middle = nodes[next++];
+      cell.edges[e] = edge;
+      if (has != CellNodes::corners) edges_.edit(at(edge)).middle = nodes[next++];
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto side = side_of(cell, s);
+      auto const side = side_of(cell, s);
       auto key = side.nodes;
       std::ranges::sort(key);
-      auto const [entry, is_new] =
-          initial_sides_.try_emplace(key, static_cast<Index>(sides_.size()));
+      auto const [number, is_new] = initial_sides_.find_or_add(key);
       if (is_new) sides_.push_back(side);
-      auto& known = sides_[at(entry->second)];
+      auto& known = sides_.edit(at(number));
       if (known.cells[1] >= 0)
         throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", side.nodes[0], ", ",
                     side.nodes[1], " and ", side.nodes[2],
                     " with two others; give each side two cells at most");
-      cell.sides[s] = entry->second;
+      cell.sides[s] = number;
       if (has == CellNodes::all && side.corners() == 4) known.centre = nodes[next++];
     }
     if (has == CellNodes::all && p.centre >= 0) cell.centre = nodes[next++];
@@ -69,20 +69,40 @@ class CellTree {
   void seal() {
     initial_edges_.clear();
     initial_sides_.clear();
+    initial_ = {size(cells_), size(edges_), size(sides_), nodes_};
   }
 
-  [[nodiscard]] std::vector<TreeCell> const& cells() const { return cells_; }
-  [[nodiscard]] std::vector<TreeEdge> const& edges() const { return edges_; }
-  [[nodiscard]] std::vector<TreeSide> const& sides() const { return sides_; }
+  [[nodiscard]] SharedList<TreeCell> const& cells() const { return cells_; }
+  [[nodiscard]] SharedList<TreeEdge> const& edges() const { return edges_; }
+  [[nodiscard]] SharedList<TreeSide> const& sides() const { return sides_; }
+  /// The refined cells, each once.
+  [[nodiscard]] std::vector<Index> const& refined() const { return refined_; }
   [[nodiscard]] TreeCell const& operator[](Index c) const { return cells_[at(c)]; }
   [[nodiscard]] bool is_leaf(Index c) const { return cells_[at(c)].first_child < 0; }
   [[nodiscard]] Index node_count() const { return nodes_; }
+
+  /// The edges of cells, each once, ascending.
+  [[nodiscard]] std::vector<Index> edges_of(std::vector<Index> const& cells) const {
+    std::vector<Index> list;
+    for (Index const c : cells)
+      std::copy_n(cells_[at(c)].edges.begin(), cells_[at(c)].pattern().edges,
+                  std::back_inserter(list));
+    return each_once(std::move(list));
+  }
+  /// The sides of solid cells, each once, ascending.
+  [[nodiscard]] std::vector<Index> sides_of(std::vector<Index> const& cells) const {
+    std::vector<Index> list;
+    for (Index const c : cells)
+      std::copy_n(cells_[at(c)].sides.begin(), cells_[at(c)].pattern().sides,
+                  std::back_inserter(list));
+    return each_once(std::move(list));
+  }
 
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
   /// one at most across edges and sides: coarser ones first, then ascending.
   [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
     std::unordered_set<Index> seen(leaves.begin(), leaves.end());
-    auto const on_edge = leaves_on_bisected_edges();
+    std::optional<std::vector<std::pair<Index, Index>>> on_edge;
     auto const want = [&](Index c) {
       if (c >= 0 && is_leaf(c) && seen.insert(c).second) leaves.push_back(c);
     };
@@ -91,8 +111,9 @@ class CellTree {
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
         Index const coarse = edges_[at(cell.edges[e])].parent;
         if (coarse < 0 || edges_[at(coarse)].leaves == 0) continue;
-        auto const first = std::ranges::lower_bound(on_edge, std::pair(coarse, Index{-1}));
-        for (auto entry = first; entry != on_edge.end() && entry->first == coarse; ++entry)
+        if (!on_edge) on_edge = leaves_on_bisected_edges();
+        auto const first = std::ranges::lower_bound(*on_edge, std::pair(coarse, Index{-1}));
+        for (auto entry = first; entry != on_edge->end() && entry->first == coarse; ++entry)
           want(entry->second);
       }
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
@@ -140,18 +161,6 @@ class CellTree {
     return cells;
   }
 
-  /// Makes room to split these leaves without allocation, in amortized constant time for each.
-  void make_room(std::vector<Index> const& leaves) {
-    std::size_t edges = 0, sides = 0;
-    for (Index const c : leaves) {
-      auto const& p = cells_[at(c)].pattern();
-      edges += at(2 * p.edges + 4 * p.sides + p.inner_edges);
-      sides += at(4 * p.sides + p.inner_sides);
-    }
-    reserve(cells_, count_new_cells(leaves));
-    reserve(edges_, edges);
-    reserve(sides_, sides);
-  }
   /// The most edges that splits of these leaves can make.
   [[nodiscard]] std::size_t most_new_edges(std::vector<Index> const& leaves) const {
     std::size_t edges = 0;
@@ -177,20 +186,20 @@ class CellTree {
     std::copy_n(parent.nodes.begin(), at(p.corners), point.begin());
     for (std::size_t e = 0; e < at(p.edges); ++e) {
       auto const k = at(p.corners) + e;
-      make_node(edges_[at(parent.edges[e])].middle, p.place[k]);
+      make_node(edges_.edit(at(parent.edges[e])).middle, p.place[k]);
       bisect(parent.edges[e]);
       point[k] = edges_[at(parent.edges[e])].middle;
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto& side = sides_[at(parent.sides[s])];
       if (p.side_centre[s] >= 0) {
-        make_node(side.centre, p.place[at(p.side_centre[s])]);
-        point[at(p.side_centre[s])] = side.centre;
+        auto& centre = sides_.edit(at(parent.sides[s])).centre;
+        make_node(centre, p.place[at(p.side_centre[s])]);
+        point[at(p.side_centre[s])] = centre;
       }
       divide(parent.sides[s]);
     }
     if (p.centre >= 0) {
-      make_node(cells_[at(c)].centre, p.place[at(p.centre)]);
+      make_node(cells_.edit(at(c)).centre, p.place[at(p.centre)]);
       point[at(p.centre)] = cells_[at(c)].centre;
     }
     auto const first_inner_edge = static_cast<Index>(edges_.size());
@@ -225,7 +234,8 @@ class CellTree {
       }
       cells_.push_back(child);
     }
-    cells_[at(c)].first_child = first_child;
+    cells_.edit(at(c)).first_child = first_child;
+    refined_.push_back(c);
     attach(c);
     for (Index child = first_child; child < first_child + p.children; ++child) {
       attach(child);
@@ -247,11 +257,11 @@ class CellTree {
   }
 
   /// Makes refined cells, each of which can be merged, leaves again. Nodes, cells, edges and sides that
-  /// nothing uses any more go; the others move up.
+  /// nothing uses any more go, but for those of the initial mesh; the others move up.
   Renumbering merge(std::vector<Index> const& parents) {
     std::vector<bool> gone(cells_.size(), false);
     for (Index const c : parents) {
-      auto& cell = cells_[at(c)];
+      auto& cell = cells_.edit(at(c));
       Index const first = cell.first_child;
       for (Index child = first; child < first + cell.pattern().children; ++child) {
         detach(child);
@@ -261,7 +271,8 @@ class CellTree {
       cell.first_child = -1;
       attach(c);
     }
-    return compact(gone);
+    std::erase_if(refined_, [&](Index c) { return is_leaf(c); });
+    return compact(parents, std::move(gone));
   }
 
   /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
@@ -303,16 +314,14 @@ class CellTree {
     visit("cells", r.cells_...);
     visit("edges", r.edges_...);
     visit("sides", r.sides_...);
+    visit("refined cells", r.refined_...);
+    visit("initial mesh", r.initial_...);
     visit("number of nodes", r.nodes_...);
   }
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  template <class V>
-  static void reserve(std::vector<V>& list, std::size_t more) {
-    auto const needed = list.size() + more;
-    if (needed > list.capacity()) list.reserve(std::max(needed, 2 * list.size()));
-  }
+  static Index size(auto const& list) { return static_cast<Index>(list.size()); }
 
   /// Side s of a cell, as the cell sees it.
   static TreeSide side_of(TreeCell const& cell, std::size_t s) {
@@ -325,29 +334,17 @@ class CellTree {
     return side;
   }
 
-  struct HashOfNodes {
-    template <std::size_t N>
-    std::size_t operator()(std::array<Index, N> const& nodes) const {
-      std::uint64_t hash = 0;
-      for (Index node : nodes) {
-        hash = (hash ^ static_cast<std::uint32_t>(node)) * 0x9e3779b97f4a7c15;
-        hash ^= hash >> 32;
-      }
-      return hash;
-    }
-  };
-
   void attach(Index c) { count_uses(c, 1); }
   void detach(Index c) { count_uses(c, -1); }
   void count_uses(Index c, int by) {
     auto const& cell = cells_[at(c)];
     auto const& p = cell.pattern();
     for (std::size_t e = 0; e < at(p.edges); ++e) {
-      auto& edge = edges_[at(cell.edges[e])];
+      auto& edge = edges_.edit(at(cell.edges[e]));
       (cell.first_child < 0 ? edge.leaves : edge.refined) += by;
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto& cells = sides_[at(cell.sides[s])].cells;
+      auto& cells = sides_.edit(at(cell.sides[s])).cells;
       if (by > 0) {
         cells[cells[0] < 0 ? 0 : 1] = c;
       } else {
@@ -373,7 +370,7 @@ class CellTree {
   void bisect(Index e) {
     auto const edge = edges_[at(e)];
     if (edge.first_half >= 0) return;
-    edges_[at(e)].first_half = static_cast<Index>(edges_.size());
+    edges_.edit(at(e)).first_half = static_cast<Index>(edges_.size());
     TreeEdge half{.parent = e, .level = edge.level + 1, .has = edge.has};
     half.nodes = {edge.nodes[0], edge.middle};
     edges_.push_back(half);
@@ -392,8 +389,9 @@ class CellTree {
     if (side.first_child >= 0) return;
     auto const n = side.corners();
     bool const quad = n == 4;
-    sides_[at(s)].first_child = static_cast<Index>(sides_.size());
-    auto const inner = sides_[at(s)].first_inner_edge = static_cast<Index>(edges_.size());
+    auto const inner = static_cast<Index>(edges_.size());
+    sides_.edit(at(s)).first_child = static_cast<Index>(sides_.size());
+    sides_.edit(at(s)).first_inner_edge = inner;
     std::array<Index, 4> middle{};
     for (std::size_t k = 0; k < n; ++k) middle[k] = edges_[at(side.edges[k])].middle;
     // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
@@ -455,7 +453,7 @@ class CellTree {
   /// Gives the element on a new child the nodes between its corners.
   template <class MakeNode>
   void place_nodes(Index child, Index parent, MakeNode const& make_node) {
-    auto& cell = cells_[at(child)];
+    auto& cell = cells_.edit(at(child));
     auto const& p = cell.pattern();
     auto const i = at(child - cells_[at(parent)].first_child);
     auto const mean = [&](auto const& corners, std::size_t count) {
@@ -466,71 +464,110 @@ class CellTree {
       return sum;
     };
     for (std::size_t e = 0; e < at(p.edges); ++e)
-      make_node(edges_[at(cell.edges[e])].middle, mean(p.edge[e], 2));
+      make_node(edges_.edit(at(cell.edges[e])).middle, mean(p.edge[e], 2));
     if (cell.has != CellNodes::all) return;
     for (std::size_t s = 0; s < at(p.sides); ++s)
-      if (p.side_centre[s] >= 0) make_node(sides_[at(cell.sides[s])].centre, mean(p.side[s], 4));
+      if (p.side_centre[s] >= 0)
+        make_node(sides_.edit(at(cell.sides[s])).centre, mean(p.side[s], 4));
     if (p.centre < 0) return;
     std::array<int, 8> const corners{0, 1, 2, 3, 4, 5, 6, 7};
     make_node(cell.centre, mean(corners, at(p.corners)));
   }
 
-  Renumbering compact(std::vector<bool> const& gone) {
-    std::vector<bool> node_used(at(nodes_), false), side_used(sides_.size(), false);
-    for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
-      if (gone[at(c)]) continue;
-      for (Index const node : nodes_of(c)) node_used[at(node)] = true;
-    }
-    std::vector<bool> edge_used(edges_.size());
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      auto& edge = edges_[e];
-      edge_used[e] = edge.leaves + edge.refined > 0;
-      if (edge.refined == 0) edge.first_half = -1;
-      if (edge.middle >= 0 && !node_used[at(edge.middle)]) edge.middle = -1;
-    }
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-      auto& side = sides_[s];
-      side_used[s] = side.cells[0] >= 0;
-      bool const divided = std::ranges::any_of(
-          side.cells, [&](Index c) { return c >= 0 && cells_[at(c)].first_child >= 0; });
-      if (!divided) side.first_child = side.first_inner_edge = -1;
-      if (side.centre >= 0 && !node_used[at(side.centre)]) side.centre = -1;
-    }
-    for (auto& cell : cells_)
-      if (cell.centre >= 0 && !node_used[at(cell.centre)]) cell.centre = -1;
+  [[nodiscard]] std::vector<Index> initial_of(std::vector<Index> cells) const {
+    std::erase_if(cells, [&](Index c) { return c >= initial_.cells; });
+    return cells;
+  }
+  static std::vector<Index> each_once(std::vector<Index> list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }
 
-    auto cell_used = gone;
-    cell_used.flip();
-    auto const node = numbers(node_used), cell = numbers(cell_used), edge = numbers(edge_used),
-               side = numbers(side_used);
-    auto const move = [](Index& i, std::vector<Index> const& to) {
-      if (i >= 0) i = to[at(i)];
+  /// Takes away what nothing uses any more after `merged` became leaves and their children went. What the initial mesh has
+  /// stays, and of it only what refined cells have knows of the rest.
+  Renumbering compact(std::vector<Index> const& merged, std::vector<bool> cell_gone) {
+    auto const& i = initial_;
+    std::vector<bool> node_used(at(nodes_), false), edge_used(edges_.size(), true),
+        side_used(sides_.size(), true);
+    std::fill_n(node_used.begin(), i.nodes, true);
+    for (Index c = i.cells; c < size(cells_); ++c)
+      if (!cell_gone[at(c)])
+        for (Index const node : nodes_of(c)) node_used[at(node)] = true;
+
+    auto const forget = [&](Index& node) {
+      if (node >= 0 && !node_used[at(node)]) node = -1;
     };
-    keep(cells_, cell_used);
-    keep(edges_, edge_used);
-    keep(sides_, side_used);
-    for (auto& c : cells_) {
-      move(c.parent, cell);
+    auto const mend_edge = [&](Index e) {
+      auto& edge = edges_.edit(at(e));
+      if (edge.refined == 0) edge.first_half = -1;
+      forget(edge.middle);
+    };
+    auto const mend_side = [&](Index s) {
+      auto& side = sides_.edit(at(s));
+      if (std::ranges::none_of(side.cells, [&](Index c) { return c >= 0 && !is_leaf(c); }))
+        side.first_child = side.first_inner_edge = -1;
+      forget(side.centre);
+    };
+    for (Index const e : edges_of(initial_of(merged))) mend_edge(e);
+    for (Index const s : sides_of(initial_of(merged))) mend_side(s);
+    for (Index const c : merged) forget(cells_.edit(at(c)).centre);
+    for (Index e = i.edges; e < size(edges_); ++e) {
+      edge_used[at(e)] = edges_[at(e)].leaves + edges_[at(e)].refined > 0;
+      mend_edge(e);
+    }
+    for (Index s = i.sides; s < size(sides_); ++s) {
+      side_used[at(s)] = sides_[at(s)].cells[0] >= 0;
+      mend_side(s);
+    }
+
+    cell_gone.flip();
+    auto const node = numbers(node_used), cell = numbers(cell_gone), edge = numbers(edge_used),
+               side = numbers(side_used);
+    keep(cells_, cell_gone, i.cells);
+    keep(edges_, edge_used, i.edges);
+    keep(sides_, side_used, i.sides);
+    auto const move = [](Index& number, std::vector<Index> const& to) {
+      if (number >= 0) number = to[at(number)];
+    };
+    for (Index& c : refined_) move(c, cell);
+    auto const move_within_cell = [&](TreeCell& c) {
       move(c.first_child, cell);
       move(c.centre, node);
-      for (Index& n : c.nodes) move(n, node);
+    };
+    auto const move_within_edge = [&](TreeEdge& e) {
+      move(e.middle, node);
+      move(e.first_half, edge);
+    };
+    auto const move_within_side = [&](TreeSide& s) {
+      move(s.centre, node);
+      move(s.first_child, side);
+      move(s.first_inner_edge, edge);
+    };
+    for (Index const c : initial_of(refined_)) move_within_cell(cells_.edit(at(c)));
+    for (Index const e : edges_of(initial_of(refined_))) move_within_edge(edges_.edit(at(e)));
+    for (Index const s : sides_of(initial_of(refined_))) move_within_side(sides_.edit(at(s)));
+    for (Index n = i.cells; n < size(cells_); ++n) {
+      auto& c = cells_.edit(at(n));
+      move_within_cell(c);
+      move(c.parent, cell);
+      for (Index& p : c.nodes) move(p, node);
       for (Index& e : c.edges) move(e, edge);
       for (Index& s : c.sides) move(s, side);
     }
-    for (auto& e : edges_) {
-      for (Index& n : e.nodes) move(n, node);
-      move(e.middle, node);
+    for (Index n = i.edges; n < size(edges_); ++n) {
+      auto& e = edges_.edit(at(n));
+      move_within_edge(e);
       move(e.parent, edge);
-      move(e.first_half, edge);
+      for (Index& p : e.nodes) move(p, node);
     }
-    for (auto& s : sides_) {
-      for (Index& n : s.nodes) move(n, node);
+    for (Index n = i.sides; n < size(sides_); ++n) {
+      auto& s = sides_.edit(at(n));
+      move_within_side(s);
+      move(s.parent, side);
+      for (Index& p : s.nodes) move(p, node);
       for (Index& e : s.edges) move(e, edge);
       for (Index& c : s.cells) move(c, cell);
-      move(s.centre, node);
-      move(s.parent, side);
-      move(s.first_child, side);
-      move(s.first_inner_edge, edge);
     }
     nodes_ = static_cast<Index>(std::ranges::count(node_used, true));
     return {node, cell};
@@ -538,25 +575,30 @@ class CellTree {
   static std::vector<Index> numbers(std::vector<bool> const& used) {
     std::vector<Index> list(used.size(), -1);
     Index next = 0;
-    for (std::size_t i = 0; i < used.size(); ++i)
-      if (used[i]) list[i] = next++;
+    for (std::size_t k = 0; k < used.size(); ++k)
+      if (used[k]) list[k] = next++;
     return list;
   }
+  /// Moves up what is used; all before `first` is.
   template <class V>
-  static void keep(std::vector<V>& list, std::vector<bool> const& used) {
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < list.size(); ++i)
-      if (used[i]) list[next++] = list[i];
-    list.resize(next);
+  static void keep(SharedList<V>& list, std::vector<bool> const& used, Index first) {
+    std::size_t next = at(first);
+    for (std::size_t k = next; k < list.size(); ++k)
+      if (used[k]) {
+        if (next != k) list.edit(next) = list[k];
+        ++next;
+      }
+    list.shrink(next);
   }
 
-  std::vector<TreeCell> cells_;
-  std::vector<TreeEdge> edges_;
-  std::vector<TreeSide> sides_;
+  SharedList<TreeCell> cells_;
+  SharedList<TreeEdge> edges_;
+  SharedList<TreeSide> sides_;
+  std::vector<Index> refined_;
   Index nodes_ = 0;
-  // By their corners, ascending. Only looked up: their order does not matter.
-  std::unordered_map<std::array<Index, 2>, Index, HashOfNodes> initial_edges_;
-  std::unordered_map<std::array<Index, 4>, Index, HashOfNodes> initial_sides_;
+  TreeSizes initial_;
+  NumberTable<2> initial_edges_;  // by their corners, ascending
+  NumberTable<4> initial_sides_;
 };
 
 }  // namespace pliant

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -85,7 +84,7 @@ class Hierarchy {
 
   [[nodiscard]] std::vector<Point<Dim>> const& points() const { return points_; }
   [[nodiscard]] CellTree const& tree() const { return tree_; }
-  [[nodiscard]] std::vector<TreeCell> const& cells() const { return tree_.cells(); }
+  [[nodiscard]] SharedList<TreeCell> const& cells() const { return tree_.cells(); }
   [[nodiscard]] TreeCell const& cell(Index c) const { return tree_[c]; }
   [[nodiscard]] bool is_leaf(Index c) const { return tree_.is_leaf(c); }
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
@@ -117,9 +116,8 @@ class Hierarchy {
 
     Refinement<Dim> done{
         .parents = tree_.closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
-    auto const nodes = make_room(done.parents, limits);
-    std::vector<Index> whole = sides_of(done.parents);  // that are about to be divided
-    sort_and_unify(whole);
+    auto const nodes = check_room(done.parents, limits);
+    auto whole = Dim == 2 ? tree_.edges_of(done.parents) : tree_.sides_of(done.parents);
     std::erase_if(whole, [&](Index s) { return first_part(s) >= 0; });
     std::vector<PlacedNode> made;
     made.reserve(nodes);
@@ -189,8 +187,9 @@ class Hierarchy {
   [[nodiscard]] std::vector<Slave> slaves() const {
     std::vector<std::pair<int, Slave>> hanging;  // and the level of the coarser element
     auto const& edges = tree_.edges();
-    for (auto const& edge : edges) {
-      if (edge.leaves == 0 || edge.refined == 0) continue;
+    for (Index const e : tree_.edges_of(tree_.refined())) {
+      auto const& edge = edges[at(e)];
+      if (edge.leaves == 0) continue;
       auto const [a, b] = edge.nodes;
       if (edge.has == CellNodes::corners) {
         hanging.push_back({edge.level, {edge.middle, sorted({{a, 0.5}, {b, 0.5}})}});
@@ -203,7 +202,8 @@ class Hierarchy {
       hanging.push_back(
           {edge.level, {other.middle, sorted({{a, -1. / 8}, {edge.middle, 3. / 4}, {b, 3. / 8}})}});
     }
-    for (auto const& side : tree_.sides()) {
+    for (Index const s : tree_.sides_of(tree_.refined())) {
+      auto const& side = tree_.sides()[at(s)];
       if (side.cells[1] < 0 || is_leaf(side.cells[0]) == is_leaf(side.cells[1])) continue;
       add_nodes_on(side, hanging);
     }
@@ -271,7 +271,8 @@ class Hierarchy {
     }
   }
 
-  std::size_t make_room(std::vector<Index> const& parents, RefinementLimits const& limits) {
+  /// How many nodes it takes to refine the cells. Throws Error where a limit would be exceeded.
+  std::size_t check_room(std::vector<Index> const& parents, RefinementLimits const& limits) const {
     auto const nodes = tree_.count_new_nodes(parents);
     auto const cells_made = tree_.count_new_cells(parents);
     auto const check = [&](char const* what, std::size_t needed, std::size_t limit) {
@@ -284,9 +285,6 @@ class Hierarchy {
     check("leaves", leaf_count_ + cells_made - parents.size(), limits.leaves);
     check("cells", cells().size() + cells_made, most_);
     check("edges", tree_.edges().size() + tree_.most_new_edges(parents), most_);
-    auto const needed = points_.size() + nodes;
-    if (needed > points_.capacity()) points_.reserve(std::max(needed, 2 * points_.size()));
-    tree_.make_room(parents);
     return nodes;
   }
 
@@ -400,7 +398,8 @@ class Hierarchy {
   /// The nodes of refined cells' children that the cells themselves have not, as they lie between nodes of
   /// the cells: each once, ascending.
   std::vector<NewNode> between_nodes_of(std::vector<Index> const& parents) const {
-    std::map<Index, NewNode> found;
+    std::vector<NewNode> found;
+    std::vector<bool> seen(points_.size(), false);
     for (Index const c : parents) {
       auto const& own = cell(c);
       auto const& p = own.pattern();
@@ -410,18 +409,18 @@ class Hierarchy {
         auto const list = tree_.nodes_of(child);
         auto const places = places_of(cell(child));
         for (std::size_t a = 0; a < list.count; ++a) {
-          if (std::ranges::find(nodes, list[a]) != nodes.end() || found.contains(list[a])) continue;
+          if (seen[at(list[a])] || std::ranges::find(nodes, list[a]) != nodes.end()) continue;
+          seen[at(list[a])] = true;
           std::array<double, 3> place{};
           for (std::size_t b = 0; b < at(p.corners); ++b)
             for (std::size_t k = 0; k < 3; ++k)
               place[k] += places[a][b] * p.place[at(corners[b])][k];
-          found[list[a]] = {list[a], detail::shape_weights(own.kind, own.has, nodes, place)};
+          found.push_back({list[a], detail::shape_weights(own.kind, own.has, nodes, place)});
         }
       }
     }
-    std::vector<NewNode> list;
-    for (auto& entry : found) list.push_back(std::move(entry.second));
-    return list;
+    std::ranges::sort(found, {}, &NewNode::node);
+    return found;
   }
   /// Where the nodes of an element lie between the corners of its cell: the corners' weights.
   static std::array<std::array<double, 8>, 27> places_of(TreeCell const& cell) {

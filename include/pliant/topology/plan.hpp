@@ -54,16 +54,6 @@ bool is_cell_of(TreeCell const& cell) {
   return cell.kind == kind_of<typename E::cell> && cell.has == nodes_on_cell<E>;
 }
 
-/// The leaves of a tree that are elements of a type, in the order of the mesh's list.
-template <Element E>
-std::vector<Index> leaves_of(Hierarchy<E::dim> const& tree) {
-  std::vector<Index> cells;
-  auto const& all = tree.cells();
-  for (Index c = 0; c < static_cast<Index>(all.size()); ++c)
-    if (tree.is_leaf(c) && is_cell_of<E>(tree.cell(c))) cells.push_back(c);
-  return cells;
-}
-
 /// Calls visit(E{}, place of E among the mesh's types) for each element type.
 template <Element... Es, class Visit>
 void for_each_type_of(Mesh<Es...> const&, Visit const& visit) {
@@ -77,34 +67,44 @@ std::vector<std::size_t> element_counts(Mesh<Es...> const& mesh) {
   return {mesh.template elements<Es>().size()...};
 }
 
-/// The refinement tree of a topology: the one it has, or a new one.
+/// The refinement tree of a topology, and for each type the cells that its elements are: those that it has, or new ones.
 template <class M>
-std::shared_ptr<Hierarchy<M::dim> const> tree_of(Topology<M> const& topology) {
-  if (topology.tree) return topology.tree;
+struct RefinementTree {
+  std::shared_ptr<Hierarchy<M::dim> const> tree;
+  std::vector<std::vector<Index>> cells;
+};
+template <class M>
+RefinementTree<M> tree_of(Topology<M> const& topology) {
+  if (topology.tree) return {topology.tree, topology.cells};
   auto const& mesh = topology.mesh;
   if (!mesh.slaves.empty())
     throw Error("refine: the mesh came with ", mesh.slaves.size(),
                 " hanging nodes, of which it is not known what was refined; give the coarse mesh, "
                 "and refine the body");
-  return std::make_shared<Hierarchy<M::dim>>(mesh);
+  RefinementTree<M> made{std::make_shared<Hierarchy<M::dim>>(mesh), {}};
+  Index next = 0;
+  for (std::size_t count : element_counts(mesh)) {
+    auto& cells = made.cells.emplace_back(count);
+    for (Index& c : cells) c = next++;
+  }
+  return made;
 }
 
 /// The cells of marked elements, which are given by the user's numbers for each element type.
 template <class M>
-std::vector<Index> cells_of(M const& mesh, Hierarchy<M::dim> const& tree, char const* verb,
-                            std::vector<std::vector<Index>> const& marked) {
-  std::vector<Index> cells;
+std::vector<Index> cells_of(M const& mesh, std::vector<std::vector<Index>> const& cells,
+                            char const* verb, std::vector<std::vector<Index>> const& marked) {
+  std::vector<Index> found;
   for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    if (marked.empty() || marked[type].empty()) return;
-    auto const leaves = leaves_of<E>(tree);
+    if (marked.empty()) return;
     for (Index e : marked[type]) {
-      if (e < 0 || e >= static_cast<Index>(leaves.size()))
+      if (e < 0 || e >= static_cast<Index>(cells[type].size()))
         throw Error(verb, ": there is no ", E::name(), " element ", e, "; they are numbered 0 to ",
-                    leaves.size() - 1);
-      cells.push_back(leaves[static_cast<std::size_t>(e)]);
+                    cells[type].size() - 1);
+      found.push_back(cells[type][static_cast<std::size_t>(e)]);
     }
   });
-  return cells;
+  return found;
 }
 
 /// A change of the cells of a tree, families merged before cells are refined.
@@ -138,84 +138,120 @@ template <int Dim>
 std::vector<Index> families_to_keep(Hierarchy<Dim> const& before,
                                     std::vector<Index> const& families,
                                     ChangedCells<Dim> const& changed, KeptParts<Dim> const& kept) {
-  std::vector<bool> lost(before.points().size(), false);  // nodes that go and must stay
+  if (families.empty()) return {};
+  std::vector<Index> lost;  // nodes that go and must stay, ascending
+  std::vector<Index> named = kept.nodes;
+  std::ranges::sort(named);
   for (NewNode const& gone : changed.coarsening.gone)
-    lost[static_cast<std::size_t>(gone.node)] = true;
-  std::vector<bool> named(lost.size(), false);
-  for (Index node : kept.nodes) named[static_cast<std::size_t>(node)] = true;
-  for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = lost[i] && named[i];
+    if (std::ranges::binary_search(named, gone.node)) lost.push_back(gone.node);
   std::vector<Facet<Dim>> cut;
-  Transfer<Dim> const facets({.merged = changed.coarsening.facets});
-  for (auto const* list : kept.facets) {
-    auto const own = facets.cut_facets(*list);
-    cut.insert(cut.end(), own.begin(), own.end());
+  if (!kept.facets.empty()) {
+    Transfer<Dim> const facets({.merged = changed.coarsening.facets});
+    for (auto const* list : kept.facets) {
+      auto const own = facets.cut_facets(*list);
+      cut.insert(cut.end(), own.begin(), own.end());
+    }
   }
+  auto split_again = changed.refinement.parents;
+  std::ranges::sort(split_again);
 
-  auto const& split_again = changed.refinement.parents;
   auto const has_to_stay = [&](Index parent) {
     auto const& cell = before.cell(parent);
-    for (Index c = cell.first_child; c < cell.first_child + cell.pattern().children; ++c) {
+    for (Index c = cell.first_child;
+         !(lost.empty() && cut.empty()) && c < cell.first_child + cell.pattern().children; ++c) {
       auto const nodes = before.tree().nodes_of(c);
       auto const has = [&](Index node) { return std::ranges::find(nodes, node) != nodes.end(); };
       for (Index node : nodes)
-        if (lost[static_cast<std::size_t>(node)]) return true;
+        if (std::ranges::binary_search(lost, node)) return true;
       for (auto const& facet : cut)
         if (std::ranges::all_of(facet, has)) return true;
     }
-    return std::ranges::find(split_again, changed.renumbered(parent)) != split_again.end();
+    return std::ranges::binary_search(split_again, changed.renumbered(parent));
   };
   std::vector<Index> keep;
   std::ranges::copy_if(families, std::back_inserter(keep), has_to_stay);
   return keep;
 }
 
-/// Where the elements of a type come from, in the order of the new mesh's list, and the families that were merged or
+/// The elements of a type after a change.
+template <int Dim>
+struct ChangedElements {
+  std::vector<Index> cells;  // of the tree, ascending
+  std::vector<typename Transfer<Dim>::Origin> origins;
+};
+
+/// What becomes of the elements of a type that are the cells `old_cells` of a tree. Appends the families that are merged or
 /// divided.
-template <Element E, class Families>
-auto origins_of(Hierarchy<E::dim> const& before, ChangedCells<E::dim> const& changed,
-                std::size_t type, Families& families) {
+template <Element E>
+ChangedElements<E::dim> change_elements(std::vector<Index> const& old_cells,
+                                        Hierarchy<E::dim> const& before,
+                                        std::vector<Index> const& merged,
+                                        ChangedCells<E::dim> const& changed, std::size_t type,
+                                        std::vector<typename Transfer<E::dim>::Family>& families) {
   using Origin = typename Transfer<E::dim>::Origin;
   auto const& after = *changed.tree;
-  std::vector<Index> old_element(before.cells().size(), -1), old_cell(after.cells().size(), -1);
-  auto const old_leaves = leaves_of<E>(before);
-  for (std::size_t e = 0; e < old_leaves.size(); ++e)
-    old_element[static_cast<std::size_t>(old_leaves[e])] = static_cast<Index>(e);
-  for (Index c = 0; c < static_cast<Index>(before.cells().size()); ++c)
-    if (changed.renumbered(c) >= 0) old_cell[static_cast<std::size_t>(changed.renumbered(c))] = c;
-
-  std::vector<Origin> origins;
-  for (Index c : leaves_of<E>(after)) {
-    auto const e = static_cast<Index>(origins.size());
-    Index const old = old_cell[static_cast<std::size_t>(c)];
-    if (old >= 0 && before.is_leaf(old)) {
-      origins.push_back({old_element[static_cast<std::size_t>(old)], Origin::same});
-    } else if (old >= 0) {
-      auto const& cell = before.cell(old);
-      auto& family = families.emplace_back();
-      family.type = type;
-      family.mirrored = cell.mirrored;
-      family.after = {e};
+  auto const old_element = [&](Index c) {
+    return static_cast<Index>(std::ranges::lower_bound(old_cells, c) - old_cells.begin());
+  };
+  ChangedElements<E::dim> list;
+  list.cells.reserve(old_cells.size());
+  list.origins.reserve(old_cells.size());
+  auto const add = [&](Index c, Origin const& origin) {
+    list.cells.push_back(c);
+    list.origins.push_back(origin);
+  };
+  auto const add_family = [&](TreeCell const& parent) -> auto& {
+    auto& family = families.emplace_back();
+    family.type = type;
+    family.mirrored = parent.mirrored;
+    return family;
+  };
+  auto next_merged = merged.begin();
+  auto const add_merged_before = [&](Index old) {
+    for (; next_merged != merged.end() && *next_merged < old; ++next_merged) {
+      auto const& cell = before.cell(*next_merged);
+      if (!is_cell_of<E>(cell)) continue;
+      auto& family = add_family(cell);
+      family.after = {static_cast<Index>(list.cells.size())};
       for (Index k = 0; k < cell.pattern().children; ++k)
-        family.before.push_back(old_element[static_cast<std::size_t>(cell.first_child + k)]);
-      origins.push_back(
+        family.before.push_back(old_element(cell.first_child + k));
+      add(changed.renumbered(*next_merged),
           {family.before[0], Origin::merged, static_cast<Index>(families.size()) - 1});
-    } else {
-      Index const parent = after.cell(c).parent;
-      auto const child = static_cast<int>(c - after.cell(parent).first_child);
-      if (child == 0) {
-        auto& family = families.emplace_back();
-        family.type = type;
-        family.mirrored = after.cell(parent).mirrored;
-        family.before = {
-            old_element[static_cast<std::size_t>(old_cell[static_cast<std::size_t>(parent)])]};
-      }
-      // Siblings stand side by side.
-      auto& family = families.back();
-      family.after.push_back(e);
-      origins.push_back({family.before[0], child, static_cast<Index>(families.size()) - 1});
+    }
+  };
+
+  // Numbers of cells stay in order, and those of new ones follow.
+  auto divided = changed.refinement.parents;
+  std::ranges::sort(divided);
+  auto next_divided = divided.begin();
+  std::vector<Index> divided_elements;
+  for (std::size_t e = 0; e < old_cells.size(); ++e) {
+    add_merged_before(old_cells[e]);
+    Index const c = changed.renumbered(old_cells[e]);
+    if (c < 0) continue;
+    while (next_divided != divided.end() && *next_divided < c) ++next_divided;
+    if (next_divided == divided.end() || *next_divided != c)
+      add(c, {static_cast<Index>(e), Origin::same});
+    else
+      divided_elements.push_back(static_cast<Index>(e));
+  }
+  add_merged_before(static_cast<Index>(before.cells().size()));
+  std::vector<Index> own_divided;
+  std::ranges::copy_if(divided, std::back_inserter(own_divided),
+                       [&](Index c) { return is_cell_of<E>(after.cell(c)); });
+  for (Index const parent : changed.refinement.parents) {
+    auto const& cell = after.cell(parent);
+    if (!is_cell_of<E>(cell)) continue;
+    auto const place = std::ranges::lower_bound(own_divided, parent) - own_divided.begin();
+    auto& family = add_family(cell);
+    family.before = {divided_elements[static_cast<std::size_t>(place)]};
+    for (int child = 0; child < cell.pattern().children; ++child) {
+      family.after.push_back(static_cast<Index>(list.cells.size()));
+      add(cell.first_child + child,
+          {family.before[0], child, static_cast<Index>(families.size()) - 1});
     }
   }
-  return origins;
+  return list;
 }
 
 /// The shares of the merged elements in the volume of their family.
@@ -258,17 +294,17 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   if (!marked.refine.empty()) detail::check_lists(before->mesh, "refine", marked.refine);
   if (!marked.coarsen.empty()) detail::check_lists(before->mesh, "coarsen", marked.coarsen);
   if (marked.none()) return std::nullopt;
-  auto const old_tree = detail::tree_of(*before);
-  auto const refine = detail::cells_of(before->mesh, *old_tree, "refine", marked.refine);
+  auto const old = detail::tree_of(*before);
+  auto const refine = detail::cells_of(before->mesh, old.cells, "refine", marked.refine);
   auto families =
-      old_tree->families(detail::cells_of(before->mesh, *old_tree, "coarsen", marked.coarsen));
+      old.tree->families(detail::cells_of(before->mesh, old.cells, "coarsen", marked.coarsen));
   if (families.empty() && refine.empty()) return std::nullopt;
-  auto changed = detail::change_cells(*old_tree, families, refine, limits);
+  auto changed = detail::change_cells(*old.tree, families, refine, limits);
   for (;;) {
-    auto const keep = detail::families_to_keep(*old_tree, families, changed, kept);
+    auto const keep = detail::families_to_keep(*old.tree, families, changed, kept);
     if (keep.empty()) break;
     std::erase_if(families, [&](Index c) { return std::ranges::binary_search(keep, c); });
-    changed = detail::change_cells(*old_tree, families, refine, limits);
+    changed = detail::change_cells(*old.tree, families, refine, limits);
   }
   if (families.empty() && changed.refinement.parents.empty()) return std::nullopt;
 
@@ -285,10 +321,24 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   M& mesh = topology->mesh;
   mesh.nodes = changed.tree->points();
   detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    parts.origins.push_back(detail::origins_of<E>(*old_tree, changed, type, parts.families));
-    for (Index c : detail::leaves_of<E>(*changed.tree))
-      std::ranges::copy(changed.tree->tree().element_nodes(c),
-                        mesh.template elements<E>().emplace_back().begin());
+    auto changed_elements = detail::change_elements<E>(old.cells[type], *old.tree, families,
+                                                       changed, type, parts.families);
+    auto& elements = mesh.template elements<E>();
+    elements.reserve(changed_elements.cells.size());
+    for (std::size_t e = 0; e < changed_elements.cells.size(); ++e) {
+      auto const& origin = changed_elements.origins[e];
+      if (origin.child == Transfer<dim>::Origin::same) {
+        elements.push_back(
+            before->mesh.template elements<E>()[static_cast<std::size_t>(origin.element)]);
+        for (Index& node : elements.back())
+          if (!parts.renumbered.empty()) node = parts.renumbered[static_cast<std::size_t>(node)];
+      } else {
+        std::ranges::copy(changed.tree->tree().element_nodes(changed_elements.cells[e]),
+                          elements.emplace_back().begin());
+      }
+    }
+    parts.origins.push_back(std::move(changed_elements.origins));
+    topology->cells.push_back(std::move(changed_elements.cells));
   });
   detail::share_volumes(before->mesh, parts.families);
   Transfer<dim> transfer(std::move(parts));

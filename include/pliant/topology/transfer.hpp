@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -65,9 +66,11 @@ class Transfer {
 
   explicit Transfer(Parts parts) : p_(std::move(parts)) {
     for (std::size_t i = 0; i < p_.divided.size(); ++i)
-      divided_[mesh::key_of(p_.divided[i].whole)] = i;
+      divided_.emplace_back(mesh::key_of(p_.divided[i].whole), i);
     for (std::size_t i = 0; i < p_.merged.size(); ++i)
-      for (auto const& part : p_.merged[i].parts) merged_[mesh::key_of(part)] = i;
+      for (auto const& part : p_.merged[i].parts) merged_.emplace_back(mesh::key_of(part), i);
+    std::ranges::sort(divided_);
+    std::ranges::sort(merged_);
     stay_ = p_.old_nodes;
     if (!p_.renumbered.empty())
       stay_ = static_cast<Index>(
@@ -146,12 +149,12 @@ class Transfer {
     std::vector<Facet<Dim>> carried;
     std::vector<bool> done(p_.merged.size(), false);
     for (auto const& facet : facets) {
-      auto const found = merged_.find(mesh::key_of(facet));
-      if (found == merged_.end()) {
+      auto const whole = find(merged_, facet);
+      if (!whole) {
         add_parts(new_numbers(facet), carried);
-      } else if (!done[found->second]) {
-        done[found->second] = true;
-        carried.push_back(new_numbers(whole_of(p_.merged[found->second], facet)));
+      } else if (!done[*whole]) {
+        done[*whole] = true;
+        carried.push_back(new_numbers(whole_of(p_.merged[*whole], facet)));
       }
     }
     return carried;
@@ -160,8 +163,7 @@ class Transfer {
   std::vector<Facet<Dim>> cut_facets(std::vector<Facet<Dim>> const& facets) const {
     std::map<std::size_t, std::size_t> parts;  // by whole
     for (auto const& facet : facets)
-      if (auto const found = merged_.find(mesh::key_of(facet)); found != merged_.end())
-        ++parts[found->second];
+      if (auto const whole = find(merged_, facet)) ++parts[*whole];
     std::vector<Facet<Dim>> cut;
     for (auto const& [whole, count] : parts)
       if (count < p_.merged[whole].parts.size())
@@ -170,6 +172,15 @@ class Transfer {
   }
 
  private:
+  /// Where facets are in another list, ascending by their corners: see key_of.
+  using FacetList = std::vector<std::pair<std::array<Index, 4>, std::size_t>>;
+  static std::optional<std::size_t> find(FacetList const& list, Facet<Dim> const& facet) {
+    if (list.empty()) return std::nullopt;
+    auto const key = mesh::key_of(facet);
+    auto const found = std::ranges::lower_bound(list, key, {}, &FacetList::value_type::first);
+    if (found == list.end() || found->first != key) return std::nullopt;
+    return found->second;
+  }
   static void check(std::size_t got, std::size_t wanted, char const* what) {
     if (got != wanted)
       throw Error("transfer: got ", got, " values of ", what, ", but those before the change take ",
@@ -259,12 +270,12 @@ class Transfer {
     return Dim == 2 ? at != 0 : other[(at + 1) % n] != one[1];
   }
   void add_parts(Facet<Dim> const& facet, std::vector<Facet<Dim>>& parts) const {
-    auto const found = divided_.find(mesh::key_of(facet));
-    if (found == divided_.end()) {
+    auto const found = find(divided_, facet);
+    if (!found) {
       parts.push_back(facet);
       return;
     }
-    auto const& [whole, own] = p_.divided[found->second];
+    auto const& [whole, own] = p_.divided[*found];
     bool const backwards = runs_backwards(whole, facet);
     for (std::size_t k = 0; k < facet.corners(); ++k) {
       std::size_t corner = 0;
@@ -276,7 +287,7 @@ class Transfer {
 
   Parts p_;
   Index stay_ = 0;
-  std::map<std::array<Index, 4>, std::size_t> divided_, merged_;  // by corners, see key_of
+  FacetList divided_, merged_;
 };
 
 }  // namespace pliant

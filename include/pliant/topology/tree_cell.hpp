@@ -101,6 +101,19 @@ struct TreeSide {
   }
 };
 
+/// How many of each there are.
+struct TreeSizes {
+  Index cells = 0, edges = 0, sides = 0, nodes = 0;
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("cells", r.cells...);
+    visit("edges", r.edges...);
+    visit("sides", r.sides...);
+    visit("nodes", r.nodes...);
+  }
+};
+
 /// A node that a split made: where it lies on the cell that was split.
 struct PlacedNode {
   Index node = -1;
