@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pliant/math/group_by_key.hpp>
@@ -30,27 +31,83 @@ inline std::vector<Index> ascending(std::vector<std::uint64_t> const& codes) {
   return order;
 }
 
-/// How far along a Hilbert curve through a grid of 2^bits cells a side one of them lies, by J. Skilling,
-/// "Programming the Hilbert curve", AIP Conference Proceedings 707 (2004).
+/// How a part of a Hilbert curve lies in the whole, and what follows for its own parts, by J. Skilling, "Programming the
+/// Hilbert curve", AIP Conference Proceedings 707 (2004). There all lower bits of coordinates are inverted and exchanged;
+/// this table says, for each way in which that can have been done, what another bit of each coordinate leads to.
 template <std::size_t Dim>
-std::uint64_t hilbert_code(std::array<std::uint32_t, Dim> cell, int bits) {
-  std::uint32_t const highest = std::uint32_t{1} << (bits - 1);
-  // Each part of the curve turns as it lies in the whole.
-  for (std::uint32_t bit = highest; bit > 1; bit >>= 1) {
-    std::uint32_t const below = bit - 1;
-    for (std::uint32_t& x : cell) {
-      std::uint32_t const swapped = (x & bit) != 0 ? 0 : (cell[0] ^ x) & below;
-      cell[0] ^= (x & bit) != 0 ? below : swapped;
-      x ^= swapped;
-    }
+class HilbertTable {
+ public:
+  static constexpr std::size_t corners = std::size_t{1} << Dim;
+  struct Entry {
+    std::uint8_t digit;  // of the code, Dim bits
+    std::uint8_t next;   // turn of the part
+  };
+  /// One bit of each coordinate, the first lowest, of a part with this turn. Turn 0 is that of the whole.
+  [[nodiscard]] constexpr Entry at(std::size_t turn, std::size_t bits) const {
+    return entries_[turn * corners + bits];
   }
-  for (std::size_t k = 1; k < Dim; ++k) cell[k] ^= cell[k - 1];
-  std::uint32_t flipped = 0;
-  for (std::uint32_t bit = highest; bit > 1; bit >>= 1)
-    if ((cell[Dim - 1] & bit) != 0) flipped ^= bit - 1;
+
+  constexpr HilbertTable() {
+    std::size_t known = 1;
+    for (std::size_t turn = 0; turn < known; ++turn)
+      for (std::size_t bits = 0; bits < corners; ++bits) {
+        auto [digit, after] = part(turns_[turn], bits);
+        std::size_t next = 0;
+        while (next < known && !(turns_[next] == after)) ++next;
+        if (next == known) turns_[known++] = after;
+        entries_[turn * corners + bits] = {digit, static_cast<std::uint8_t>(next)};
+      }
+  }
+
+ private:
+  /// Of which coordinate each one now has the lower bits, whether they are inverted, and whether the digits are.
+  struct Turn {
+    std::array<std::uint8_t, Dim> from{};
+    std::array<bool, Dim> inverted{};
+    bool flipped = false;
+    constexpr Turn() {
+      for (std::size_t k = 0; k < Dim; ++k) from[k] = static_cast<std::uint8_t>(k);
+    }
+    constexpr bool operator==(Turn const&) const = default;
+  };
+  static constexpr std::pair<std::uint8_t, Turn> part(Turn turn, std::size_t bits) {
+    std::array<bool, Dim> bit{};
+    for (std::size_t k = 0; k < Dim; ++k) bit[k] = (bits >> turn.from[k] & 1) != turn.inverted[k];
+    for (std::size_t k = 0; k < Dim; ++k)
+      if (bit[k]) {
+        turn.inverted[0] = !turn.inverted[0];
+      } else {
+        std::swap(turn.from[0], turn.from[k]);
+        std::swap(turn.inverted[0], turn.inverted[k]);
+      }
+    unsigned digit = 0;
+    bool gray = false;
+    for (std::size_t k = 0; k < Dim; ++k) {
+      gray = gray != bit[k];
+      digit = digit << 1 | (gray != turn.flipped ? 1u : 0u);
+    }
+    turn.flipped = turn.flipped != gray;
+    return {static_cast<std::uint8_t>(digit), turn};
+  }
+
+  static constexpr std::size_t most = Dim == 2 ? 16 : 96;  // turns
+  std::array<Turn, most> turns_{};
+  std::array<Entry, most * corners> entries_{};
+};
+
+/// How far along a Hilbert curve through a grid of 2^bits cells a side one of them lies.
+template <std::size_t Dim>
+std::uint64_t hilbert_code(std::array<std::uint32_t, Dim> const& cell, int bits) {
+  static constexpr HilbertTable<Dim> table;
   std::uint64_t code = 0;
-  for (int b = bits - 1; b >= 0; --b)
-    for (std::uint32_t const x : cell) code = code << 1 | ((x ^ flipped) >> b & 1);
+  std::size_t turn = 0;
+  for (int b = bits - 1; b >= 0; --b) {
+    std::size_t corner = 0;
+    for (std::size_t k = 0; k < Dim; ++k) corner |= std::size_t{cell[k] >> b & 1} << k;
+    auto const [digit, next] = table.at(turn, corner);
+    code = code << Dim | digit;
+    turn = next;
+  }
   return code;
 }
 }  // namespace detail
