@@ -310,12 +310,12 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
 
   typename Transfer<dim>::Parts parts{
       .old_nodes = static_cast<Index>(before->mesh.nodes.size()),
-      .renumbered = changed.coarsening.renumbered.nodes,
-      .new_nodes = changed.refinement.new_nodes,
-      .gone = changed.coarsening.gone,
+      .renumbered = std::move(changed.coarsening.renumbered.nodes),
+      .new_nodes = std::move(changed.refinement.new_nodes),
+      .gone = std::move(changed.coarsening.gone),
       .old_elements = detail::element_counts(before->mesh),
-      .divided = changed.refinement.facets,
-      .merged = changed.coarsening.facets,
+      .divided = std::move(changed.refinement.facets),
+      .merged = std::move(changed.coarsening.facets),
   };
   auto topology = std::make_shared<Topology<M>>();
   M& mesh = topology->mesh;
