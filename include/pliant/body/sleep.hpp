@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pliant/body/leapfrog_energy.hpp>
+#include <pliant/math/group_by_key.hpp>
 
 // Patches that sleep. State::rest says which do; all else here follows from it.
 namespace pliant {
@@ -36,7 +37,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   auto const& layout = parts.layout;
   auto const& interpolation = parts.state.topology->interpolation;
   auto const nodes = static_cast<std::size_t>(layout.nodes);
-  std::vector<std::pair<Index, Index>> pairs;  // node, patch
+  std::vector<Index> nodes_of_pairs, patches_of_pairs;
   made.first_of_type = {0};
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
@@ -56,17 +57,17 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
         }
       std::ranges::sort(own);
       own.erase(std::unique(own.begin(), own.end()), own.end());
-      for (Index node : own) pairs.emplace_back(node, before + p);
+      for (Index node : own) {
+        nodes_of_pairs.push_back(node);
+        patches_of_pairs.push_back(before + p);
+      }
     }
     made.first_of_type.push_back(before + table.elements.patch_count());
   });
-  std::ranges::stable_sort(pairs, {}, &std::pair<Index, Index>::first);
-  made.first_of_node.assign(nodes + 1, 0);
-  for (auto const& [node, patch] : pairs) {
-    ++made.first_of_node[static_cast<std::size_t>(node) + 1];
-    made.patches_of_node.push_back(patch);
-  }
-  for (std::size_t i = 0; i < nodes; ++i) made.first_of_node[i + 1] += made.first_of_node[i];
+  auto const by_node = group_by_key(nodes_of_pairs, static_cast<Index>(nodes));
+  made.first_of_node = by_node.first;
+  for (Index pair : by_node.order)
+    made.patches_of_node.push_back(patches_of_pairs[static_cast<std::size_t>(pair)]);
   made.neighbours.resize(static_cast<std::size_t>(made.count()));
   for (std::size_t i = 0; i < nodes; ++i)
     for (Index a = made.first_of_node[i]; a < made.first_of_node[i + 1]; ++a)

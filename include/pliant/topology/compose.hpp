@@ -23,21 +23,24 @@ namespace pliant {
                   " is a slave twice; list each slave once, with all of its masters");
   }
   for (std::size_t i = 0; i < slaves.size(); ++i) {
+    // Ascending, equal ones in the order in which they come, so that they are summed in a fixed order.
     std::vector<std::pair<Index, double>> composed;
+    auto const add = [&](Index master, double weight) {
+      composed.insert(
+          std::ranges::upper_bound(composed, master, {}, &std::pair<Index, double>::first),
+          {master, weight});
+    };
     for (auto const& [master, weight] : slaves[i].masters) {
       auto const found = position.find(master);
       if (found == position.end()) {
-        composed.emplace_back(master, weight);
+        add(master, weight);
         continue;
       }
       if (found->second >= i)
         throw Error("compose: slave node ", slaves[i].node, " has the master ", master,
                     ", a slave that does not come before it; order slaves after their masters");
-      for (auto const& [free, share] : slaves[found->second].masters)
-        composed.emplace_back(free, weight * share);
+      for (auto const& [free, share] : slaves[found->second].masters) add(free, weight * share);
     }
-    // Stable, so that equal masters are summed in a fixed order.
-    std::ranges::stable_sort(composed, {}, &std::pair<Index, double>::first);
     auto& masters = slaves[i].masters;
     masters.clear();
     for (auto const& [free, weight] : composed) {
@@ -47,7 +50,7 @@ namespace pliant {
         masters.emplace_back(free, weight);
     }
   }
-  std::ranges::stable_sort(slaves, {}, &Slave::node);  // as an Interpolation wants them
+  std::ranges::sort(slaves, {}, &Slave::node);  // as an Interpolation wants them
   return slaves;
 }
 
