@@ -113,7 +113,10 @@ class ByteReader {
         auto key = take<typename U::key_type>();
         x.emplace(std::move(key), take<typename U::mapped_type>());
       }
-    } else if constexpr (requires { typename U::value_type; x.clear(); }) {
+    } else if constexpr (requires {
+                           typename U::value_type;
+                           x.clear();
+                         }) {
       x.clear();
       if constexpr (std::is_arithmetic_v<typename U::value_type>) {
         auto const count = length(sizeof(typename U::value_type));
