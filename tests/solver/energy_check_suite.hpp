@@ -59,6 +59,7 @@ void check_energy_over(TheBody& body, double time) {
     }
   INFO("retries " << step.retries() << ", step " << body.steps());
   CHECK(finite_state(body));
+  CHECK(checked > 0);
   CHECK(largest_gain <= 1.5 * options.energy_drift * scale);  // of which some is between checks
   if (threw) CHECK(seen.back().gain <= options.energy_drift * scale);
 }
