@@ -130,6 +130,7 @@ void look_for_rest(Parts& parts, SleepRule const& rule) {
     state.rest_seen = state.steps;  // what could stir would have woken it
     return;
   }
+  let_sleep(parts);
   if (!parts.patch_nodes) parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
   auto const count = static_cast<std::size_t>(parts.patch_nodes->count());
   if (state.rest.size() != count) {

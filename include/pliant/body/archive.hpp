@@ -7,6 +7,7 @@
 #include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/body/member_bytes.hpp>
 #include <pliant/body/signature.hpp>
+#include <pliant/body/sleep.hpp>
 #include <pliant/constraint/press.hpp>
 
 // States in binary streams, in the byte order of the machine:
@@ -217,6 +218,7 @@ void load_state(Stream& stream, Parts& parts) {
   Parts next = parts_on(parts, std::move(layout), state.topology, state.prescribed);
   if (!state.prescribed->pressures.empty())
     next.upload_pressures = [](Parts& p) { upload_pressures(p); };
+  if (!state.rest.empty()) let_sleep(next);
   copy_state(next.backend, state, next.state);
   follow_state(next);
   put_in_force(parts, std::move(next));

@@ -105,6 +105,7 @@ Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
   next.state.load = {};
   next.state.pending_half_kick = 0;
   next.upload_pressures = parts.upload_pressures;
+  next.sleep = parts.sleep;
   next.term_makers = parts.term_makers;
   next.watched_energy = parts.watched_energy;
   next.revision = parts.revision;
@@ -144,6 +145,7 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.state = std::move(next.state);
   parts.pressures = std::move(next.pressures);
   parts.upload_pressures = next.upload_pressures;
+  parts.sleep = next.sleep;
   parts.terms = std::move(next.terms);
   parts.driven = std::move(next.driven);
   parts.no_counters = std::move(next.no_counters);

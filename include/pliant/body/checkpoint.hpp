@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/body/sleep.hpp>
+#include <pliant/body/wake.hpp>
 
 // States to go back to.
 namespace pliant {

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include <pliant/backend/patch_list.hpp>
 #include <pliant/body/awake_set.hpp>
@@ -24,6 +25,14 @@ namespace pliant {
 struct WatchedEnergy {
   double total = 0, acceleration = 0;
   double kept() const { return total - acceleration; }
+};
+
+/// What it takes where patches sleep: see body/wake.hpp.
+template <class Parts>
+struct SleepVerbs {
+  void (*follow_rest)(Parts&);
+  void (*wake_all)(Parts&);
+  void (*wake_nodes)(Parts&, std::span<Index const>);
 };
 
 /// What a body is made of, for integrators, solvers and adaptation. Plain data: each function on it stands
@@ -91,6 +100,8 @@ struct Parts {
   std::optional<StepSchedule<B>> schedule{};     // of local time steps; see solver/local_steps.hpp
   std::optional<PatchNodes<B>> patch_nodes{};    // made when something first looks for rest
   std::optional<AwakeSet<B>> awake{};            // while patches sleep; see body/sleep.hpp
+  /// Set once something looks for rest, so that other bodies do not compile it: see let_sleep.
+  SleepVerbs<Parts> const* sleep = nullptr;
   struct Scratch {
     Array<T> u, du, f;
   };

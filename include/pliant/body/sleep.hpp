@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pliant/body/leapfrog_energy.hpp>
+#include <pliant/body/wake.hpp>
 #include <pliant/math/group_by_key.hpp>
 
 // Patches that sleep. State::rest says which do; all else here follows from it.
@@ -126,15 +127,12 @@ bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>
   return moved;
 }
 
-}  // namespace detail
-
-/// Brings parts.awake up to state.rest. Forces are to be evaluated anew. A state that another backend saved, with
-/// other patches, has nothing that sleeps.
+/// See follow_rest.
 template <class Parts>
-void follow_rest(Parts& parts) {
+void bring_up_to_rest(Parts& parts) {
   using T = typename Parts::T;
   auto& rest = parts.state.rest;
-  if (!rest.empty() && rest.size() != detail::patch_count(parts)) rest.clear();
+  if (!rest.empty() && rest.size() != patch_count(parts)) rest.clear();
   bool const slept = parts.awake.has_value();
   if (std::ranges::none_of(rest, [](std::int32_t steps) { return steps < 0; })) {
     if (!slept) return;
@@ -144,7 +142,7 @@ void follow_rest(Parts& parts) {
     return;
   }
   auto const& backend = parts.backend;
-  if (!parts.patch_nodes) parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
+  if (!parts.patch_nodes) parts.patch_nodes.emplace(make_patch_nodes(parts));
   auto const& patch_nodes = *parts.patch_nodes;
   auto const nodes = static_cast<std::size_t>(parts.layout.nodes);
   if (!slept) {
@@ -160,17 +158,15 @@ void follow_rest(Parts& parts) {
   for (std::size_t p = 0; p < rest.size(); ++p) asleep[p] = rest[p] < 0;
   awake.asleep.upload(asleep);
   awake.awake = static_cast<Index>(std::ranges::count(asleep, 0));
-  backend.for_each(
-      parts.layout.nodes,
-      detail::WatchNodes{patch_nodes.first.data(), patch_nodes.patches.data(), awake.asleep.data(),
-                         parts.layout.held.data(), awake.nodes.data(), awake.still.data(),
-                         all_directions<Parts::dim>});
-  if (detail::fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; }))
-    ++parts.revision;
+  backend.for_each(parts.layout.nodes,
+                   WatchNodes{patch_nodes.first.data(), patch_nodes.patches.data(),
+                              awake.asleep.data(), parts.layout.held.data(), awake.nodes.data(),
+                              awake.still.data(), all_directions<Parts::dim>});
+  if (fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; })) ++parts.revision;
 
   // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
   std::vector<typename Parts::template Array<Index>> beside;
-  (void)detail::fill_lists(parts, beside, [&](std::size_t p) {
+  (void)fill_lists(parts, beside, [&](std::size_t p) {
     return asleep[p] && (has_added_terms(parts) ||
                          std::ranges::any_of(patch_nodes.neighbours[p], [&](Index other) {
                            return !asleep[static_cast<std::size_t>(other)];
@@ -183,6 +179,8 @@ void follow_rest(Parts& parts) {
   parts.layout.interpolation.apply_transpose(backend, kept);
   forget_forces(parts);
 }
+
+}  // namespace detail
 
 /// Changes state.rest by change(), to wake patches or to put them to sleep; those lose their velocity. What that
 /// changes of the energy that is watched is booked, J.
@@ -197,7 +195,7 @@ void change_rest(Parts& parts, Change const& change) {
   };
   auto const before = energies();
   change();
-  follow_rest(parts);
+  detail::bring_up_to_rest(parts);
   if (parts.awake) {
     parts.backend.for_each(parts.layout.nodes, StopHeld<T, Parts::dim>{parts.v(), parts.still()});
     parts.layout.interpolation.apply(parts.backend, parts.v());
@@ -207,17 +205,19 @@ void change_rest(Parts& parts, Change const& change) {
   book(parts, Work::sleep, after.first - before.first - (after.second - before.second));
 }
 
-/// Wakes all patches.
+namespace detail {
+
+/// See wake_all.
 template <class Parts>
-void wake_all(Parts& parts) {
+void wake_what_sleeps(Parts& parts) {
   if (parts.awake)
     change_rest(parts, [&] { std::ranges::fill(parts.state.rest, 0); });
   else
     std::ranges::fill(parts.state.rest, 0);
 }
-/// Wakes the patches around some nodes, given by internal numbers.
+/// See wake_nodes.
 template <class Parts>
-void wake_nodes(Parts& parts, std::span<Index const> nodes) {
+void wake_around(Parts& parts, std::span<Index const> nodes) {
   if (!parts.awake) return;
   auto const& rows = *parts.patch_nodes;
   auto rest = parts.state.rest;
@@ -233,6 +233,18 @@ void wake_nodes(Parts& parts, std::span<Index const> nodes) {
     }
   }
   if (wakes) change_rest(parts, [&] { parts.state.rest = std::move(rest); });
+}
+
+template <class Parts>
+inline constexpr SleepVerbs<Parts> sleep_verbs{bring_up_to_rest<Parts>, wake_what_sleeps<Parts>,
+                                               wake_around<Parts>};
+
+}  // namespace detail
+
+/// Lets patches of a body sleep from now on.
+template <class Parts>
+void let_sleep(Parts& parts) {
+  parts.sleep = &detail::sleep_verbs<Parts>;
 }
 
 }  // namespace pliant

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include <pliant/body/sleep.hpp>
+#include <pliant/body/wake.hpp>
 #include <pliant/mesh/sides.hpp>
 
 // What a body's conditions make of its nodes, in the backend's memory.

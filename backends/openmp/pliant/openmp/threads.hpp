@@ -40,6 +40,22 @@ class FirstException {
   Index at_ = 0;
 };
 
+/// What a loop does in a range, of whatever type: loops are compiled once, and not for each of these.
+class LoopBody {
+ public:
+  /// f(first, last) for the range; f outlives this.
+  template <class F>
+  explicit LoopBody(F const& f)
+      : f_(&f), call_([](void const* own, Index first, Index last) {
+          (*static_cast<F const*>(own))(first, last);
+        }) {}
+  void operator()(Index first, Index last) const { call_(f_, first, last); }
+
+ private:
+  void const* f_;
+  void (*call_)(void const*, Index, Index);
+};
+
 /// Loops on a number of threads. What does not pay for waking them runs on the caller's alone, with no
 /// call of the OpenMP runtime.
 class Threads {
@@ -50,47 +66,58 @@ class Threads {
   /// Calls f(first, last) with a part of [0, n) on each thread; on one up to n = `few`.
   template <class F>
   void for_each_part(Index n, Index few, F const& f) const {
-    if (count_ == 1 || n <= few) return f(Index{0}, n);
-    FirstException thrown;
-#pragma omp parallel num_threads(count_)
-    {
-      std::int64_t const part = omp_get_thread_num(), parts = omp_get_num_threads();
-      auto const first = static_cast<Index>(part * n / parts);
-      thrown.guard(first, [&] { f(first, static_cast<Index>((part + 1) * n / parts)); });
-    }
-    thrown.rethrow();
+    run_parts(n, few, LoopBody(f));
   }
   /// Calls f(block) for each block of work; then g(k) for each k < n, where f is done with all blocks.
   template <class F, class G>
   void for_each_block(Index blocks, F const& f, Index n, G const& g) const {
+    auto const all_of_g = [&](Index first, Index last) {
+      for (Index k = first; k < last; ++k) g(k);
+    };
+    auto const one_of_f = [&](Index block, Index) { f(block); };
+    run_blocks(blocks, LoopBody(one_of_f), n, LoopBody(all_of_g));
+  }
+  template <class F>
+  void for_each_block(Index blocks, F const& f) const {
+    for_each_block(blocks, f, 0, [](Index) {});
+  }
+
+ private:
+  void run_parts(Index n, Index few, LoopBody const& f) const {
+    if (count_ == 1 || n <= few) return f(0, n);
+    FirstException thrown;
+#pragma omp parallel num_threads(count_)
+    {
+      Part const part(n);
+      thrown.guard(part.first, [&] { f(part.first, part.last); });
+    }
+    thrown.rethrow();
+  }
+  void run_blocks(Index blocks, LoopBody const& f, Index n, LoopBody const& g) const {
     if (count_ == 1 || blocks < 2) {
-      for (Index b = 0; b < blocks; ++b) f(b);
-      for (Index k = 0; k < n; ++k) g(k);
-      return;
+      for (Index b = 0; b < blocks; ++b) f(b, b + 1);
+      return g(0, n);
     }
     FirstException thrown;
 #pragma omp parallel num_threads(count_)
     {
 #pragma omp for schedule(dynamic)
-      for (Index b = 0; b < blocks; ++b) thrown.guard(b, [&] { f(b); });
-#pragma omp for schedule(static)
-      for (Index k = 0; k < n; ++k) g(k);
+      for (Index b = 0; b < blocks; ++b) thrown.guard(b, [&] { f(b, b + 1); });
+      Part const part(n);
+      g(part.first, part.last);
     }
     thrown.rethrow();
   }
-  template <class F>
-  void for_each_block(Index blocks, F const& f) const {
-    if (count_ == 1 || blocks < 2) {
-      for (Index b = 0; b < blocks; ++b) f(b);
-      return;
+  /// That of the calling thread in a parallel region.
+  struct Part {
+    Index first, last;
+    explicit Part(Index n) {
+      std::int64_t const thread = omp_get_thread_num(), threads = omp_get_num_threads();
+      first = static_cast<Index>(thread * n / threads);
+      last = static_cast<Index>((thread + 1) * n / threads);
     }
-    FirstException thrown;
-#pragma omp parallel for schedule(dynamic) num_threads(count_)
-    for (Index b = 0; b < blocks; ++b) thrown.guard(b, [&] { f(b); });
-    thrown.rethrow();
-  }
+  };
 
- private:
   int count_;
 };
 
