@@ -98,7 +98,7 @@ class HilbertTable {
 /// How far along a Hilbert curve through a grid of 2^bits cells a side one of them lies.
 template <std::size_t Dim>
 std::uint64_t hilbert_code(std::array<std::uint32_t, Dim> const& cell, int bits) {
-  static constexpr HilbertTable<Dim> table;
+  static HilbertTable<Dim> const table;  // made at run time: compilers take a second for it
   std::uint64_t code = 0;
   std::size_t turn = 0;
   for (int b = bits - 1; b >= 0; --b) {
