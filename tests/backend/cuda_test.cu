@@ -1,3 +1,4 @@
+#include <cstring>
 #include <random>
 
 #include <pliant/cuda.hpp>
@@ -9,6 +10,7 @@
 #include <pliant/reference.hpp>
 
 #include "support/catch.hpp"
+#include "support/plan_on_host.hpp"
 
 using namespace pliant;
 using pliant::test::Approx;
@@ -469,6 +471,44 @@ TEST_CASE("a recording keeps what its verbs use when the backend is gone", "[cud
   CHECK(download<double>(taken) == std::vector<double>(detail::CudaContext::max_partials, 0));
 }
 
+/// The plan of a table on the device against that of one host thread.
+template <int Nodes>
+void compare_plans(Index elements, int patch_size) {
+  std::mt19937 random(5);
+  std::vector<std::array<Index, Nodes>> table(static_cast<std::size_t>(elements));
+  for (Index e = 0; e < elements; ++e)
+    for (Index& node : table[static_cast<std::size_t>(e)])
+      node = e / 5 + static_cast<Index>(random() % 40);
+  auto const expected = test::plan_on_host<Nodes>(table, patch_size);
+  Cuda<double> const backend;
+  std::vector<Index> flat;
+  for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
+  auto connectivity = backend.array<Index>(flat.size());
+  connectivity.upload(flat);
+  auto const plan = detail::plan_patches<Nodes>(backend, connectivity, elements, Nodes, patch_size);
+  CHECK(plan.node_capacity == expected.node_capacity);
+  CHECK(plan.diagonal_capacity == expected.diagonal_capacity);
+  auto const same = [](auto const& array, auto const& list) {
+    using U = typename std::remove_cvref_t<decltype(list)>::value_type;
+    std::vector<U> values(array.size());
+    array.download(values);
+    return values.size() == list.size() &&
+           std::memcmp(values.data(), list.data(), values.size() * sizeof(U)) == 0;
+  };
+  CHECK(same(plan.rows, expected.rows));
+  CHECK(same(plan.nodes, expected.nodes));
+  CHECK(same(plan.diagonals, expected.diagonals));
+}
+
+TEST_CASE("a GPU plans patches as one host thread does", "[cuda]") {
+  compare_plans<4>(5000, 768);
+  compare_plans<4>(769, 768);
+  compare_plans<4>(100, 96);
+  compare_plans<3>(1000, 256);
+  compare_plans<8>(1000, 64);
+  compare_plans<10>(300, 64);
+}
+
 TEST_CASE("patches that a GPU has no room for are made smaller", "[cuda]") {
   // Elements that share no node need most.
   std::vector<std::array<Index, 4>> connectivity;
@@ -479,6 +519,8 @@ TEST_CASE("patches that a GPU has no room for are made smaller", "[cuda]") {
   CudaElements<double, 4> const large(backend, connectivity, tags, 20000, {2048, 256});
   CHECK(large.patch_size() == small);
   CHECK(large.threads() == small);
+  CudaElements<double, 4> const huge(backend, connectivity, tags, 20000, {65536, 256});
+  CHECK(huge.patch_size() == small);
   CudaElements<double, 4> const fits(backend, connectivity, tags, 20000, {128, 128});
   CHECK(fits.patch_size() == 128);
 }

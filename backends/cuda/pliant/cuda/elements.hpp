@@ -8,7 +8,7 @@
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/patch_memory.cuh>
-#include <pliant/cuda/patch_plan.hpp>
+#include <pliant/cuda/plan_patches.cuh>
 #include <pliant/cuda/tuning.hpp>
 
 namespace pliant {
@@ -89,7 +89,7 @@ class CudaElements {
     tags_ = uploaded(backend, tags);
     tag_data_ = tags_.data();
     connectivity_ = padded(backend, connectivity);
-    if constexpr (!detail::scatters<T, Nodes>) plan(backend, connectivity, nodes);
+    if constexpr (!detail::scatters<T, Nodes>) plan(backend);
   }
 
   Index count() const { return count_; }
@@ -112,19 +112,25 @@ class CudaElements {
   }
 
  private:
-  void plan(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
-            Index nodes) {
-    auto plan = detail::PatchPlanner<Nodes>(connectivity, nodes, patch_size_).plan();
+  void plan(Cuda<T> const& backend) {
     constexpr int small = detail::patch_tuning<T, Nodes>().small_size;
-    if (patch_size_ > small && shared_bytes(plan) > detail::most_shared_bytes(backend.device())) {
+    int const most = detail::most_shared_bytes(backend.device());
+    auto const make = [&] {
+      return detail::plan_patches<Nodes>(backend, connectivity_, count_, View::width, patch_size_);
+    };
+    bool const can_be_planned =
+        patch_size_ <= most && detail::plan_bytes<Nodes>(patch_size_) <= most;
+    detail::PatchPlan<Nodes> plan;
+    if (can_be_planned) plan = make();
+    if (patch_size_ > small && (!can_be_planned || shared_bytes(plan) > most)) {
       patch_size_ = threads_ = small;
-      plan = detail::PatchPlanner<Nodes>(connectivity, nodes, small).plan();
+      plan = make();
     }
     node_capacity_ = plan.node_capacity;
     diagonal_capacity_ = plan.diagonal_capacity;
-    rows_ = uploaded(backend, plan.rows);
-    nodes_ = uploaded(backend, plan.nodes);
-    diagonals_ = uploaded(backend, plan.diagonals);
+    rows_ = std::move(plan.rows);
+    nodes_ = std::move(plan.nodes);
+    diagonals_ = std::move(plan.diagonals);
   }
   /// What accumulation takes of a block's shared memory with three fields of three components.
   static int shared_bytes(detail::PatchPlan<Nodes> const& plan) {

@@ -1,14 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pliant/config.hpp>
-#include <pliant/error.hpp>
 
 namespace pliant::detail {
 
@@ -26,170 +22,176 @@ struct PatchNode {
   Index valence = 0;
 };
 
-/// A patch is a run of consecutive elements that one thread block works on. Every share that an
-/// element has in a node gets a slot of its own. A patch's nodes are sorted by valence (the
-/// number of their slots), largest first, so that the k-th slots of all nodes that have one lie
-/// side by side: node r's are diagonals[0] + r, diagonals[1] + r, ... (jagged diagonals), which
-/// neighbouring threads read from neighbouring addresses without loading indices.
-template <int Nodes>
-struct PatchPlan {
-  int patch_size = 0;  // elements
-  Index patches = 0;
-  int node_capacity = 0;                 // of a patch; multiple of 4
-  int diagonal_capacity = 0;             // of a patch; multiple of 4
-  std::vector<PatchRow<Nodes>> rows;     // (elements)
-  std::vector<PatchNode> nodes;          // (patches, node_capacity)
-  std::vector<std::uint16_t> diagonals;  // (patches, diagonal_capacity)
+/// The nodes of a patch, and the valence of that which has most slots.
+struct PatchCounts {
+  int nodes = 0;
+  int diagonals = 0;
 };
 
-/// Plans patches, one after the other. Nodes were checked before.
+/// Plans a patch: a run of consecutive elements that one thread block works on. Every share that an element
+/// has in a node gets a slot of its own. A patch's nodes are sorted by valence (the number of their
+/// slots), largest first, so that the k-th slots of all nodes that have one lie side by side: node r's
+/// are diagonals[0] + r, diagonals[1] + r, ... (jagged diagonals), which neighbouring threads read
+/// from neighbouring addresses without loading indices.
+///
+/// Steps are called in the order of their declaration. Those with `first` and `stride` are shared by the threads of a
+/// block, each with its own number and with their count, the others are for one thread; between two steps all
+/// threads meet. A host calls all of them with 0 and 1.
 template <int Nodes>
 class PatchPlanner {
  public:
   static constexpr int lanes = 32;  // of a warp; also the banks of shared memory
 
-  PatchPlanner(std::vector<std::array<Index, Nodes>> const& connectivity, Index nodes,
-               int patch_size)
-      : connectivity_(connectivity), owner_(static_cast<std::size_t>(std::max(nodes, Index{0}))) {
-    if (patch_size * Nodes >= 1 << 16)
-      throw Error("patches of ", patch_size,
-                  " elements have more slots than 16 "
-                  "bits can number; make them smaller");
-    plan_.patch_size = patch_size;
-    plan_.rows.resize(connectivity.size());
+  /// What a planner works in, bytes; aligned as Index is. Where it fits shared memory, 16 bits number all shares.
+  static constexpr int bytes(int patch_size) {
+    int const shares = patch_size * Nodes;
+    return shares * int{2 * sizeof(Index) + 4 * sizeof(std::uint16_t)} +
+           (table_size(shares) + lanes) * int{sizeof(std::uint16_t)};
   }
 
-  PatchPlan<Nodes> plan() && {
-    auto const count = static_cast<Index>(connectivity_.size());
-    for (Index first = 0; first < count; first += plan_.patch_size) {
-      std::size_t const size = static_cast<std::size_t>(std::min(plan_.patch_size, count - first));
-      elements_ = std::span(connectivity_).subspan(static_cast<std::size_t>(first), size);
-      rows_ = std::span(plan_.rows).subspan(static_cast<std::size_t>(first), size);
-      number_nodes();
-      sort_by_valence();
-      assign_slots();
-      ++plan_.patches;
+  /// For patches of at most `patch_size` elements, and one of `size`.
+  PLIANT_HOST_DEVICE PatchPlanner(void* memory, int patch_size, int size)
+      : size_(size), table_mask_(table_size(patch_size * Nodes) - 1) {
+    int const shares = patch_size * Nodes;
+    global_ = static_cast<Index*>(memory);
+    node_ = global_ + shares;
+    free_ = reinterpret_cast<std::uint16_t*>(global_);  // nobody asks for global numbers then
+    slot_ = free_ + shares;
+    valence_ = reinterpret_cast<std::uint16_t*>(node_ + shares);
+    rank_ = valence_ + shares;
+    first_free_ = rank_ + shares;
+    local_ = first_free_ + shares;
+    table_ = local_ + shares;
+    writers_ = table_ + table_mask_ + 1;
+    lengths_ = table_;  // nobody looks for nodes then
+    starts_ = lengths_ + shares + 1;
+  }
+
+  /// Rows of `width` node numbers, which were checked before.
+  PLIANT_HOST_DEVICE void read(Index const* connectivity, int width, int first, int stride) {
+    for (int i = first; i < size_ * Nodes; i += stride)
+      global_[i] = connectivity[std::int64_t{i / Nodes} * width + i % Nodes];
+    for (int i = first; i <= table_mask_; i += stride) table_[i] = none;
+  }
+
+  /// Nodes in the order in which elements first have them.
+  PLIANT_HOST_DEVICE PatchCounts number_nodes() {
+    PatchCounts counts;
+    for (int i = 0; i < size_ * Nodes; ++i) {
+      Index const node = global_[i];
+      unsigned at = static_cast<unsigned>(node) * 0x9E3779B1u >> 8;
+      int local = none;
+      while ((local = table_[at &= static_cast<unsigned>(table_mask_)]) != none &&
+             node_[local] != node)
+        ++at;
+      if (local == none) {
+        local = counts.nodes++;
+        table_[at] = static_cast<std::uint16_t>(local);
+        node_[local] = node;
+        valence_[local] = 0;
+      }
+      local_[i] = static_cast<std::uint16_t>(local);
+      int const valence = ++valence_[local];
+      if (valence > counts.diagonals) counts.diagonals = valence;
     }
-    pad();
-    return std::move(plan_);
+    return counts;
+  }
+
+  /// Ranks nodes by valence, those of one valence in their order; where each diagonal begins.
+  PLIANT_HOST_DEVICE void sort_by_valence(PatchCounts const& counts) {
+    int const largest = counts.diagonals;
+    for (int d = 0; d < largest; ++d) lengths_[d] = 0;
+    for (int n = 0; n < counts.nodes; ++n) ++lengths_[valence_[n] - 1];
+    // lengths_[v − 1]: of valence v; from here on the first rank of these, that is how many have a larger one.
+    int larger = 0;
+    for (int d = largest - 1; d >= 0; --d) {
+      int const same = lengths_[d];
+      lengths_[d] = static_cast<std::uint16_t>(larger);
+      larger += same;
+    }
+    int free = 0;
+    for (int n = 0; n < counts.nodes; ++n) {
+      rank_[n] = lengths_[valence_[n] - 1]++;
+      first_free_[n] = static_cast<std::uint16_t>(free);
+      free += valence_[n];
+    }
+    // Now lengths_[d] is how many nodes have a d-th slot, and so the length of that diagonal.
+    for (int d = 0, slot = 0; d < largest; ++d) {
+      starts_[d] = static_cast<std::uint16_t>(slot);
+      slot += lengths_[d];
+    }
+  }
+
+  /// To nodes[0 .. node_capacity) and diagonals[0 .. diagonal_capacity).
+  PLIANT_HOST_DEVICE void write_nodes(PatchCounts const& counts, PatchNode* nodes,
+                                      int node_capacity, std::uint16_t* diagonals,
+                                      int diagonal_capacity, int first, int stride) {
+    for (int n = first; n < node_capacity; n += stride) {
+      if (n >= counts.nodes) {
+        nodes[n] = {};
+        continue;
+      }
+      nodes[rank_[n]] = {node_[n], valence_[n]};
+      for (int d = 0; d < valence_[n]; ++d)
+        free_[first_free_[n] + d] = static_cast<std::uint16_t>(starts_[d] + rank_[n]);
+    }
+    for (int d = first; d < diagonal_capacity; d += stride)
+      diagonals[d] = d < counts.diagonals ? starts_[d] : std::uint16_t{0};
+  }
+
+  /// Any of a node's slots will do for any of its elements, so take one whose memory bank few threads of
+  /// the warp write to at the same time.
+  PLIANT_HOST_DEVICE void assign_slots() {
+    for (int begin = 0; begin < size_; begin += lanes) {
+      int const end = begin + lanes < size_ ? begin + lanes : size_;
+      for (int a = 0; a < Nodes; ++a) {
+        for (int bank = 0; bank < lanes; ++bank) writers_[bank] = 0;
+        for (int e = begin; e < end; ++e) {
+          int const i = e * Nodes + a, n = local_[i];
+          std::uint16_t* const free = free_ + first_free_[n];
+          int best = 0, least = writers_[free[0] % lanes];
+          for (int k = 1; k < valence_[n] && least > 0; ++k) {
+            int const writers = writers_[free[k] % lanes];
+            if (writers < least) least = writers, best = k;
+          }
+          slot_[i] = free[best];
+          ++writers_[slot_[i] % lanes];
+          free[best] = free[--valence_[n]];
+        }
+      }
+    }
+  }
+
+  PLIANT_HOST_DEVICE void write_rows(PatchRow<Nodes>* rows, int first, int stride) const {
+    for (int e = first; e < size_; e += stride) {
+      PatchRow<Nodes> row{};
+      for (int a = 0; a < Nodes; ++a) {
+        row.local[a] = rank_[local_[e * Nodes + a]];
+        row.slot[a] = slot_[e * Nodes + a];
+      }
+      rows[e] = row;
+    }
   }
 
  private:
-  struct Owner {
-    Index patch = -1, local = 0;
-  };
-  struct Found {
-    Index node;
-    int valence = 0;     // then: how many slots are free
-    int rank = 0;        // by valence
-    int first_free = 0;  // in free_
-  };
-
-  void number_nodes() {
-    found_.clear();
-    for (std::size_t e = 0; e < elements_.size(); ++e)
-      for (std::size_t a = 0; a < Nodes; ++a) {
-        Index const node = elements_[e][a];
-        Owner& owner = owner_[static_cast<std::size_t>(node)];
-        if (owner.patch != plan_.patches) {
-          owner = {plan_.patches, static_cast<Index>(found_.size())};
-          found_.push_back({node});
-        }
-        rows_[e].local[a] = static_cast<std::uint16_t>(owner.local);
-        ++found_[static_cast<std::size_t>(owner.local)].valence;
-      }
+  static constexpr std::uint16_t none = 0xffff;
+  /// Of the table of nodes, which is never more than half full; what takes its place later fits too.
+  static constexpr int table_size(int shares) {
+    return 2 * static_cast<int>(std::bit_ceil(static_cast<unsigned>(shares) + 1));
   }
 
-  void sort_by_valence() {
-    int largest = 0;
-    for (Found const& n : found_) largest = std::max(largest, n.valence);
-    starts_.assign(static_cast<std::size_t>(largest) + 1, 0);  // by largest − valence
-    for (Found const& n : found_) ++starts_[static_cast<std::size_t>(largest - n.valence)];
-    for (int rank = 0; int& start : starts_) rank += std::exchange(start, rank);
-
-    std::size_t const seen = nodes_.size();
-    first_node_.push_back(seen);
-    first_diagonal_.push_back(diagonals_.size());
-    nodes_.resize(seen + found_.size());
-    free_.clear();
-    for (Found& n : found_) {
-      n.rank = starts_[static_cast<std::size_t>(largest - n.valence)]++;
-      nodes_[seen + static_cast<std::size_t>(n.rank)] = {n.node, n.valence};
-    }
-    // After the loop above starts_[largest − v] counts the nodes whose valence is v or more.
-    lengths_.assign(starts_.rbegin() + 1, starts_.rend());
-    for (int slot = 0; int length : lengths_) {
-      diagonals_.push_back(static_cast<std::uint16_t>(slot));
-      slot += length;
-    }
-    for (Found& n : found_) {
-      n.first_free = static_cast<int>(free_.size());
-      for (int d = 0; d < n.valence; ++d)
-        free_.push_back(static_cast<std::uint16_t>(
-            diagonals_[first_diagonal_.back() + static_cast<std::size_t>(d)] + n.rank));
-    }
-  }
-
-  /// Any of a node's slots will do for any of its elements, so take one whose memory bank few
-  /// threads of the warp write to at the same time.
-  void assign_slots() {
-    for (std::size_t first = 0; first < elements_.size(); first += lanes) {
-      std::size_t const last = std::min(first + lanes, elements_.size());
-      for (std::size_t a = 0; a < Nodes; ++a) {
-        std::array<int, lanes> writers{};
-        for (std::size_t e = first; e < last; ++e) {
-          Found& n = found_[rows_[e].local[a]];
-          std::uint16_t* const free = free_.data() + n.first_free;
-          int best = 0;
-          for (int k = 1; k < n.valence && writers[free[best] % lanes] > 0; ++k)
-            if (writers[free[k] % lanes] < writers[free[best] % lanes]) best = k;
-          rows_[e].slot[a] = free[best];
-          ++writers[free[best] % lanes];
-          free[best] = free[--n.valence];
-          rows_[e].local[a] = static_cast<std::uint16_t>(n.rank);
-        }
-      }
-    }
-  }
-
-  void pad() {
-    first_node_.push_back(nodes_.size());
-    first_diagonal_.push_back(diagonals_.size());
-    plan_.node_capacity = capacity(first_node_);
-    plan_.diagonal_capacity = capacity(first_diagonal_);
-    plan_.nodes = padded(nodes_, first_node_, plan_.node_capacity);
-    plan_.diagonals = padded(diagonals_, first_diagonal_, plan_.diagonal_capacity);
-  }
-  static int capacity(std::vector<std::size_t> const& first) {
-    std::size_t largest = 0;
-    for (std::size_t p = 1; p < first.size(); ++p)
-      largest = std::max(largest, first[p] - first[p - 1]);
-    return static_cast<int>((largest + 3) / 4 * 4);
-  }
-  template <class U>
-  static std::vector<U> padded(std::vector<U> const& rows, std::vector<std::size_t> const& first,
-                               int capacity) {
-    std::vector<U> out((first.size() - 1) * static_cast<std::size_t>(capacity));
-    for (std::size_t p = 1; p < first.size(); ++p)
-      std::copy(rows.begin() + static_cast<std::ptrdiff_t>(first[p - 1]),
-                rows.begin() + static_cast<std::ptrdiff_t>(first[p]),
-                out.begin() + static_cast<std::ptrdiff_t>(p - 1) * capacity);
-    return out;
-  }
-
-  std::vector<std::array<Index, Nodes>> const& connectivity_;
-  PatchPlan<Nodes> plan_;
-  std::vector<Owner> owner_;  // (nodes)
-  // Of the current patch:
-  std::span<std::array<Index, Nodes> const> elements_;
-  std::span<PatchRow<Nodes>> rows_;
-  std::vector<Found> found_;
-  std::vector<int> starts_, lengths_;
-  std::vector<std::uint16_t> free_;  // slots that no element has, by node
-  // Compressed rows of all patches:
-  std::vector<std::size_t> first_node_, first_diagonal_;
-  std::vector<PatchNode> nodes_;
-  std::vector<std::uint16_t> diagonals_;
+  int size_;  // elements
+  int table_mask_;
+  Index* global_;         // (shares): nodes of the elements
+  Index* node_;           // (nodes)
+  std::uint16_t* free_;   // (shares): slots that no element has, by node
+  std::uint16_t* slot_;   // (shares)
+  std::uint16_t* local_;  // (shares): which of the patch's nodes
+  // (nodes): first how many slots each has, then how many are free; by valence; and in free_.
+  std::uint16_t *valence_, *rank_, *first_free_;
+  std::uint16_t* table_;              // of nodes, by a hash of their numbers
+  std::uint16_t* writers_;            // (lanes): to each bank
+  std::uint16_t *lengths_, *starts_;  // (diagonals)
 };
 
 }  // namespace pliant::detail
