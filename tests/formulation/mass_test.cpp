@@ -1,4 +1,4 @@
-#include <pliant/formulation/mass.hpp>
+#include <pliant/formulation/affine.hpp>
 
 #include "support/catch.hpp"
 #include "support/elements.hpp"
@@ -30,6 +30,48 @@ TEMPLATE_TEST_CASE("every node has a positive share of the volume, and no volume
     double const exact =
         volume<TestType, Gauss<SimplexCell<typename TestType::cell> ? 6 : 5>>(rest);
     CHECK(sum == Approx(exact).epsilon(1e-13));
+  }
+}
+
+/// The cell moved by X = X_0 + A ξ, far from the origin.
+template <class E>
+Nodal<E, double> sheared(Tensor<double, E::dim> const& a) {
+  Nodal<E, double> rest;
+  for (int n = 0; n < E::nodes; ++n)
+    for (int i = 0; i < E::dim; ++i) {
+      rest(n, i) = 40;
+      for (int k = 0; k < E::dim; ++k) rest(n, i) += a(i, k) * E::place(n)[k];
+    }
+  return rest;
+}
+
+TEMPLATE_TEST_CASE("affine elements are told from others, and have the shares of all",
+                   "[formulation]", ALL_ELEMENTS) {
+  using E = TestType;
+  Random random;
+  Tensor<double, E::dim> a;
+  for (int i = 0; i < E::dim; ++i)
+    for (int k = 0; k < E::dim; ++k) a(i, k) = (i == k) + 0.4 * random();
+  auto rest = sheared<E>(a);
+  auto const gradient = affine_gradient<E>(rest);
+  REQUIRE(gradient);
+  for (int i = 0; i < E::dim; ++i)
+    for (int k = 0; k < E::dim; ++k) CHECK((*gradient)(i, k) == Approx(a(i, k)).margin(1e-12));
+  auto const compare = [&] {
+    auto const share = host_nodal_volumes<E>(rest), expected = nodal_volumes<E>(rest);
+    for (int n = 0; n < E::nodes; ++n) CHECK(share[n] == Approx(expected[n]).epsilon(1e-12));
+  };
+  compare();
+  if (LinearSimplex<E>) return;
+  for (int n = 0; n < E::nodes; ++n) {
+    if (E::nodes == 5 && n == 4) continue;  // a pyramid's apex may be anywhere
+    auto const straight = rest;
+    rest(n, 0) += 1e-9;  // m: more than rounding
+    CHECK(!affine_gradient<E>(rest));
+    rest(n, 0) += 0.05;
+    CHECK(!affine_gradient<E>(rest));
+    compare();
+    rest = straight;
   }
 }
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <pliant/constraint/condition.hpp>
-#include <pliant/formulation/mass.hpp>
+#include <pliant/formulation/affine.hpp>
 #include <pliant/topology/plan.hpp>
 
 namespace pliant::detail {
@@ -38,14 +38,15 @@ void add_family_impulse(TopologyPlan<M> const& plan,
   Point<dim> lost{};
   for (Index e : family.before) {
     auto const& nodes = old.template elements<E>()[static_cast<std::size_t>(e)];
-    auto const p = momentum<E>(nodes, nodal_volumes<E>(nodal(old, nodes)), density, v_before, base);
+    auto const p =
+        momentum<E>(nodes, host_nodal_volumes<E>(nodal(old, nodes)), density, v_before, base);
     for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
   }
   double volume = 0;
   std::vector<Vector<double, E::nodes>> shares;
   for (Index e : family.after) {
     auto const& nodes = now.template elements<E>()[static_cast<std::size_t>(e)];
-    shares.push_back(nodal_volumes<E>(nodal(now, nodes)));
+    shares.push_back(host_nodal_volumes<E>(nodal(now, nodes)));
     auto const p = momentum<E>(nodes, shares.back(), density, v, base);
     for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
     for (int a = 0; a < E::nodes; ++a) volume += shares.back()[a];
@@ -84,7 +85,7 @@ void add_impulse_of_slaves(TopologyPlan<M> const& plan, std::size_t type, double
     bool any = false;
     for (std::size_t a = 0; a < E::nodes; ++a) any = any || changes(a);
     if (!any) continue;
-    auto const volumes = nodal_volumes<E>(nodal(now, to));
+    auto const volumes = host_nodal_volumes<E>(nodal(now, to));
     for (std::size_t a = 0; a < E::nodes; ++a)
       if (changes(a))
         for (std::size_t k = 0; k < M::dim; ++k)

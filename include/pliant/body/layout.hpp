@@ -8,6 +8,7 @@
 #include <pliant/body/numbering.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
+#include <pliant/formulation/affine.hpp>
 
 namespace pliant {
 
@@ -217,7 +218,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   template <Element E>
   void add_mass(Mesh<Es...> const& mesh, double density) {
     for (auto const& nodes_of_element : mesh.template elements<E>()) {
-      auto const share = nodal_volumes<E>(nodal(mesh, nodes_of_element));
+      auto const share = host_nodal_volumes<E>(nodal(mesh, nodes_of_element));
       for (int a = 0; a < E::nodes; ++a)
         mass_list[static_cast<std::size_t>(nodes_of_element[static_cast<std::size_t>(a)])] +=
             density * share[a];

@@ -85,6 +85,13 @@ struct Coefficients<E, S> {
       for (S& x : row) x = S(0);
     return d;
   }
+  /// The differences of the corners 1 to d to corner 0, one per row.
+  PLIANT_HOST_DEVICE Tensor<S, E::dim> to_corners() const {
+    Tensor<S, E::dim> d;
+    for (int a = 0; a < E::dim; ++a)
+      for (int i = 0; i < E::dim; ++i) d(a, i) = c[a][i];
+    return d;
+  }
   template <class Table>
   PLIANT_HOST_DEVICE Tensor<S, E::dim> gradient(Table const&, int) const {
     Tensor<S, E::dim> g;
