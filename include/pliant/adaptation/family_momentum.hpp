@@ -69,11 +69,11 @@ void add_impulse_of_slaves(TopologyPlan<M> const& plan, std::size_t type, double
                            std::vector<Point<M::dim>>& impulse) {
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
-  std::vector<bool> hangs(now.nodes.size(), false), hung(old.nodes.size(), false);
+  std::vector<char> hangs(now.nodes.size(), 0), hung(old.nodes.size(), 0);
   for (Slave const& slave : plan.after->interpolation.slaves())
-    hangs[static_cast<std::size_t>(slave.node)] = true;
+    hangs[static_cast<std::size_t>(slave.node)] = 1;
   for (Slave const& slave : plan.before->interpolation.slaves())
-    hung[static_cast<std::size_t>(slave.node)] = true;
+    hung[static_cast<std::size_t>(slave.node)] = 1;
   auto const& origins = plan.transfer.origins(type);
   for (std::size_t e = 0; e < origins.size(); ++e) {
     if (origins[e].child != Transfer<M::dim>::Origin::same) continue;
@@ -82,8 +82,10 @@ void add_impulse_of_slaves(TopologyPlan<M> const& plan, std::size_t type, double
     auto const changes = [&](std::size_t a) {
       return hung[static_cast<std::size_t>(from[a])] || hangs[static_cast<std::size_t>(to[a])];
     };
-    bool any = false;
-    for (std::size_t a = 0; a < E::nodes; ++a) any = any || changes(a);
+    char any = 0;  // of all nodes, without a branch for each
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      any |= static_cast<char>(hung[static_cast<std::size_t>(from[a])] |
+                               hangs[static_cast<std::size_t>(to[a])]);
     if (!any) continue;
     auto const volumes = host_nodal_volumes<E>(nodal(now, to));
     for (std::size_t a = 0; a < E::nodes; ++a)

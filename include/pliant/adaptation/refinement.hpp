@@ -66,26 +66,27 @@ template <class Parts>
 void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   constexpr int dim = Parts::dim;
   wake_all(parts);
-  double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
-  double const kinetic = kinetic_energy_of(parts);
-  auto const before = present_energy(parts);
+  auto const energy_now = [](Parts& p) {
+    return p.watched_energy ? p.watched_energy(p) : WatchedEnergy{energies_of(p), 0};
+  };
+  auto const before = energy_now(parts);
   auto const give_back = [&](auto const& layout, auto const& held, auto const& v_before, auto& v) {
     return detail::give_momentum_back(plan, parts.material.density, layout, held, v_before, v);
   };
   auto [next, taken] = change_topology(parts, plan.after, plan.transfer, give_back);
+  auto const after = energy_now(next);
   auto const change = [](double from, double to) { return detail::zero_if_not_finite(to - from); };
-  LedgerEntry<dim> const entry{
-      next.state.time,
-      plan.merged == 0    ? "refine"
-      : plan.refined == 0 ? "coarsen"
-                          : "refine and coarsen",
-      static_cast<double>(plan.refined + plan.merged),
-      change(strain, energy_at(std::as_const(next), std::as_const(next).u())),
-      change(kinetic, kinetic_energy_of(next)),
-      taken};
+  LedgerEntry<dim> const entry{next.state.time,
+                               plan.merged == 0    ? "refine"
+                               : plan.refined == 0 ? "coarsen"
+                                                   : "refine and coarsen",
+                               static_cast<double>(plan.refined + plan.merged),
+                               change(before.energies.strain, after.energies.strain),
+                               change(before.energies.kinetic, after.energies.kinetic),
+                               taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
-  double const added = watched_change(next, before);
+  double const added = next.watched_energy ? watched_change(next, before, after) : 0;
   if (next.watched_energy && next.state.integrator.active)
     next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
   put_in_force(parts, std::move(next));

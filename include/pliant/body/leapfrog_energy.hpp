@@ -57,13 +57,13 @@ double load_term(Parts& parts) {
   return detail::acceleration_term_of(parts, {nullptr});
 }
 
-/// The total energy, and what the one that leapfrog keeps has less: that has the kinetic energy v₋·M·v₊/2 of the
+/// The energies, and what the one that leapfrog keeps has less than their total: that has the kinetic energy v₋·M·v₊/2 of the
 /// half steps around the present time, v∓ = v ∓ Δt/2 a. For linear laws it is constant to rounding,
 /// whatever the step; beyond the stable one it no longer bounds the motion.
 template <class Parts>
 WatchedEnergy leapfrog_energy(Parts& parts) {
   double const step = parts.state.integrator.step;
-  return {total_energy_of(parts), step * step * acceleration_term(parts)};
+  return {energies_of(parts), step * step * acceleration_term(parts)};
 }
 
 /// Adds to what is booked, J. What is not finite is not; see unbooked_changes.

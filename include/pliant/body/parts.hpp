@@ -21,10 +21,17 @@
 
 namespace pliant {
 
-/// The total energy at a time, and what leapfrog's own, which its steps keep, has less: Δt² Σ m a²/8, J.
+/// The parts of a body's energy, J.
+struct Energies {
+  double strain = 0, kinetic = 0, potential = 0;
+  double total() const { return strain + kinetic + potential; }
+};
+
+/// The energies at a time, and what leapfrog's own, which its steps keep, has less: Δt² Σ m a²/8, J.
 struct WatchedEnergy {
-  double total = 0, acceleration = 0;
-  double kept() const { return total - acceleration; }
+  Energies energies{};
+  double acceleration = 0;
+  double kept() const { return energies.total() - acceleration; }
 };
 
 /// What it takes where patches sleep: see body/wake.hpp.

@@ -54,8 +54,8 @@ void change_loads(Parts& parts, Change const& change) {
   change();
   ++parts.revision;
   parts.state.implicit.balanced = false;
-  double const added =
-      parts.watched_energy ? watched_change(parts, before) : potential_energy_of(parts) - potential;
+  double const added = parts.watched_energy ? watched_change(parts, before, present_energy(parts))
+                                            : potential_energy_of(parts) - potential;
   if (!std::isfinite(added)) return;
   auto work = download<double>(parts.state.work);
   work[static_cast<std::size_t>(Work::changed_loads)] += added;

@@ -136,11 +136,15 @@ double kinetic_energy_of(Parts& parts) {
                                                                         parts.layout.mass.data()});
 }
 
+template <class Parts>
+Energies energies_of(Parts& parts) {
+  return {energy_at(std::as_const(parts), std::as_const(parts).u()), kinetic_energy_of(parts),
+          potential_energy_of(parts)};
+}
 /// Strain, kinetic and potential energy, J.
 template <class Parts>
 double total_energy_of(Parts& parts) {
-  return energy_at(std::as_const(parts), std::as_const(parts).u()) + kinetic_energy_of(parts) +
-         potential_energy_of(parts);
+  return energies_of(parts).total();
 }
 
 }  // namespace pliant

@@ -115,11 +115,10 @@ WatchedEnergy present_energy(Parts& parts) {
   return parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
 }
 
-/// What a change since `before` added to the energy that an integrator watches and keeps, J; 0 while none does.
-/// Where there is no such number, the integrator begins anew.
+/// What a change from `before` to `after` added to the energy that an integrator watches and keeps, J; 0 while none
+/// does. Where there is no such number, the integrator begins anew.
 template <class Parts>
-double watched_change(Parts& parts, WatchedEnergy const& before) {
-  auto const after = present_energy(parts);
+double watched_change(Parts& parts, WatchedEnergy const& before, WatchedEnergy const& after) {
   double const added = after.kept() - before.kept();
   if (!std::isfinite(added)) {
     parts.state.integrator.active = false;
@@ -139,7 +138,7 @@ void change_by_hand(Parts& parts, Change const& change) {
   auto const before = present_energy(parts);
   change();
   forget_forces(parts);
-  parts.state.energy_by_hand += watched_change(parts, before);
+  parts.state.energy_by_hand += watched_change(parts, before, present_energy(parts));
   parts.has_checkpoint = false;
   parts.state.implicit = {};
   parts.state.integrator.next_refresh = parts.state.steps;  // it may have made the body stiffer

@@ -112,13 +112,17 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
   std::vector<std::array<Index, 4>> keys;
   std::vector<Index> smallest;
   auto const collect = [&]<Element E>(E) {
-    for (auto const& element : mesh.template elements<E>())
+    for (auto const& element : mesh.template elements<E>()) {
+      std::uint64_t any = 0;  // of all nodes, without a branch for each
+      for (Index node : element) any |= left[static_cast<std::size_t>(node)];
+      if (any == 0) continue;
       detail::for_each_side_sum<E>(element, [&](std::size_t s, Index corner, std::uint64_t) {
         if (left[static_cast<std::size_t>(corner)] == 0) return;
         sides.push_back(side_of<E>(element, static_cast<int>(s)));
         keys.push_back(key_of(sides.back()));
         smallest.push_back(corner);
       });
+    }
   };
   (collect(Es{}), ...);
   // Two elements that share a side see the same corners: look for them among those of one corner.
