@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numeric>
 
 #include <pliant/mesh/hilbert.hpp>
 
@@ -21,6 +22,28 @@ TEST_CASE("the order is a permutation", "[mesh]") {
       std::ranges::sort(*each);
       for (std::size_t i = 0; i < size; ++i) CHECK((*each)[i] == static_cast<Index>(i));
     }
+  }
+}
+
+TEST_CASE("codes are ordered whatever bits they share", "[mesh]") {
+  constexpr int width = 63;
+  Random random(3);
+  auto const bits = [&](int count) {
+    std::uint64_t code = 0;
+    for (int b = 0; b < count; ++b) code = code << 1 | (random.below(2) == 1 ? 1u : 0u);
+    return code;
+  };
+  // Leading bits that all differ, that a few share, that many share; and codes that are there twice.
+  for (int different : {63, 20, 40}) {
+    std::vector<std::uint64_t> codes;
+    for (int i = 0; i < 3000; ++i)
+      codes.push_back(different > 30 ? bits(different) : bits(different) << 43 | bits(3));
+    codes.insert(codes.end(), codes.begin(), codes.begin() + 500);
+    std::vector<Index> expected(codes.size());
+    std::iota(expected.begin(), expected.end(), 0);
+    std::ranges::stable_sort(expected, {},
+                             [&](Index i) { return codes[static_cast<std::size_t>(i)]; });
+    CHECK(pliant::detail::ascending(codes, width) == expected);
   }
 }
 

@@ -105,7 +105,6 @@ Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
   next.state.load = {};
   next.state.pending_half_kick = 0;
   next.upload_pressures = parts.upload_pressures;
-  next.sleep = parts.sleep;
   next.term_makers = parts.term_makers;
   next.watched_energy = parts.watched_energy;
   next.revision = parts.revision;

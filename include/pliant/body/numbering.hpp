@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/hilbert.hpp>
 
 namespace pliant {
@@ -20,8 +21,8 @@ struct Numbering {
   std::tuple<std::vector<Connectivity<Es>>...> tables;  // internal elements of internal nodes
   std::array<std::vector<Index>, sizeof...(Es)> user_element;  // by the internal number
 
-  explicit Numbering(Mesh<Es...> const& mesh) : internal_node(mesh.nodes.size(), -1) {
-    user_node.reserve(mesh.nodes.size());
+  explicit Numbering(Mesh<Es...> const& mesh)
+      : internal_node(mesh.nodes.size(), -1), user_node(mesh.nodes.size()) {
     along_curve_.resize(mesh.nodes.size());
     Index place = 0;
     for (Index node : hilbert_order(std::span<Point<Mesh<Es...>::dim> const>(mesh.nodes)))
@@ -37,8 +38,8 @@ struct Numbering {
   Index take(Index user) {
     auto& number = internal_node[static_cast<std::size_t>(user)];
     if (number < 0) {
-      number = static_cast<Index>(user_node.size());
-      user_node.push_back(user);
+      number = next_++;
+      user_node[static_cast<std::size_t>(number)] = user;
     }
     return number;
   }
@@ -46,25 +47,24 @@ struct Numbering {
   template <std::size_t I, Element E>
   void number(Mesh<Es...> const& mesh) {
     auto const& elements = mesh.template elements<E>();
-    std::vector<Index> first;
-    first.reserve(elements.size());
-    for (Connectivity<E> const& nodes : elements) {
-      Index least = along_curve_[static_cast<std::size_t>(nodes[0])];
-      for (Index node : nodes)
+    std::vector<Index> first(elements.size());
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      Index least = along_curve_[static_cast<std::size_t>(elements[e][0])];
+      for (Index node : elements[e])
         least = std::min(least, along_curve_[static_cast<std::size_t>(node)]);
-      first.push_back(least);
+      first[e] = least;
     }
     user_element[I] = detail::group_by_key(first, static_cast<Index>(mesh.nodes.size())).order;
     auto& table = std::get<I>(tables);
-    table.reserve(elements.size());
-    for (Index e : user_element[I]) {
-      Connectivity<E> nodes = elements[static_cast<std::size_t>(e)];
-      for (Index& node : nodes) node = take(node);
-      table.push_back(nodes);
+    table.resize(elements.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      table[i] = elements[static_cast<std::size_t>(user_element[I][i])];
+      for (Index& node : table[i]) node = take(node);
     }
   }
 
   std::vector<Index> along_curve_;  // by the user's number
+  Index next_ = 0;                  // internal number
 };
 
 }  // namespace pliant

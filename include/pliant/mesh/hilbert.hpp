@@ -4,30 +4,58 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
 
 namespace pliant {
 
 namespace detail {
-/// The positions of codes from the smallest to the largest, of equal ones in their order: a radix sort.
-inline std::vector<Index> ascending(std::vector<std::uint64_t> const& codes) {
+/// A code and its position in a list.
+struct CodeAt {
+  std::uint64_t code;
+  Index position;
+};
+
+/// Orders codes by their bits from `from` up to `to`, those with the same ones as they stand: a radix sort.
+inline void sort_by_bits(std::vector<CodeAt>& codes, int from, int to) {
   constexpr int digit = 11;  // bits
-  std::vector<Index> order(codes.size()), before, keys(codes.size());
-  std::iota(order.begin(), order.end(), 0);
-  for (int shift = 0; shift < 64; shift += digit) {
-    for (std::size_t i = 0; i < order.size(); ++i)
-      keys[i] = static_cast<Index>(codes[static_cast<std::size_t>(order[i])] >> shift &
-                                   ((1u << digit) - 1));
-    before.swap(order);
-    order = group_by_key(keys, 1 << digit).order;
-    for (Index& i : order) i = before[static_cast<std::size_t>(i)];
+  std::vector<CodeAt> sorted(codes.size());
+  for (int shift = from; shift < to; shift += digit) {
+    auto const key = [shift](CodeAt const& c) {
+      return static_cast<std::size_t>(c.code >> shift & ((1u << digit) - 1));
+    };
+    std::array<Index, std::size_t{1} << digit> next{};
+    for (CodeAt const& c : codes) ++next[key(c)];
+    for (Index before = 0; Index & first : next) before += std::exchange(first, before);
+    for (CodeAt const& c : codes) sorted[static_cast<std::size_t>(next[key(c)]++)] = c;
+    codes.swap(sorted);
   }
+}
+
+/// The positions of codes of `width` bits from the smallest to the largest, of equal ones in their order.
+inline std::vector<Index> ascending(std::vector<std::uint64_t> const& codes, int width) {
+  std::vector<CodeAt> list(codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) list[i] = {codes[i], static_cast<Index>(i)};
+  // The leading bits tell nearly all apart; of the few that they do not, each goes before those that are larger.
+  constexpr int leading = 33;
+  int const low = std::max(0, width - leading);
+  sort_by_bits(list, low, width);
+  constexpr std::size_t few = 64;
+  std::size_t run = 0;  // where those with the same leading bits begin
+  for (std::size_t i = 1; i < list.size(); ++i) {
+    if (list[i].code >> low != list[run].code >> low) run = i;
+    if (i - run > few) {
+      sort_by_bits(list, 0, width);
+      break;
+    }
+    for (std::size_t k = i; k > run && list[k].code < list[k - 1].code; --k)
+      std::swap(list[k], list[k - 1]);
+  }
+  std::vector<Index> order(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) order[i] = list[i].position;
   return order;
 }
 
@@ -139,7 +167,7 @@ std::vector<Index> hilbert_order(std::span<std::array<double, Dim> const> points
       cell[k] = static_cast<std::uint32_t>((p[k] - low[k]) * scale);
     codes.push_back(detail::hilbert_code(cell, bits));
   }
-  return detail::ascending(codes);
+  return detail::ascending(codes, bits * int{Dim});
 }
 
 }  // namespace pliant
