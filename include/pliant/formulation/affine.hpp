@@ -55,17 +55,24 @@ std::optional<Tensor<double, E::dim>> affine_gradient_by_places(Nodal<E, double>
     for (int i = 0; i < E::dim; ++i)
       edges(i, j) = rest(frame.corner[static_cast<std::size_t>(j)], i) - rest(0, i);
   auto const gradient = edges * frame.inverse;
-  double farthest = 0, size = 0, off = 0;  // from the origin; from node 0; from the affine place
-  for (int a = 0; a < E::nodes; ++a)
+  auto const lies_within = [&](int a, double distance) {
     for (int i = 0; i < E::dim; ++i) {
-      double apart = rest(a, i) - rest(0, i);
-      size = std::max(size, std::abs(apart));
-      for (int k = 0; k < E::dim; ++k) apart -= gradient(i, k) * places(a, k);
-      off = std::max(off, std::abs(apart));
-      farthest = std::max(farthest, std::abs(rest(a, i)));
+      double off = rest(a, i) - rest(0, i);
+      for (int k = 0; k < E::dim; ++k) off -= gradient(i, k) * places(a, k);
+      if (!(std::abs(off) <= distance)) return false;
     }
-  double const rounding = 8 * std::numeric_limits<double>::epsilon() * farthest;
-  if (!(off <= std::min(rounding, 1e-6 * size))) return {};
+    return true;
+  };
+  double size = 0, farthest = 0;  // of an edge; from the origin
+  for (int j = 0; j < E::dim; ++j)
+    for (int i = 0; i < E::dim; ++i) size = std::max(size, std::abs(edges(i, j)));
+  // Of most elements that are not affine this node tells.
+  if (!lies_within(E::nodes - 1, 1e-6 * size)) return {};
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) farthest = std::max(farthest, std::abs(rest(a, i)));
+  double const most = std::min(8 * std::numeric_limits<double>::epsilon() * farthest, 1e-6 * size);
+  for (int a = 1; a < E::nodes; ++a)
+    if (!lies_within(a, most)) return {};
   return gradient;
 }
 
@@ -86,7 +93,7 @@ Vector<double, E::nodes> nodal_volumes_by_shape(Nodal<E, double> const& rest) {
 
 /// The gradient ∂X_i/∂ξ_k of the map from an element's cell, where it is the same everywhere as far as its
 /// coordinates tell: no node is farther from where that puts it than rounding can bring it, nor than a millionth
-/// of the element's size. Else nothing.
+/// of an edge. Else nothing.
 template <Element E>
 std::optional<Tensor<double, E::dim>> affine_gradient(Nodal<E, double> const& rest) {
   if constexpr (LinearSimplex<E>)
