@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include <pliant/body/velocities.hpp>
 #include <pliant/body/wake.hpp>
 #include <pliant/mesh/sides.hpp>
 
