@@ -34,7 +34,7 @@ struct PatchInput {
   int width, patch_size;
 
   __device__ Index first() const { return static_cast<Index>(blockIdx.x) * patch_size; }
-  /// That of the block's patch, with its nodes numbered: what there is of them is at counts[0] for all threads.
+  /// The planner of the block's patch, its nodes numbered and counted in `counts`, which the threads share.
   __device__ PatchPlanner<Nodes> begin(void* memory, PatchCounts* counts) const {
     Index const left = count - first();
     PatchPlanner<Nodes> planner(memory, patch_size, left < patch_size ? left : patch_size);
