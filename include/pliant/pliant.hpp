@@ -51,6 +51,7 @@
 #include <pliant/mesh/box.hpp>
 #include <pliant/mesh/loads.hpp>
 #include <pliant/mesh/rectangle.hpp>
+#include <pliant/mesh/with_types.hpp>
 #include <pliant/quadrature/by_need.hpp>
 #include <pliant/quadrature/gauss.hpp>
 #include <pliant/quadrature/lobatto.hpp>

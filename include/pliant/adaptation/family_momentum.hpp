@@ -22,9 +22,36 @@ Point<E::dim> momentum(Connectivity<E> const& nodes, Vector<double, E::nodes> co
   return p;
 }
 
-/// What each node must be given so that a family keeps its momentum: the difference that lumping made,
-/// shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of
-/// the mesh before and after.
+/// The momentum that some elements of a mesh carry: see above.
+template <class M>
+Point<M::dim> momentum_of(M const& mesh, std::size_t wanted, std::vector<Index> const& elements,
+                          double density, std::vector<Point<M::dim>> const& v,
+                          Point<M::dim> const& base) {
+  Point<M::dim> sum{};
+  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+    if (type != wanted) return;
+    for (Index e : elements) {
+      auto const& nodes = mesh.template elements<E>()[static_cast<std::size_t>(e)];
+      auto const p =
+          momentum<E>(nodes, host_nodal_volumes<E>(nodal(mesh, nodes)), density, v, base);
+      for (std::size_t k = 0; k < p.size(); ++k) sum[k] += p[k];
+    }
+  });
+  return sum;
+}
+/// A node of an element.
+template <class M>
+Index first_node(M const& mesh, std::size_t wanted, Index element) {
+  Index node = -1;
+  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+    if (type == wanted) node = mesh.template elements<E>()[static_cast<std::size_t>(element)][0];
+  });
+  return node;
+}
+
+/// What each node must be given so that a family, of elements E after the change, keeps its momentum: the difference that
+/// lumping made, shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the
+/// numbers of the mesh before and after.
 template <Element E, class M>
 void add_family_impulse(TopologyPlan<M> const& plan,
                         typename Transfer<M::dim>::Family const& family, double density,
@@ -33,15 +60,9 @@ void add_family_impulse(TopologyPlan<M> const& plan,
   constexpr std::size_t dim = M::dim;
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
-  auto const& first = old.template elements<E>()[static_cast<std::size_t>(family.before[0])];
-  Point<dim> const base = v_before[static_cast<std::size_t>(first[0])];
-  Point<dim> lost{};
-  for (Index e : family.before) {
-    auto const& nodes = old.template elements<E>()[static_cast<std::size_t>(e)];
-    auto const p =
-        momentum<E>(nodes, host_nodal_volumes<E>(nodal(old, nodes)), density, v_before, base);
-    for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
-  }
+  Point<dim> const base =
+      v_before[static_cast<std::size_t>(first_node(old, family.old_type, family.before[0]))];
+  Point<dim> lost = momentum_of(old, family.old_type, family.before, density, v_before, base);
   double volume = 0;
   std::vector<Vector<double, E::nodes>> shares;
   for (Index e : family.after) {

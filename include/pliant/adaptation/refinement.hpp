@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <pliant/adaptation/family_momentum.hpp>
 #include <pliant/backend/value_at.hpp>
@@ -37,6 +38,20 @@ KeptParts<Parts::dim> kept_parts(Parts const& parts) {
   return kept;
 }
 
+/// What a change does, in words.
+template <class M>
+std::string actions_of(TopologyPlan<M> const& plan) {
+  std::string words;
+  auto const add = [&](std::size_t count, char const* word) {
+    if (count > 0) words += (words.empty() ? "" : " and ") + std::string(word);
+  };
+  add(plan.refined, "refine");
+  add(plan.merged, "coarsen");
+  add(plan.raised, "raise");
+  add(plan.lowered, "lower");
+  return words;
+}
+
 }  // namespace detail
 
 /// What refinement did.
@@ -51,13 +66,25 @@ struct CoarseningReport {
   std::size_t gone_nodes = 0;
 };
 
-/// Plans a change of a body's mesh: see refine and coarsen. Empty where nothing changes. Throws Error where an
+/// What raising degrees did.
+struct RaisingReport {
+  std::size_t raised = 0;
+  std::size_t new_nodes = 0;
+};
+
+/// What lowering degrees did.
+struct LoweringReport {
+  std::size_t lowered = 0;
+  std::size_t gone_nodes = 0;
+};
+
+/// Plans a change of a body's mesh: see refine, coarsen, raise and lower. Empty where nothing changes. Throws Error where an
 /// element is unknown or the body's limits would be exceeded.
 template <class Parts>
 auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
   return plan_change(parts.state.topology, marked,
                      {parts.limits.nodes, parts.limits.elements, max_level},
-                     detail::kept_parts(parts));
+                     detail::kept_parts(parts), detail::element_values_of(parts));
 }
 
 /// Makes a planned change; listeners wait for tell_listeners. Throws Error, with the body as it was, where
@@ -76,14 +103,13 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   auto [next, taken] = change_topology(parts, plan.after, plan.transfer, give_back);
   auto const after = energy_now(next);
   auto const change = [](double from, double to) { return detail::zero_if_not_finite(to - from); };
-  LedgerEntry<dim> const entry{next.state.time,
-                               plan.merged == 0    ? "refine"
-                               : plan.refined == 0 ? "coarsen"
-                                                   : "refine and coarsen",
-                               static_cast<double>(plan.refined + plan.merged),
-                               change(before.energies.strain, after.energies.strain),
-                               change(before.energies.kinetic, after.energies.kinetic),
-                               taken};
+  LedgerEntry<dim> const entry{
+      next.state.time,
+      detail::actions_of(plan),
+      static_cast<double>(plan.refined + plan.merged + plan.raised + plan.lowered),
+      change(before.energies.strain, after.energies.strain),
+      change(before.energies.kinetic, after.energies.kinetic),
+      taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
   double const added = next.watched_energy ? watched_change(next, before, after) : 0;
@@ -116,7 +142,7 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "refinement is available for meshes of the catalogue's elements, pyramids aside");
   detail::check_lists(body.mesh(), "refine", marked);
-  auto const plan = plan_change(body.parts(), {.refine = marked, .coarsen = {}}, max_level);
+  auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
@@ -135,11 +161,55 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "coarsening is available for meshes of the catalogue's elements, pyramids aside");
   detail::check_lists(body.mesh(), "coarsen", marked);
-  auto const plan = plan_change(body.parts(), {.refine = {}, .coarsen = marked});
+  auto const plan = plan_change(body.parts(), {.coarsen = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
   return {plan->merged, plan->transfer.gone().size()};
+}
+
+struct RaiseOptions {
+  int ring = 0;  ///< so many rings of neighbours, across edges, are raised along
+};
+
+/// Gives linear elements of a body the degree two: they become elements of the mesh's quadratic type on the same cell (Tri3
+/// Tri6, Quad4 Quad8 or Quad9, Tet4 Tet10, Hex8 Hex20 or Hex27), which the mesh names, with no elements or some, and of
+/// which the body has a Group. `marked` as for refine. Beside elements that stay linear, finer ones included, displacements
+/// stay linear: nodes there are slaves, so that a patch gains where all elements around an edge are raised (`ring` = 1
+/// raises all around those that are marked). Each goes to the group of the same law, or to the first of its type where
+/// none has it; then what quadrature points keep begins at rest. New nodes lie in the middle between corners, with the
+/// displacement and velocity there; each element keeps its momentum. Facets get the nodes between their corners.
+/// Throws Error, with the body as it was, as refine, for elements that are quadratic, and where the mesh has no
+/// quadratic type on their cell.
+template <DeformableBody TheBody>
+RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked,
+                    RaiseOptions options = {}) {
+  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
+                "raising is available for meshes of the catalogue's elements, pyramids aside");
+  detail::check_lists(body.mesh(), "raise", marked);
+  if (options.ring < 0)
+    throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
+  auto const plan = plan_change(body.parts(), {.raise = marked, .raised_rings = options.ring});
+  if (!plan) return {};
+  commit(body.parts(), *plan);
+  tell_listeners(body.parts(), *plan);
+  return {plan->raised, plan->transfer.new_nodes().size()};
+}
+
+/// Undoes raising, and gives quadratic elements of the initial mesh corners only. Nodes between corners go where no other
+/// element has them, and hand their loads to those they lay between; those of the initial mesh stay with their numbers
+/// and move with the corners. Elements with nodes that a condition on nodes names stay as they are. Groups, momentum and
+/// errors as of raise.
+template <DeformableBody TheBody>
+LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marked) {
+  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
+                "lowering is available for meshes of the catalogue's elements, pyramids aside");
+  detail::check_lists(body.mesh(), "lower", marked);
+  auto const plan = plan_change(body.parts(), {.lower = marked});
+  if (!plan) return {};
+  commit(body.parts(), *plan);
+  tell_listeners(body.parts(), *plan);
+  return {plan->lowered, plan->transfer.gone().size()};
 }
 
 /// How often each element of a type was refined, by the user's number.

@@ -1,74 +1,34 @@
 #pragma once
 
-#include <cmath>
-#include <limits>
 #include <vector>
 
-#include <pliant/backend/dispatch.hpp>
+#include <pliant/body/carried_points.hpp>
 #include <pliant/body/checkpoint.hpp>
-#include <pliant/body/groups.hpp>
+#include <pliant/body/converted_elements.hpp>
 #include <pliant/body/ledger.hpp>
+#include <pliant/body/point_visitors.hpp>
 #include <pliant/body/set_state.hpp>
-#include <pliant/topology/refinement_pattern.hpp>
 
 // Another topology for a body: every field goes over by one Transfer.
 namespace pliant {
 
 namespace detail {
 
-/// The internal variables of the elements of one type, (elements, variables) by the user's number: those of the
-/// nearest point of their ancestors. `tags`: the groups of the new elements.
-template <class Table, class TheTransfer>
-std::vector<double> carried_internal_variables(std::vector<double> const& rows,
-                                               std::vector<Tag> const& tags,
-                                               TheTransfer const& transfer, std::size_t type) {
-  constexpr int width = Table::Laws::internal_variable_count;
-  auto const& origins = transfer.origins(type);
-  std::vector<double> carried(std::size_t{width} * origins.size());
-  for (std::size_t e = 0; width > 0 && e < origins.size(); ++e) {
-    auto const& origin = origins[e];
-    auto const* const family = origin.family >= 0
-                                   ? &transfer.families()[static_cast<std::size_t>(origin.family)]
-                                   : nullptr;
-    auto const fill = [&]<int G>(GroupNumber<G>) {
-      using F = typename Table::template formulation<G>;
-      if constexpr (internal_variables_of<F> > 0) {
-        using Cell = typename F::element::cell;
-        constexpr auto rule = F::quadrature::template rule<Cell>();
-        constexpr int size = internal_variables_of<F> / F::points;
-        auto const point = [&](int q) {
-          Vector<double, Cell::dim> xi;
-          for (int k = 0; k < Cell::dim; ++k) xi[k] = rule.points[q][k];
-          return xi;
-        };
-        bool const merged = origin.child == TheTransfer::Origin::merged;
-        for (int q = 0; q < F::points; ++q) {
-          auto at = point(q);
-          if (origin.child >= 0) at = on_parent<Cell>(at, origin.child, family->mirrored);
-          double least = std::numeric_limits<double>::infinity();
-          std::size_t from = 0;
-          auto const look_at = [&](Index element, int p, Vector<double, Cell::dim> const& there) {
-            double const apart = dot(there - at, there - at);
-            if (!(apart < least)) return;
-            least = apart;
-            from = std::size_t{width} * static_cast<std::size_t>(element) +
-                   static_cast<std::size_t>(size * p);
-          };
-          for (int p = 0; p < F::points; ++p) {
-            if (!merged) look_at(origin.element, p, point(p));
-            for (int c = 0; merged && c < static_cast<int>(family->before.size()); ++c)
-              look_at(family->before[static_cast<std::size_t>(c)], p,
-                      on_parent<Cell>(point(p), c, family->mirrored));
-          }
-          for (int k = 0; k < size; ++k)
-            carried[std::size_t{width} * e + static_cast<std::size_t>(size * q + k)] =
-                rows[from + static_cast<std::size_t>(k)];
-        }
-      }
-    };
-    dispatch<Table::groups>(tags[e], fill);
+/// Brings the internal variables of some elements (by the user's number) to rest. `tags`: by the internal number.
+template <class Parts, class Table>
+void put_points_to_rest(Parts& parts, Table& table, std::vector<Tag> tags,
+                        std::vector<bool> const& which) {
+  if constexpr (Table::Laws::internal_variable_count > 0) {
+    for (std::size_t e = 0; e < tags.size(); ++e)
+      if (which[static_cast<std::size_t>(table.user_element[e])])
+        tags[e] = static_cast<Tag>(Table::groups);
+    auto const before = upload(parts.backend, tags);
+    table.elements.regroup();
+    parts.backend.template visit<Table::groups>(
+        table.elements,
+        CarryInternalVariables<typename Parts::T, typename Table::Laws>{table.laws, before.data()},
+        parts.no_counters, parts.rest(), std::as_const(parts).u());
   }
-  return carried;
 }
 
 /// Conditions and pressures on the new mesh.
@@ -184,17 +144,13 @@ ChangedTopology<Parts> change_topology(
   auto const v_before = v;
   v = transfer.carry_nodes(std::move(v));
   std::vector<std::vector<Tag>> tags;
-  std::vector<std::vector<double>> internal_variables;
-  parts.for_each_type([&](auto const& table, auto const& elements) {
+  std::vector<detail::CarriedPoints> points;
+  auto const kept = detail::kept_points(std::as_const(parts));
+  parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
     std::size_t const type = tags.size();
-    tags.push_back(
-        transfer.carry_elements(user_groups<typename Table::element>(std::as_const(parts)), type));
-    if constexpr (Table::Laws::internal_variable_count > 0)
-      internal_variables.push_back(detail::carried_internal_variables<Table>(
-          table.in_user_order(elements.internal_variables), tags.back(), transfer, type));
-    else
-      internal_variables.emplace_back();
+    tags.push_back(detail::carried_groups<Table>(std::as_const(parts), transfer, type));
+    points.push_back(detail::carried_points<Table>(kept, tags.back(), transfer, type));
   });
   auto prescribed =
       std::make_shared<Prescribed<dim> const>(detail::carried(*parts.state.prescribed, transfer));
@@ -228,8 +184,10 @@ ChangedTopology<Parts> change_topology(
     for (std::size_t e = 0; e < internal.size(); ++e)
       internal[e] = tags[type][static_cast<std::size_t>(table.user_element[e])];
     elements.tags.upload(internal);
-    elements.internal_variables.upload(table.in_internal_order(internal_variables[type++]));
+    auto const& own = points[type++];
+    elements.internal_variables.upload(table.in_internal_order(own.rows));
     elements.statistics = {};
+    if (!own.at_rest.empty()) detail::put_points_to_rest(next, table, internal, own.at_rest);
   });
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;

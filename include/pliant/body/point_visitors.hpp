@@ -89,7 +89,8 @@ template <class T, class Laws>
 struct CarryInternalVariables {
   static constexpr int counters = 0;
   Laws groups;
-  Tag const* before;  // (elements): their groups; null: none, and all points are at rest
+  // (elements): their groups; of none, points are at rest; null: all are of none
+  Tag const* before;
 
   template <int G, class V>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const&) const {
@@ -115,6 +116,8 @@ struct CarryInternalVariables {
         carry_internal_variables<From, G>(groups, e, rest, u);
       else
         carry<G, From + 1>(e, rest, u);
+    } else {
+      equilibrate_points<G>(groups, e, rest, u);
     }
   }
 };

@@ -29,7 +29,7 @@ class CellTree {
   /// Error where more than two cells share a side, or two lie on the same side of an edge in the plane.
   template <std::size_t N>
   void add(CellKind kind, CellNodes has, std::array<Index, N> const& nodes) {
-    TreeCell cell{.kind = kind, .has = has};
+    TreeCell cell{.kind = kind, .has = has, .had = has};
     auto const& p = pattern_of(kind);
     std::size_t next = static_cast<std::size_t>(p.corners);
     std::copy_n(nodes.begin(), next, cell.nodes.begin());
@@ -38,7 +38,7 @@ class CellTree {
       std::array const ends{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
       auto const [edge, is_new] =
           initial_edges_.find_or_add({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
-      if (is_new) edges_.push_back({.nodes = ends, .has = has});
+      if (is_new) edges_.push_back({.nodes = ends});
       auto const& known = edges_[at(edge)];
       // Counter-clockwise neighbours run along their common edge in opposite directions.
       if (p.dim == 2 && !is_new && (known.leaves > 1 || known.nodes == ends))
@@ -80,6 +80,11 @@ class CellTree {
   [[nodiscard]] TreeCell const& operator[](Index c) const { return cells_[at(c)]; }
   [[nodiscard]] bool is_leaf(Index c) const { return cells_[at(c)].first_child < 0; }
   [[nodiscard]] Index node_count() const { return nodes_; }
+  /// Whether leaves with corners only are beside others, or cells of the initial mesh have not the nodes that they
+  /// had there.
+  [[nodiscard]] bool mixes_degrees() const {
+    return (linear_leaves_ > 0 && quadratic_leaves_ > 0) || !converted_.empty();
+  }
 
   /// The edges of cells, each once, ascending.
   [[nodiscard]] std::vector<Index> edges_of(std::vector<Index> const& cells) const {
@@ -99,7 +104,8 @@ class CellTree {
   }
 
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
-  /// one at most across edges and sides: coarser ones first, then ascending.
+  /// one at most across edges and sides: coarser ones first, then ascending. (Children of those can meet cells two levels
+  /// finer at an edge, until these are refined again: of what is made anew, nothing is refined in one go.)
   [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
     std::unordered_set<Index> seen(leaves.begin(), leaves.end());
     std::optional<std::vector<std::pair<Index, Index>>> on_edge;
@@ -109,8 +115,9 @@ class CellTree {
     for (std::size_t i = 0; i < leaves.size(); ++i) {
       auto const cell = cells_[at(leaves[i])];
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-        Index const coarse = edges_[at(cell.edges[e])].parent;
-        if (coarse < 0 || edges_[at(coarse)].leaves == 0) continue;
+        Index coarse = edges_[at(cell.edges[e])].parent;
+        while (coarse >= 0 && edges_[at(coarse)].leaves == 0) coarse = edges_[at(coarse)].parent;
+        if (coarse < 0) continue;
         if (!on_edge) on_edge = leaves_on_bisected_edges();
         auto const first = std::ranges::lower_bound(*on_edge, std::pair(coarse, Index{-1}));
         for (auto entry = first; entry != on_edge->end() && entry->first == coarse; ++entry)
@@ -126,32 +133,83 @@ class CellTree {
     return leaves;
   }
 
+  /// The leaves that share an edge, whole or in part, with given ones, and these: each once, ascending.
+  [[nodiscard]] std::vector<Index> with_neighbours(std::vector<Index> const& leaves) const {
+    std::vector<bool> near(edges_.size(), false);
+    for (Index const e : edges_of(leaves)) {
+      auto const& edge = edges_[at(e)];
+      near[at(e)] = true;
+      if (edge.parent >= 0 && edges_[at(edge.parent)].leaves > 0) near[at(edge.parent)] = true;
+      for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
+        near[at(half)] = true;
+    }
+    std::vector<Index> found;
+    for (Index c = 0; c < size(cells_); ++c) {
+      auto const& cell = cells_[at(c)];
+      for (std::size_t e = 0; cell.first_child < 0 && e < at(cell.pattern().edges); ++e)
+        if (near[at(cell.edges[e])]) {
+          found.push_back(c);
+          break;
+        }
+    }
+    return found;
+  }
+
   /// How many nodes it takes to split all of these leaves.
   [[nodiscard]] std::size_t count_new_nodes(std::vector<Index> const& leaves) const {
     std::size_t nodes = 0;
-    std::unordered_set<Index> edges, sides;
+    std::unordered_set<Index> without_middle, bisected, without_centre, divided;
+    auto const needs_middle = [&](Index e) {
+      if (edges_[at(e)].middle < 0) without_middle.insert(e);
+    };
+    auto const needs_centre = [&](Index s) {
+      if (sides_[at(s)].centre < 0 && sides_[at(s)].corners() == 4) without_centre.insert(s);
+    };
     for (Index const c : leaves) {
       auto const& cell = cells_[at(c)];
       auto const& p = cell.pattern();
-      bool const quadratic = cell.has != CellNodes::corners;
+      bool const quadratic = cell.has != CellNodes::corners, all = cell.has == CellNodes::all;
       for (std::size_t e = 0; e < at(p.edges); ++e) {
-        auto const& edge = edges_[at(cell.edges[e])];
-        if (edge.first_half >= 0 || !edges.insert(cell.edges[e]).second) continue;
-        nodes += (edge.middle < 0 ? 1 : 0) + (quadratic ? 2 : 0);
+        needs_middle(cell.edges[e]);
+        if (!quadratic || !bisected.insert(cell.edges[e]).second) continue;
+        Index const half = edges_[at(cell.edges[e])].first_half;
+        if (half < 0) nodes += 2;
+        for (Index h = half; half >= 0 && h < half + 2; ++h) needs_middle(h);
       }
       for (std::size_t s = 0; s < at(p.sides); ++s) {
+        needs_centre(cell.sides[s]);
+        if (!quadratic || !divided.insert(cell.sides[s]).second) continue;
         auto const& side = sides_[at(cell.sides[s])];
-        if (side.first_child >= 0 || !sides.insert(cell.sides[s]).second) continue;
-        bool const quad = side.corners() == 4;
-        nodes += quad && side.centre < 0 ? 1 : 0;
-        nodes += quadratic ? side.corners() : 0;
-        nodes += quad && cell.has == CellNodes::all ? 4 : 0;
+        auto const n = static_cast<Index>(side.corners());
+        if (side.first_child < 0) nodes += side.corners() + (all && n == 4 ? 4 : 0);
+        for (Index k = 0; side.first_child >= 0 && k < n; ++k) {
+          needs_middle(side.first_inner_edge + k);
+          if (all) needs_centre(side.first_child + k);
+        }
       }
       nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
       nodes += quadratic ? at(p.inner_edges) : 0;
-      if (cell.has == CellNodes::all && p.centre >= 0) nodes += at(p.inner_sides + p.children);
+      if (all && p.centre >= 0) nodes += at(p.inner_sides + p.children);
     }
-    return nodes;
+    return nodes + without_middle.size() + without_centre.size();
+  }
+
+  /// How many nodes it takes to give leaves other degrees.
+  [[nodiscard]] std::size_t count_new_nodes(std::vector<CellConversion> const& raised) const {
+    std::size_t nodes = 0;
+    std::unordered_set<Index> edges, sides;
+    for (auto const& [c, has] : raised) {
+      auto const& cell = cells_[at(c)];
+      auto const& p = cell.pattern();
+      for (std::size_t e = 0; e < at(p.edges); ++e)
+        if (edges_[at(cell.edges[e])].middle < 0) edges.insert(cell.edges[e]);
+      if (has != CellNodes::all) continue;
+      for (std::size_t s = 0; s < at(p.sides); ++s)
+        if (p.side_centre[s] >= 0 && sides_[at(cell.sides[s])].centre < 0)
+          sides.insert(cell.sides[s]);
+      nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
+    }
+    return nodes + edges.size() + sides.size();
   }
 
   /// How many cells it takes to split all of these leaves.
@@ -181,7 +239,7 @@ class CellTree {
     auto const make_node = [&](Index& node, std::array<double, 3> const& place) {
       if (node >= 0) return;
       node = nodes_++;
-      made.push_back({node, c, place});
+      made.push_back({node, c, parent.has, place});
     };
     std::copy_n(parent.nodes.begin(), at(p.corners), point.begin());
     for (std::size_t e = 0; e < at(p.edges); ++e) {
@@ -205,8 +263,7 @@ class CellTree {
     auto const first_inner_edge = static_cast<Index>(edges_.size());
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
       edges_.push_back({.nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
-                        .level = parent.level + 1,
-                        .has = parent.has});
+                        .level = parent.level + 1});
     std::array<Index, 12> inner_side;
     inner_side.fill(-1);
 
@@ -243,22 +300,56 @@ class CellTree {
     }
   }
 
-  /// Whether the children of a refined cell are leaves that no neighbour keeps from being merged.
+  /// Whether the children of a refined cell are leaves of one degree that no neighbour keeps from being merged.
   [[nodiscard]] bool can_be_merged(Index c) const {
     auto const& cell = cells_[at(c)];
     if (cell.first_child < 0) return false;
     auto const& p = cell.pattern();
     for (Index child = cell.first_child; child < cell.first_child + p.children; ++child) {
-      if (!is_leaf(child)) return false;
+      if (!is_leaf(child) || cells_[at(child)].has != cells_[at(cell.first_child)].has)
+        return false;
       for (std::size_t e = 0; e < at(p.edges); ++e)
         if (edges_[at(cells_[at(child)].edges[e])].refined > 0) return false;
     }
     return true;
   }
 
-  /// Makes refined cells, each of which can be merged, leaves again. Nodes, cells, edges and sides that
-  /// nothing uses any more go, but for those of the initial mesh; the others move up.
-  Renumbering merge(std::vector<Index> const& parents) {
+  /// Gives leaves with corners only more nodes, and appends those that it makes.
+  void raise(std::vector<CellConversion> const& conversions, std::vector<PlacedNode>& made) {
+    for (auto const& to : conversions) {
+      convert(to);
+      auto const& p = cells_[at(to.cell)].pattern();
+      auto const make_node = [&](Index& node, std::array<double, 3> const& place) {
+        if (node >= 0) return;
+        node = nodes_++;
+        made.push_back({node, to.cell, CellNodes::corners, place});
+      };
+      auto& cell = cells_.edit(at(to.cell));
+      for (std::size_t e = 0; e < at(p.edges); ++e)
+        make_node(edges_.edit(at(cell.edges[e])).middle, p.place[at(p.corners) + e]);
+      if (to.has != CellNodes::all) continue;
+      for (std::size_t s = 0; s < at(p.sides); ++s)
+        if (p.side_centre[s] >= 0)
+          make_node(sides_.edit(at(cell.sides[s])).centre, p.place[at(p.side_centre[s])]);
+      if (p.centre >= 0) make_node(cell.centre, p.place[at(p.centre)]);
+    }
+    forget_old_conversions();
+  }
+
+  /// Gives refined cells, each of which can be merged, the degree of their children.
+  void take_degree_of_children(std::vector<Index> const& parents) {
+    for (Index const c : parents) {
+      auto const has = cells_[at(cells_[at(c)].first_child)].has;
+      if (cells_[at(c)].has != has) cells_.edit(at(c)).has = has;
+      note_conversion(c);
+    }
+    forget_old_conversions();
+  }
+
+  /// Makes refined cells, each of which can be merged and has the degree of its children, leaves again, and takes leaves
+  /// the nodes between their corners. Nodes, cells, edges and sides that nothing uses any more go, but for those
+  /// of the initial mesh; the others move up.
+  Renumbering merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
     std::vector<bool> gone(cells_.size(), false);
     for (Index const c : parents) {
       auto& cell = cells_.edit(at(c));
@@ -271,8 +362,15 @@ class CellTree {
       cell.first_child = -1;
       attach(c);
     }
+    auto touched = parents;
+    for (Index const c : lowered) {
+      convert({c, CellNodes::corners});
+      touched.push_back(c);
+    }
     std::erase_if(refined_, [&](Index c) { return is_leaf(c); });
-    return compact(parents, std::move(gone));
+    auto renumbered = compact(touched, std::move(gone));
+    forget_old_conversions();
+    return renumbered;
   }
 
   /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
@@ -315,6 +413,9 @@ class CellTree {
     visit("edges", r.edges_...);
     visit("sides", r.sides_...);
     visit("refined cells", r.refined_...);
+    visit("cells of other degrees", r.converted_...);
+    visit("leaves with corners only", r.linear_leaves_...);
+    visit("other leaves", r.quadratic_leaves_...);
     visit("initial mesh", r.initial_...);
     visit("number of nodes", r.nodes_...);
   }
@@ -326,12 +427,26 @@ class CellTree {
   /// Side s of a cell, as the cell sees it.
   static TreeSide side_of(TreeCell const& cell, std::size_t s) {
     auto const& p = cell.pattern();
-    TreeSide side{.level = cell.level, .has = cell.has};
+    TreeSide side{.level = cell.level};
     for (std::size_t k = 0; k < at(p.corners_of_side(static_cast<int>(s))); ++k) {
       side.nodes[k] = cell.nodes[at(p.side[s][k])];
       side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
     }
     return side;
+  }
+
+  void convert(CellConversion const& to) {
+    detach(to.cell);
+    cells_.edit(at(to.cell)).has = to.has;
+    attach(to.cell);
+    note_conversion(to.cell);
+  }
+  void note_conversion(Index c) {
+    if (c < initial_.cells && cells_[at(c)].has != cells_[at(c)].had) converted_.push_back(c);
+  }
+  void forget_old_conversions() {
+    converted_ = each_once(std::move(converted_));
+    std::erase_if(converted_, [&](Index c) { return cells_[at(c)].has == cells_[at(c)].had; });
   }
 
   void attach(Index c) { count_uses(c, 1); }
@@ -342,7 +457,10 @@ class CellTree {
     for (std::size_t e = 0; e < at(p.edges); ++e) {
       auto& edge = edges_.edit(at(cell.edges[e]));
       (cell.first_child < 0 ? edge.leaves : edge.refined) += by;
+      if (cell.first_child < 0 && cell.has == CellNodes::corners) edge.linear += by;
     }
+    if (cell.first_child < 0)
+      (cell.has == CellNodes::corners ? linear_leaves_ : quadratic_leaves_) += by;
     for (std::size_t s = 0; s < at(p.sides); ++s) {
       auto& cells = sides_.edit(at(cell.sides[s])).cells;
       if (by > 0) {
@@ -371,7 +489,7 @@ class CellTree {
     auto const edge = edges_[at(e)];
     if (edge.first_half >= 0) return;
     edges_.edit(at(e)).first_half = static_cast<Index>(edges_.size());
-    TreeEdge half{.parent = e, .level = edge.level + 1, .has = edge.has};
+    TreeEdge half{.parent = e, .level = edge.level + 1};
     half.nodes = {edge.nodes[0], edge.middle};
     edges_.push_back(half);
     half.nodes = {edge.middle, edge.nodes[1]};
@@ -397,9 +515,8 @@ class CellTree {
     // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
     for (std::size_t k = 0; k < n; ++k)
       edges_.push_back({.nodes = {middle[k], quad ? side.centre : middle[(k + n - 1) % n]},
-                        .level = side.level + 1,
-                        .has = side.has});
-    TreeSide child{.parent = s, .level = side.level + 1, .has = side.has};
+                        .level = side.level + 1});
+    TreeSide child{.parent = s, .level = side.level + 1};
     for (std::size_t k = 0; k < n; ++k) {
       auto const last = (k + n - 1) % n;
       Index const along = half_at(side.edges[k], side.nodes[k]),
@@ -484,9 +601,9 @@ class CellTree {
     return list;
   }
 
-  /// Takes away what nothing uses any more after `merged` became leaves and their children went. What the initial mesh has
-  /// stays, and of it only what refined cells have knows of the rest.
-  Renumbering compact(std::vector<Index> const& merged, std::vector<bool> cell_gone) {
+  /// Takes away what nothing uses any more after `touched` became leaves and their children went, or lost their nodes. What
+  /// the initial mesh has stays, and of it only what refined and converted cells have knows of the rest.
+  Renumbering compact(std::vector<Index> const& touched, std::vector<bool> cell_gone) {
     auto const& i = initial_;
     std::vector<bool> node_used(at(nodes_), false), edge_used(edges_.size(), true),
         side_used(sides_.size(), true);
@@ -494,6 +611,8 @@ class CellTree {
     for (Index c = i.cells; c < size(cells_); ++c)
       if (!cell_gone[at(c)])
         for (Index const node : nodes_of(c)) node_used[at(node)] = true;
+    for (Index const c : converted_)
+      for (Index const node : nodes_of(c)) node_used[at(node)] = true;
 
     auto const forget = [&](Index& node) {
       if (node >= 0 && !node_used[at(node)]) node = -1;
@@ -509,9 +628,9 @@ class CellTree {
         side.first_child = side.first_inner_edge = -1;
       forget(side.centre);
     };
-    for (Index const e : edges_of(initial_of(merged))) mend_edge(e);
-    for (Index const s : sides_of(initial_of(merged))) mend_side(s);
-    for (Index const c : merged) forget(cells_.edit(at(c)).centre);
+    for (Index const e : edges_of(initial_of(touched))) mend_edge(e);
+    for (Index const s : sides_of(initial_of(touched))) mend_side(s);
+    for (Index const c : touched) forget(cells_.edit(at(c)).centre);
     for (Index e = i.edges; e < size(edges_); ++e) {
       edge_used[at(e)] = edges_[at(e)].leaves + edges_[at(e)].refined > 0;
       mend_edge(e);
@@ -544,9 +663,12 @@ class CellTree {
       move(s.first_child, side);
       move(s.first_inner_edge, edge);
     };
-    for (Index const c : initial_of(refined_)) move_within_cell(cells_.edit(at(c)));
-    for (Index const e : edges_of(initial_of(refined_))) move_within_edge(edges_.edit(at(e)));
-    for (Index const s : sides_of(initial_of(refined_))) move_within_side(sides_.edit(at(s)));
+    auto knowing = initial_of(refined_);
+    knowing.insert(knowing.end(), converted_.begin(), converted_.end());
+    knowing = each_once(std::move(knowing));
+    for (Index const c : knowing) move_within_cell(cells_.edit(at(c)));
+    for (Index const e : edges_of(knowing)) move_within_edge(edges_.edit(at(e)));
+    for (Index const s : sides_of(knowing)) move_within_side(sides_.edit(at(s)));
     for (Index n = i.cells; n < size(cells_); ++n) {
       auto& c = cells_.edit(at(n));
       move_within_cell(c);
@@ -595,6 +717,8 @@ class CellTree {
   SharedList<TreeEdge> edges_;
   SharedList<TreeSide> sides_;
   std::vector<Index> refined_;
+  std::vector<Index> converted_;  // of the initial mesh, that have not what they had: each once
+  Index linear_leaves_ = 0, quadratic_leaves_ = 0;
   Index nodes_ = 0;
   TreeSizes initial_;
   NumberTable<2> initial_edges_;  // by their corners, ascending

@@ -14,7 +14,7 @@
 #include <pliant/error.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
-#include <pliant/topology/compose.hpp>
+#include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
 
@@ -34,7 +34,12 @@ struct Refinement {
   std::vector<DividedFacet<Dim>> facets;  ///< sides that were divided, in the plane edges
 };
 
-/// What a call of Hierarchy::coarsen did.
+/// What a call of Hierarchy::raise did.
+struct Raising {
+  std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
+};
+
+/// What a call of Hierarchy::coarsen or merge did.
 template <int Dim>
 struct Coarsening {
   std::vector<Index> parents;  ///< cells that are leaves again, by their new number, ascending
@@ -161,15 +166,16 @@ class Hierarchy {
     std::ranges::sort(parents);
     return parents;
   }
-  /// Merges families that `families` gave.
-  Coarsening<Dim> merge(std::vector<Index> const& parents) {
+  /// Merges families that `families` gave, and takes other leaves the nodes between their corners.
+  Coarsening<Dim> merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
     Coarsening<Dim> done{.parents = parents, .renumbered = {}, .gone = {}, .facets = {}};
-    if (parents.empty()) return done;
+    if (parents.empty() && lowered.empty()) return done;
+    tree_.take_degree_of_children(parents);
     for (Index const s : sides_of_no_other(parents)) done.facets.push_back(divided(s));
-    auto const inside = between_nodes_of(parents);
+    auto const inside = between_nodes_of(parents, lowered);
     std::size_t children = 0;
     for (Index const c : parents) children += at(cell(c).pattern().children);
-    done.renumbered = tree_.merge(parents);
+    done.renumbered = tree_.merge(parents, lowered);
     leaf_count_ += parents.size();
     leaf_count_ -= children;
     for (NewNode const& node : inside)
@@ -182,39 +188,37 @@ class Hierarchy {
     return done;
   }
 
-  /// Every hanging node, ascending, with its free masters. Weights sum to one. They make the displacement
-  /// on each edge and side of each leaf what its own nodes say, and continuous.
-  [[nodiscard]] std::vector<Slave> slaves() const {
-    std::vector<std::pair<int, Slave>> hanging;  // and the level of the coarser element
-    auto const& edges = tree_.edges();
-    for (Index const e : tree_.edges_of(tree_.refined())) {
-      auto const& edge = edges[at(e)];
-      if (edge.leaves == 0) continue;
-      auto const [a, b] = edge.nodes;
-      if (edge.has == CellNodes::corners) {
-        hanging.push_back({edge.level, {edge.middle, sorted({{a, 0.5}, {b, 0.5}})}});
-        continue;
-      }
-      auto const& half = edges[at(edge.first_half)];
-      auto const& other = edges[at(edge.first_half + 1)];
-      hanging.push_back(
-          {edge.level, {half.middle, sorted({{a, 3. / 8}, {edge.middle, 3. / 4}, {b, -1. / 8}})}});
-      hanging.push_back(
-          {edge.level, {other.middle, sorted({{a, -1. / 8}, {edge.middle, 3. / 4}, {b, 3. / 8}})}});
+  /// Gives leaves that have corners only the nodes of another degree. Throws Error where the limit of nodes would be
+  /// exceeded; the hierarchy is then as it was.
+  Raising raise(std::vector<CellConversion> const& conversions,
+                RefinementLimits const& limits = {}) {
+    auto const nodes = points_.size() + tree_.count_new_nodes(conversions);
+    if (nodes > std::min(limits.nodes, most_))
+      throw Error("Hierarchy: to raise the degree of ", conversions.size(), " cells takes ", nodes,
+                  " nodes in all, and the limit is ", std::min(limits.nodes, most_),
+                  "; mark fewer cells or raise the limit");
+    Raising done;
+    std::vector<PlacedNode> made;
+    tree_.raise(conversions, made);
+    for (PlacedNode const& node : made) {
+      done.new_nodes.push_back(interpolated(node));
+      points_.push_back(mean_of_parents(done.new_nodes.back()));
     }
-    for (Index const s : tree_.sides_of(tree_.refined())) {
-      auto const& side = tree_.sides()[at(s)];
-      if (side.cells[1] < 0 || is_leaf(side.cells[0]) == is_leaf(side.cells[1])) continue;
-      add_nodes_on(side, hanging);
-    }
-    // The masters of a node at an element's side are that element's nodes; those can hang at coarser ones.
-    std::ranges::sort(hanging, {},
-                      [](auto const& entry) { return std::pair(entry.first, entry.second.node); });
-    std::vector<Slave> slaves;
-    slaves.reserve(hanging.size());
-    for (auto& entry : hanging) slaves.push_back(std::move(entry.second));
-    return compose(std::move(slaves));
+    return done;
   }
+  /// The whole sides of leaves (in the plane, edges), as facets with the nodes that they have now.
+  [[nodiscard]] std::vector<DividedFacet<Dim>> whole_facets(
+      std::vector<Index> const& leaves) const {
+    std::vector<DividedFacet<Dim>> facets;
+    for (Index const s : Dim == 2 ? tree_.edges_of(leaves) : tree_.sides_of(leaves))
+      if (first_part(s) < 0) facets.push_back({facet_of(s), {facet_of(s)}});
+    return facets;
+  }
+
+  /// Every hanging node, ascending, with its free masters. Weights sum to one. They make the displacement
+  /// on each edge and side of each leaf what its own nodes say, and continuous: there it is of the lowest degree
+  /// of the leaves around.
+  [[nodiscard]] std::vector<Slave> slaves() const { return HangingNodes(tree_).slaves(); }
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -225,17 +229,12 @@ class Hierarchy {
 
  private:
   static constexpr std::size_t most_ = std::numeric_limits<Index>::max();
-  using Masters = std::vector<std::pair<Index, double>>;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   static void sort_and_unify(std::vector<Index>& list) {
     std::ranges::sort(list);
     list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  static Masters sorted(Masters masters) {
-    std::ranges::sort(masters);
-    return masters;
   }
   void check_number(char const* verb, Index c) const {
     if (c < 0 || c >= size(cells()))
@@ -291,7 +290,7 @@ class Hierarchy {
   NewNode interpolated(PlacedNode const& node) const {
     auto const& parent = cell(node.cell);
     return {node.node,
-            detail::shape_weights(parent.kind, parent.has, tree_.nodes_of(node.cell), node.place)};
+            detail::shape_weights(parent.kind, node.had, tree_.nodes_of(node.cell), node.place)};
   }
   Point<Dim> mean_of_parents(NewNode const& n) const {
     // Equal weights as a sum and a division: the mean does not depend on how the sum is rounded.
@@ -305,37 +304,6 @@ class Hierarchy {
     if (equal)
       for (double& x : sum) x /= static_cast<double>(n.parents.size());
     return sum;
-  }
-
-  /// The nodes between an element's side and its parts on the other side that the element itself has not.
-  void add_nodes_on(TreeSide const& side, std::vector<std::pair<int, Slave>>& hanging) const {
-    auto const& p = side.pattern();
-    auto const n = side.corners();
-    bool const quad = n == 4;
-    auto const& edges = tree_.edges();
-    CellTree::NodeList nodes;
-    for (std::size_t k = 0; k < n; ++k) nodes.push_back(side.nodes[k]);
-    if (side.has != CellNodes::corners)
-      for (std::size_t k = 0; k < n; ++k) nodes.push_back(edges[at(side.edges[k])].middle);
-    if (side.has == CellNodes::all && quad) nodes.push_back(side.centre);
-    auto const kind = quad ? CellKind::quadrilateral : CellKind::triangle;
-    auto const add = [&](Index node, std::array<double, 3> const& place) {
-      hanging.push_back(
-          {side.level, {node, sorted(detail::shape_weights(kind, side.has, nodes, place))}});
-    };
-    if (quad && side.has != CellNodes::all) add(side.centre, p.place[at(p.centre)]);
-    if (side.has == CellNodes::corners) return;
-    auto const middle = [](std::array<double, 3> const& a, std::array<double, 3> const& b) {
-      return std::array{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.0};
-    };
-    for (std::size_t k = 0; k < n; ++k) {
-      auto const& from = p.place[n + k];
-      auto const& to = quad ? p.place[at(p.centre)] : p.place[n + (k + n - 1) % n];
-      add(edges[at(side.first_inner_edge) + k].middle, middle(from, to));
-      if (quad && side.has == CellNodes::all)
-        add(tree_.sides()[at(side.first_child) + k].centre,
-            middle(p.place[k], p.place[at(p.centre)]));
-    }
   }
 
   /// The sides of cells, in the plane their edges: as often as cells have them.
@@ -369,20 +337,27 @@ class Hierarchy {
   Index first_part(Index s) const {
     return Dim == 2 ? tree_.edges()[at(s)].first_half : tree_.sides()[at(s)].first_child;
   }
+  /// With the nodes of the leaves beside it, of the highest degree.
   Facet<Dim> facet_of(Index s) const {
     Facet<Dim> facet;
     auto const& edges = tree_.edges();
     if constexpr (Dim == 2) {
       auto const& edge = edges[at(s)];
       for (Index node : edge.nodes) facet.push_back(node);
-      if (edge.has != CellNodes::corners) facet.push_back(edge.middle);
+      bool quadratic = edge.leaves > edge.linear;
+      for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
+        quadratic = quadratic || edges[at(half)].leaves > edges[at(half)].linear;
+      if (quadratic) facet.push_back(edge.middle);
     } else {
       auto const& side = tree_.sides()[at(s)];
+      auto has = CellNodes::corners;
+      for (Index const c : side.cells)
+        if (c >= 0) has = std::max(has, cell(c).has);
       for (std::size_t k = 0; k < side.corners(); ++k) facet.push_back(side.nodes[k]);
-      if (side.has == CellNodes::corners) return facet;
+      if (has == CellNodes::corners) return facet;
       for (std::size_t k = 0; k < side.corners(); ++k)
         facet.push_back(edges[at(side.edges[k])].middle);
-      if (side.has == CellNodes::all && side.corners() == 4) facet.push_back(side.centre);
+      if (has == CellNodes::all && side.corners() == 4) facet.push_back(side.centre);
     }
     return facet;
   }
@@ -396,10 +371,23 @@ class Hierarchy {
   }
 
   /// The nodes of refined cells' children that the cells themselves have not, as they lie between nodes of
-  /// the cells: each once, ascending.
-  std::vector<NewNode> between_nodes_of(std::vector<Index> const& parents) const {
+  /// the cells, and those between the corners of leaves: each once, ascending.
+  std::vector<NewNode> between_nodes_of(std::vector<Index> const& parents,
+                                        std::vector<Index> const& lowered) const {
     std::vector<NewNode> found;
     std::vector<bool> seen(points_.size(), false);
+    for (Index const c : lowered) {
+      auto const nodes = tree_.nodes_of(c);
+      auto const places = places_of(cell(c));
+      for (std::size_t a = cell(c).corners(); a < nodes.count; ++a) {
+        if (seen[at(nodes[a])]) continue;
+        seen[at(nodes[a])] = true;
+        NewNode node{nodes[a], {}};
+        for (std::size_t b = 0; b < cell(c).corners(); ++b)
+          if (places[a][b] != 0) node.parents.emplace_back(nodes[b], places[a][b]);
+        found.push_back(std::move(node));
+      }
+    }
     for (Index const c : parents) {
       auto const& own = cell(c);
       auto const& p = own.pattern();

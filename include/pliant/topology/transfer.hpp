@@ -20,7 +20,8 @@ struct NewNode {
 };
 
 /// A facet of the boundary and the parts into which it is divided: part k at its corner k, then that in the
-/// middle of a triangle. Parts run round as the whole does, in 3D from that corner.
+/// middle of a triangle. Parts run round as the whole does, in 3D from that corner. One part: the facet stays, with
+/// other nodes between its corners.
 template <int Dim>
 struct DividedFacet {
   Facet<Dim> whole;
@@ -35,21 +36,24 @@ template <int Dim>
 class Transfer {
  public:
   using NewNode = pliant::NewNode;
-  /// Where an element comes from: the number of an old element of the same type (of merged ones the first), and
-  /// which of its children it is.
+  /// Where an element comes from: the number of an old element (of merged ones the first), and which of its
+  /// children it is.
   struct Origin {
     Index element;
     int child;          ///< 0 and up, or one of these
     Index family = -1;  ///< of a child, or merged elements: its place among the families
-    static constexpr int same = -1;    ///< it is that element
-    static constexpr int merged = -2;  ///< it was that element's family
+    Index type = -1;    ///< of the old element, its place among the mesh's; −1: the same type
+    static constexpr int same = -1;       ///< it is that element
+    static constexpr int merged = -2;     ///< it was that element's family
+    static constexpr int converted = -3;  ///< it is that element of another type on the same cell
   };
-  /// Elements of one type that take the place of others, children in their order.
+  /// Elements that take the place of others, children in their order.
   struct Family {
-    std::size_t type = 0;  ///< its place among the mesh's
+    std::size_t type = 0;  ///< of those after, its place among the mesh's
     std::vector<Index> before, after;
     std::vector<double> shares;  ///< of those before in their volume
     bool mirrored = false;       ///< whether the undivided cell is (see RefinementPattern)
+    std::size_t old_type = 0;    ///< of those before
   };
   struct Parts {
     Index old_nodes = 0;
@@ -122,20 +126,33 @@ class Transfer {
     values.resize(static_cast<std::size_t>(nodes()), V{});
     return values;
   }
-  /// Values per element of one type on the new mesh: `width` each, side by side. Throws Error as carry_nodes.
+  /// Values per element of one type on the new mesh: `width` each, side by side. Throws Error as carry_nodes, and where
+  /// elements come from another type.
   template <class V>
   std::vector<V> carry_elements(std::vector<V> const& values, std::size_t type = 0,
                                 std::size_t width = 1) const {
     check(values.size(), p_.old_elements[type] * width, "elements");
-    std::vector<V> carried;
-    carried.reserve(origins(type).size() * width);
-    for (Origin const& origin : origins(type)) {
-      auto const first = width * static_cast<std::size_t>(origin.element);
-      for (std::size_t k = 0; k < width; ++k)
-        carried.push_back(origin.child == Origin::merged ? merged_value(values, origin, width, k)
-                                                         : values[first + k]);
-    }
-    return carried;
+    return carry_from(type, width, [&](std::size_t old_type) -> std::vector<V> const& {
+      if (old_type != type)
+        throw Error("transfer: elements of type ", type, " come from type ", old_type,
+                    "; give the values of all types");
+      return values;
+    });
+  }
+  /// The same where elements may come from other types: `values` has a list of each. Lists of types that none comes from
+  /// are not looked at.
+  template <class V>
+  std::vector<V> carry_elements(std::vector<std::vector<V>> const& values, std::size_t type,
+                                std::size_t width = 1) const {
+    return carry_from(type, width, [&](std::size_t old_type) -> std::vector<V> const& {
+      return values[old_type];
+    });
+  }
+  /// Whether elements of a type come from another one.
+  bool comes_from(std::size_t type, std::size_t old_type) const {
+    return std::ranges::any_of(p_.families, [&](Family const& family) {
+      return family.type == type && family.old_type == old_type;
+    });
   }
   /// Facets of the boundary on the new mesh: a facet that was divided gives way to its parts, and parts that were
   /// merged to the whole, in the place of the first. Throws Error where not all of them are there.
@@ -154,7 +171,7 @@ class Transfer {
         add_parts(new_numbers(facet), carried);
       } else if (!done[*whole]) {
         done[*whole] = true;
-        carried.push_back(new_numbers(whole_of(p_.merged[*whole], facet)));
+        add_parts(new_numbers(whole_of(p_.merged[*whole], facet)), carried);
       }
     }
     return carried;
@@ -207,6 +224,29 @@ class Transfer {
     }
     values.reserve(static_cast<std::size_t>(nodes()));
     return values;
+  }
+  /// `values_of`(type): the list of an old type.
+  template <class ValuesOf>
+  auto carry_from(std::size_t type, std::size_t width, ValuesOf const& values_of) const {
+    using Values = std::remove_cvref_t<decltype(values_of(type))>;
+    Values carried;
+    carried.reserve(origins(type).size() * width);
+    Index last_type = -1;
+    Values const* values = nullptr;
+    for (Origin const& origin : origins(type)) {
+      Index const old_type = origin.type < 0 ? static_cast<Index>(type) : origin.type;
+      if (old_type != last_type) {
+        auto const which = static_cast<std::size_t>(old_type);
+        values = &values_of(which);
+        check(values->size(), p_.old_elements[which] * width, "elements");
+        last_type = old_type;
+      }
+      auto const first = width * static_cast<std::size_t>(origin.element);
+      for (std::size_t k = 0; k < width; ++k)
+        carried.push_back(origin.child == Origin::merged ? merged_value(*values, origin, width, k)
+                                                         : (*values)[first + k]);
+    }
+    return carried;
   }
   template <class V>
   V merged_value(std::vector<V> const& values, Origin const& origin, std::size_t width,
@@ -277,6 +317,10 @@ class Transfer {
     }
     auto const& [whole, own] = p_.divided[*found];
     bool const backwards = runs_backwards(whole, facet);
+    if (own.size() == 1) {
+      parts.push_back(turned(own[0], backwards));
+      return;
+    }
     for (std::size_t k = 0; k < facet.corners(); ++k) {
       std::size_t corner = 0;
       while (whole[corner] != facet[k]) ++corner;

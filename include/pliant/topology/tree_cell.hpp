@@ -18,9 +18,10 @@ enum class CellNodes : std::uint8_t { corners, edges, all };
 /// A cell of a CellTree. A refined cell has its children at first_child, first_child + 1, ...
 struct TreeCell {
   CellKind kind = CellKind::triangle;
-  CellNodes has = CellNodes::corners;
-  bool mirrored = false;  ///< its element has the last two corners in the other order
-  int level = 0;          ///< 0 for the cells of the initial mesh
+  CellNodes has = CellNodes::corners;  ///< of a refined cell: when it was refined
+  CellNodes had = CellNodes::corners;  ///< of the initial mesh: what it had there
+  bool mirrored = false;               ///< its element has the last two corners in the other order
+  int level = 0;                       ///< 0 for the cells of the initial mesh
   Index parent = -1;
   Index first_child = -1;                                      ///< -1 for a leaf
   Index centre = -1;                                           ///< the node in the middle
@@ -35,6 +36,7 @@ struct TreeCell {
   static void for_each_member(Visit const& visit, R&... r) {
     visit("kind", r.kind...);
     visit("nodes it has", r.has...);
+    visit("nodes it had", r.had...);
     visit("mirrored", r.mirrored...);
     visit("level", r.level...);
     visit("parent", r.parent...);
@@ -52,9 +54,9 @@ struct TreeEdge {
   Index parent = -1;      ///< the edge of which it is a half
   Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
   int leaves = 0;         ///< of how many leaves it is a whole edge
+  int linear = 0;         ///< of how many of these that have corners only
   int refined = 0;        ///< of how many refined cells
   int level = 0;          ///< of the cells of which it is a whole edge
-  CellNodes has = CellNodes::corners;
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -63,9 +65,9 @@ struct TreeEdge {
     visit("parent", r.parent...);
     visit("first half", r.first_half...);
     visit("leaves", r.leaves...);
+    visit("linear leaves", r.linear...);
     visit("refined cells", r.refined...);
     visit("level", r.level...);
-    visit("nodes of its cells", r.has...);
   }
 };
 
@@ -79,7 +81,6 @@ struct TreeSide {
   Index first_child = -1;                      ///< of four
   Index first_inner_edge = -1;                 ///< of three in a triangle, four in a quadrilateral
   int level = 0;
-  CellNodes has = CellNodes::corners;
 
   [[nodiscard]] std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
   /// Its outline as a plane cell.
@@ -97,7 +98,6 @@ struct TreeSide {
     visit("first child", r.first_child...);
     visit("first inner edge", r.first_inner_edge...);
     visit("level", r.level...);
-    visit("nodes of its cells", r.has...);
   }
 };
 
@@ -114,11 +114,18 @@ struct TreeSizes {
   }
 };
 
-/// A node that a split made: where it lies on the cell that was split.
+/// A node that a split, or another degree, made: where it lies on the cell, and the nodes that the cell had then.
 struct PlacedNode {
   Index node = -1;
   Index cell = -1;
+  CellNodes had = CellNodes::corners;
   std::array<double, 3> place{};
+};
+
+/// Another degree for a leaf.
+struct CellConversion {
+  Index cell = -1;
+  CellNodes has = CellNodes::corners;
 };
 
 /// New numbers by old ones; −1: gone. What stays keeps its order.

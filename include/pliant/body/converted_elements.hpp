@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/element_table.hpp>
+#include <pliant/body/groups.hpp>
+#include <pliant/topology/plan.hpp>
+
+// What elements take along into another type: their group and the values that their law reads.
+namespace pliant::detail {
+
+template <class F, class G>
+inline constexpr bool same_law =
+    std::same_as<typename F::template law<double>, typename G::template law<double>>;
+
+/// Whether elements of one table may go over to another.
+template <class From, class To>
+inline constexpr bool are_convertible =
+    std::same_as<typename From::element::cell, typename To::element::cell> &&
+    From::element::degree != To::element::degree;
+
+/// The group that elements of a group of one table go to in another: the first of the same law, or the first of all.
+template <class From, class To>
+constexpr std::array<Tag, static_cast<std::size_t>(From::groups)> converted_groups() {
+  std::array<Tag, static_cast<std::size_t>(From::groups)> groups{};
+  auto const find = [&]<int G, int... H>(std::integral_constant<int, G>,
+                                         std::integer_sequence<int, H...>) {
+    bool found = false;
+    ((!found &&
+              same_law<typename From::template formulation<G>, typename To::template formulation<H>>
+          ? (found = true, groups[std::size_t{G}] = Tag{H})
+          : Tag{}),
+     ...);
+  };
+  [&]<int... G>(std::integer_sequence<int, G...>) {
+    (find(std::integral_constant<int, G>{}, std::make_integer_sequence<int, To::groups>()), ...);
+  }(std::make_integer_sequence<int, From::groups>());
+  return groups;
+}
+
+/// For each value that laws of a table read, its place among those of another table's groups of the same laws; −1 where
+/// there is none.
+template <class From, class To>
+std::vector<int> places_of_values() {
+  std::vector<int> places;
+  [&]<int... H>(std::integer_sequence<int, H...>) {
+    auto const find = [&]<class F>(F const*) {
+      constexpr int width = element_values<F>;
+      int first = -1, next = 0;
+      [&]<int... G>(std::integer_sequence<int, G...>) {
+        auto const look_at = [&]<class Other>(Other const*) {
+          if (first < 0 && same_law<F, Other>) first = next;
+          next += element_values<Other>;
+        };
+        (look_at(static_cast<typename From::template formulation<G> const*>(nullptr)), ...);
+      }(std::make_integer_sequence<int, From::groups>());
+      for (int k = 0; k < width; ++k) places.push_back(first < 0 ? -1 : first + k);
+    };
+    (find(static_cast<typename To::template formulation<H> const*>(nullptr)), ...);
+  }(std::make_integer_sequence<int, To::groups>());
+  return places;
+}
+
+/// The groups of the elements of a type on a new mesh, by the user's number.
+template <class Table, class Parts>
+std::vector<Tag> carried_groups(Parts const& parts, Transfer<Parts::dim> const& transfer,
+                                std::size_t type) {
+  std::vector<std::vector<Tag>> lists;
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using From = std::remove_cvref_t<decltype(table)>;
+    auto& own = lists.emplace_back();
+    if constexpr (std::same_as<From, Table>) {
+      own = user_groups<typename Table::element>(parts);
+    } else if constexpr (are_convertible<From, Table>) {
+      if (!transfer.comes_from(type, lists.size() - 1)) return;
+      own = user_groups<typename From::element>(parts);
+      constexpr auto to = converted_groups<From, Table>();
+      for (Tag& tag : own) tag = to[tag];
+    }
+  });
+  return transfer.carry_elements(lists, type);
+}
+
+/// Of all element types of a body.
+template <class Parts>
+ElementValues element_values_of(Parts const& parts) {
+  ElementValues values;
+  parts.for_each_type([&](auto const& to, auto const&) {
+    using To = std::remove_cvref_t<decltype(to)>;
+    values.widths.push_back(To::Laws::value_count);
+    auto& places = values.places.emplace_back();
+    parts.for_each_type([&](auto const& from, auto const&) {
+      using From = std::remove_cvref_t<decltype(from)>;
+      auto& own = places.emplace_back();
+      if constexpr (are_convertible<From, To>) own = places_of_values<From, To>();
+    });
+  });
+  return values;
+}
+
+}  // namespace pliant::detail

@@ -1,0 +1,151 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <pliant/topology/hierarchy.hpp>
+
+// Changes of the cells of a tree, and what must stay as it is.
+namespace pliant {
+
+/// What must stay where elements are merged: nodes, and facets that must not be merged in part.
+template <int Dim>
+struct KeptParts {
+  std::vector<Index> nodes;
+  std::vector<std::vector<Facet<Dim>> const*> facets;
+};
+
+namespace detail {
+
+/// What is to become of the cells of a tree, by their present numbers.
+struct CellChanges {
+  std::vector<Index> families, refine, lower;  // families: parents
+  std::vector<CellConversion> raise;
+
+  bool none() const { return families.empty() && refine.empty() && lower.empty() && raise.empty(); }
+};
+
+/// A change of the cells of a tree: families are merged and degrees lowered before cells are refined, and then degrees raised.
+template <int Dim>
+struct ChangedCells {
+  std::shared_ptr<Hierarchy<Dim>> tree;
+  Coarsening<Dim> coarsening;
+  Refinement<Dim> refinement;
+  Raising raising;
+  std::vector<Index> converted;  // cells of another degree, by their old numbers, ascending
+  std::size_t raised = 0;
+
+  /// The new number of a cell.
+  Index renumbered(Index c) const {
+    auto const& cells = coarsening.renumbered.cells;
+    return cells.empty() ? c : cells[static_cast<std::size_t>(c)];
+  }
+};
+
+/// Makes changes of cells. Those that are refined, or merged, are not raised.
+template <int Dim>
+ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& changes,
+                               RefinementLimits const& limits) {
+  ChangedCells<Dim> changed{std::make_shared<Hierarchy<Dim>>(before), {}, {}, {}, changes.lower, 0};
+  auto& tree = *changed.tree;
+  changed.coarsening = tree.merge(changes.families, changes.lower);
+  auto refine = changes.refine;
+  for (Index& c : refine) c = changed.renumbered(c);
+  changed.refinement = tree.refine(refine, limits);
+  std::vector<CellConversion> raise;
+  for (auto const& [old, has] : changes.raise) {
+    Index const c = changed.renumbered(old);
+    if (c < 0 || !tree.is_leaf(c)) continue;
+    raise.push_back({c, has});
+    changed.converted.push_back(old);
+  }
+  changed.raising = tree.raise(raise, limits);
+  changed.raised = raise.size();
+  std::ranges::sort(changed.converted);
+  return changed;
+}
+
+/// The nodes that go with a change and must stay, ascending.
+template <int Dim>
+std::vector<Index> lost_nodes(ChangedCells<Dim> const& changed, KeptParts<Dim> const& kept) {
+  std::vector<Index> lost, named = kept.nodes;
+  std::ranges::sort(named);
+  for (NewNode const& gone : changed.coarsening.gone)
+    if (std::ranges::binary_search(named, gone.node)) lost.push_back(gone.node);
+  return lost;
+}
+
+/// Of the families that a change merges, those that have to stay: which a refinement beside them would divide again, that
+/// lose a node that must stay, or of whose facets some list names a part of the whole only.
+template <int Dim>
+std::vector<Index> families_to_keep(Hierarchy<Dim> const& before,
+                                    std::vector<Index> const& families,
+                                    ChangedCells<Dim> const& changed, KeptParts<Dim> const& kept) {
+  if (families.empty()) return {};
+  auto const lost = lost_nodes(changed, kept);
+  std::vector<Facet<Dim>> cut;
+  if (!kept.facets.empty()) {
+    Transfer<Dim> const facets({.merged = changed.coarsening.facets});
+    for (auto const* list : kept.facets) {
+      auto const own = facets.cut_facets(*list);
+      cut.insert(cut.end(), own.begin(), own.end());
+    }
+  }
+  auto split_again = changed.refinement.parents;
+  std::ranges::sort(split_again);
+
+  auto const has_to_stay = [&](Index parent) {
+    auto const& cell = before.cell(parent);
+    for (Index c = cell.first_child;
+         !(lost.empty() && cut.empty()) && c < cell.first_child + cell.pattern().children; ++c) {
+      auto const nodes = before.tree().nodes_of(c);
+      auto const has = [&](Index node) { return std::ranges::find(nodes, node) != nodes.end(); };
+      for (Index node : nodes)
+        if (std::ranges::binary_search(lost, node)) return true;
+      for (auto const& facet : cut)
+        if (std::ranges::all_of(facet, has)) return true;
+    }
+    return std::ranges::binary_search(split_again, changed.renumbered(parent));
+  };
+  std::vector<Index> keep;
+  std::ranges::copy_if(families, std::back_inserter(keep), has_to_stay);
+  return keep;
+}
+
+/// Of the cells that a change lowers, those that have to keep their degree: which are refined beside others, or have a node
+/// that must stay. Ascending.
+template <int Dim>
+std::vector<Index> lowered_to_keep(Hierarchy<Dim> const& before, std::vector<Index> const& lowered,
+                                   ChangedCells<Dim> const& changed, KeptParts<Dim> const& kept) {
+  if (lowered.empty()) return {};
+  auto const lost = lost_nodes(changed, kept);
+  auto const has_to_stay = [&](Index c) {
+    if (!changed.tree->is_leaf(changed.renumbered(c))) return true;
+    return !lost.empty() && std::ranges::any_of(before.tree().nodes_of(c), [&](Index node) {
+      return std::ranges::binary_search(lost, node);
+    });
+  };
+  std::vector<Index> keep;
+  std::ranges::copy_if(lowered, std::back_inserter(keep), has_to_stay);
+  std::ranges::sort(keep);
+  return keep;
+}
+
+/// Takes back what has to stay as it is; whether something does.
+template <int Dim>
+bool take_back(Hierarchy<Dim> const& before, CellChanges& changes, ChangedCells<Dim> const& changed,
+               KeptParts<Dim> const& kept) {
+  auto const keep = families_to_keep(before, changes.families, changed, kept);
+  std::erase_if(changes.families, [&](Index c) { return std::ranges::binary_search(keep, c); });
+  auto const stays = lowered_to_keep(before, changes.lower, changed, kept);
+  std::erase_if(changes.lower, [&](Index c) { return std::ranges::binary_search(stays, c); });
+  return !keep.empty() || !stays.empty();
+}
+
+}  // namespace detail
+
+}  // namespace pliant

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <tuple>
+#include <vector>
+
+#include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/hierarchy.hpp>
+
+// The element types of a mesh, by their place among them.
+namespace pliant {
+
+/// The number of an element type that no other takes the place of.
+inline constexpr std::size_t no_type = static_cast<std::size_t>(-1);
+
+namespace detail {
+
+template <class E, class M>
+struct ConvertedType;
+template <class E, Element... Es>
+struct ConvertedType<E, Mesh<Es...>> {
+  template <class Other>
+  static constexpr bool takes_over =
+      std::same_as<typename E::cell, typename Other::cell> && E::degree != Other::degree;
+  static constexpr std::size_t value = [] {
+    std::size_t found = no_type, at = 0;
+    ((found == no_type && takes_over<Es> ? found = at++ : at++), ...);
+    return found;
+  }();
+};
+
+}  // namespace detail
+
+/// The place among a mesh's types of the first on the same cell as E that is of another degree; no_type where there is none.
+template <class E, class M>
+inline constexpr std::size_t converted_type = detail::ConvertedType<E, M>::value;
+
+namespace detail {
+
+template <class M>
+inline constexpr bool can_be_refined = false;
+template <Element... Es>
+inline constexpr bool can_be_refined<Mesh<Es...>> = (Refinable<Es> && ...);
+
+template <Element E>
+bool is_cell_of(TreeCell const& cell) {
+  return cell.kind == kind_of<typename E::cell> && cell.has == nodes_on_cell<E>;
+}
+
+/// Calls visit(E{}, place of E among the mesh's types) for each element type.
+template <Element... Es, class Visit>
+void for_each_type_of(Mesh<Es...> const&, Visit const& visit) {
+  std::size_t type = 0;
+  (visit(Es{}, type++), ...);
+}
+
+template <class M, std::size_t Type>
+struct ElementOfType;
+template <Element... Es, std::size_t Type>
+struct ElementOfType<Mesh<Es...>, Type> : std::tuple_element<Type, std::tuple<Es...>> {};
+
+inline std::vector<Index> each_once(std::vector<Index> list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+/// How many elements there are, by type.
+template <Element... Es>
+std::vector<std::size_t> element_counts(Mesh<Es...> const& mesh) {
+  return {mesh.template elements<Es>().size()...};
+}
+
+}  // namespace detail
+
+}  // namespace pliant

@@ -1,0 +1,414 @@
+#pragma once
+
+#include <sstream>
+
+#include <pliant/mesh/with_types.hpp>
+
+#include "support/formulations.hpp"
+#include "support/repeatable.hpp"
+
+// Bodies of linear and quadratic elements side by side: degrees are raised and lowered, beside refinement.
+namespace pliant::test::degree_suite {
+
+template <Element Linear, int Points, Element Quadratic, int MorePoints>
+struct Pair {
+  using Low = Formulation<Linear, Gauss<Points>, NeoHookean>;
+  using High = Formulation<Quadratic, Gauss<MorePoints>, NeoHookean>;
+  using LowSoft = Formulation<Linear, Gauss<Points>, SaintVenantKirchhoff>;
+  using HighSoft = Formulation<Quadratic, Gauss<MorePoints>, SaintVenantKirchhoff>;
+  static constexpr int dim = Linear::dim;
+  template <class B>
+  using body_type = Body<B, Mesh<Linear, Quadratic>, Low, HighSoft, LowSoft, High>;
+
+  static Mesh<Linear, Quadratic> mesh() {
+    return mesh::with_types<Linear, Quadratic>(distorted_mesh<Linear>(dim == 2 ? 4 : 3));
+  }
+  template <class B>
+  static body_type<B> body(B const& backend) {
+    return body_type<B>(backend, mesh(), soft, Group<Low>{}, Group<HighSoft>{}, Group<LowSoft>{},
+                        Group<High>{});
+  }
+};
+using Plane = List<Pair<Tri3, 1, Tri6, 2>, Pair<Quad4, 2, Quad9, 3>, Pair<Quad4, 2, Quad8, 3>>;
+using All = List<Pair<Tri3, 1, Tri6, 2>, Pair<Quad4, 2, Quad9, 3>, Pair<Quad4, 2, Quad8, 3>,
+                 Pair<Tet4, 1, Tet10, 2>, Pair<Hex8, 2, Hex27, 3>, Pair<Hex8, 2, Hex20, 3>>;
+using Few = List<Pair<Tri3, 1, Tri6, 2>, Pair<Hex8, 2, Hex27, 3>>;
+template <class B>
+using pairs_on = std::conditional_t<std::same_as<B, MainBackend>, All, Few>;
+
+/// Calls visit(B{}, pair): all pairs on the main backend, two on the others.
+template <class Bs, class Visit>
+void on_pairs(Visit const& visit) {
+  [&]<class... B>(std::tuple<B...> const*) {
+    ([&]<class... P>(B const& backend, List<P...>) { (visit(backend, P{}), ...); }(B{},
+                                                                                   pairs_on<B>{}),
+     ...);
+  }(static_cast<Bs const*>(nullptr));
+}
+
+template <std::size_t Type, class TheBody>
+auto const& elements(TheBody const& body) {
+  return std::get<Type>(body.mesh().tables);
+}
+template <class TheBody>
+std::vector<std::vector<Index>> some(TheBody const& body, std::size_t one_in, Random& random,
+                                     std::size_t type_wanted) {
+  std::vector<std::vector<Index>> lists(2);
+  std::size_t const counts[] = {elements<0>(body).size(), elements<1>(body).size()};
+  for (std::size_t type = 0; type < 2; ++type)
+    for (Index e = 0; e < static_cast<Index>(counts[type]); ++e)
+      if ((type_wanted == 2 || type == type_wanted) && random.below(one_in) == 0)
+        lists[type].push_back(e);
+  return lists;
+}
+template <class TheBody>
+std::vector<std::vector<Index>> all(TheBody const& body, std::size_t type_wanted) {
+  Random random(1);
+  return some(body, 1, random, type_wanted);
+}
+/// Raises, refines, lowers and merges at random.
+template <class TheBody>
+void change(TheBody& body, Random& random) {
+  raise(body, some(body, TheBody::dim == 3 ? 6 : 8, random, 0), {.ring = 1});
+  refine(body, some(body, TheBody::dim == 3 ? 4 : 3, random, 2), 3);
+  raise(body, some(body, 6, random, 0));
+  refine(body, some(body, TheBody::dim == 3 ? 16 : 5, random, 2), 3);
+  lower(body, some(body, 4, random, 1));
+  coarsen(body, some(body, 1 + random.below(1), random, 2));
+  raise(body, some(body, 9, random, 0), {.ring = 1});
+  refine(body, some(body, TheBody::dim == 3 ? 16 : 5, random, 2), 3);
+  lower(body, some(body, 9, random, 1));
+}
+/// Back to the mesh of the beginning.
+template <class TheBody>
+void undo(TheBody& body) {
+  do lower(body, all(body, 1));
+  while (coarsen(body, all(body, 2)).merged > 0);
+}
+template <int Dim>
+Tensor<double, Dim> some_gradient() {
+  auto h = Tensor<double, Dim>::zero();
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j)
+      h(i, j) = 0.03 * (1 + i) - 0.05 * j + (i == j ? 0.04 : 0.02 * i * j);
+  return h;
+}
+template <class TheBody>
+Point<TheBody::dim> momentum(TheBody& body) {
+  auto p = body.velocities();
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
+  return total(p);
+}
+
+TEST_CASE("a mesh of mixed degrees passes the patch test", "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    constexpr int dim = P::dim;
+    auto body = P::body(backend);
+    Random random(5);
+    change(body, random);
+    auto const& mesh = body.mesh();
+    REQUIRE(elements<0>(body).size() > 0);
+    REQUIRE(elements<1>(body).size() > 0);
+    REQUIRE_FALSE(mesh.slaves.empty());
+    CHECK(total_mass(body) == Approx(soft.density).epsilon(1e-13));
+
+    // Both types go by the same law.
+    std::vector<Index> every(elements<0>(body).size());
+    for (std::size_t e = 0; e < every.size(); ++e) every[e] = static_cast<Index>(e);
+    body.template assign<typename P::Low>(every);
+    every.resize(elements<1>(body).size());
+    for (std::size_t e = 0; e < every.size(); ++e) every[e] = static_cast<Index>(e);
+    body.template assign<typename P::High>(every);
+    auto const h = some_gradient<dim>();
+    auto const f = forces_at(body, uniform(mesh.nodes, h));
+
+    double inside = 0;
+    std::vector<bool> outside(mesh.nodes.size(), false);
+    for (auto const& [name, facets] : mesh.boundaries)
+      for (Index i : nodes_of(facets)) outside[static_cast<std::size_t>(i)] = true;
+    for (std::size_t i = 0; i < f.size(); ++i)
+      for (double x : f[i])
+        if (!outside[i]) inside = std::max(inside, std::abs(x));
+    CHECK(inside < 1e-13);
+    CHECK(strain_energy(body) ==
+          Approx(energy_density(law_at_a_point<typename P::Low>(body), h)).epsilon(1e-12));
+  });
+}
+
+/// The displacement at a point of an element.
+template <Element E, class M>
+Point<E::dim> at_place(M const& mesh, FieldOf<E::dim> const& u, Connectivity<E> const& nodes,
+                       Vector<double, E::dim> const& xi, FieldOf<E::dim>& places) {
+  auto const shape = E::shape(xi);
+  Point<E::dim> value{}, place{};
+  for (int a = 0; a < E::nodes; ++a)
+    for (std::size_t k = 0; k < E::dim; ++k) {
+      auto const node = static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)]);
+      value[k] += shape[a] * u[node][k];
+      place[k] += shape[a] * mesh.nodes[node][k];
+    }
+  places.push_back(place);
+  return value;
+}
+
+TEST_CASE("displacements of mixed degrees are continuous", "[topology]") {
+  // At all places of a grid on the sides of each element: where such places of others coincide, they agree, and the
+  // places of fine elements are among those of coarse ones.
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    constexpr int dim = P::dim;
+    for (unsigned seed : {3u, 4u}) {
+      auto body = P::body(backend);
+      Random random(seed);
+      change(body, random);
+      body.set_displacements(random.field<dim>(body.mesh().nodes.size(), 1));
+      auto const u = body.displacements();
+      auto const& mesh = body.mesh();
+      FieldOf<dim> places, values;
+      auto const look_at = [&]<Element E>(E, std::vector<Connectivity<E>> const& list) {
+        constexpr int n = 16;  // of the coarsest; levels up to 3
+        bool const simplex = SimplexCell<typename E::cell>;
+        for (auto const& nodes : list)
+          for (int i = 0; i <= n; ++i)
+            for (int j = 0; j <= n; ++j)
+              for (int k = 0; k <= (dim == 3 ? n : 0); ++k) {
+                bool const edge = i == 0 || j == 0 || i == n || j == n ||
+                                  (dim == 3 && (k == 0 || k == n)) || (simplex && i + j + k == n);
+                if (!edge || (simplex && i + j + k > n)) continue;
+                Vector<double, dim> xi;
+                int const ijk[] = {i, j, k};
+                for (int d = 0; d < dim; ++d)
+                  xi[d] = simplex ? ijk[d] / double(n) : 2 * ijk[d] / double(n) - 1;
+                values.push_back(at_place<E>(mesh, u, nodes, xi, places));
+              }
+      };
+      look_at(typename P::Low::element{}, elements<0>(body));
+      look_at(typename P::High::element{}, elements<1>(body));
+      std::map<std::array<long, 3>, Point<dim>> seen;
+      double worst = 0;
+      std::size_t met = 0;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        std::array<long, 3> key{};
+        for (std::size_t k = 0; k < dim; ++k) key[k] = std::lround(places[i][k] * 1e9);
+        auto const [at, is_new] = seen.emplace(key, values[i]);
+        if (is_new) continue;
+        ++met;
+        for (std::size_t k = 0; k < dim; ++k)
+          worst = std::max(worst, std::abs(at->second[k] - values[i][k]));
+      }
+      CHECK(met > places.size() / 20);
+      CHECK(worst < 1e-12);
+    }
+  });
+}
+
+TEST_CASE("raised elements are of their degree where all around them are", "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    auto body = P::body(backend);
+    auto const report = raise(body, {{0}, {}});
+    CHECK(report.raised == 1);
+    CHECK(elements<1>(body).size() == 1);
+    auto const& quadratic = elements<1>(body)[0];
+    // Alone it gains nothing but what is inside of it and on the boundary.
+    std::vector<Index> hanging;
+    for (auto const& slave : body.mesh().slaves) hanging.push_back(slave.node);
+    CHECK_FALSE(hanging.empty());
+    std::size_t middles = 0;
+    for (std::size_t a = 0; a < quadratic.size(); ++a)
+      middles += std::ranges::count(hanging, quadratic[a]) > 0;
+    CHECK(middles == hanging.size());
+
+    auto with_ring = P::body(backend);
+    auto const ring = raise(with_ring, {{0}, {}}, {.ring = 1});
+    CHECK(ring.raised > 1);
+    // None of the first one's own nodes hangs; it is the one with that place among the corners.
+    auto const corners = elements<0>(P::body(backend))[0];
+    std::size_t found = 0;
+    for (auto const& nodes : elements<1>(with_ring)) {
+      if (!std::ranges::equal(corners, std::span(nodes).first(corners.size()))) continue;
+      ++found;
+      for (auto const& slave : with_ring.mesh().slaves)
+        CHECK(std::ranges::count(nodes, slave.node) == 0);
+    }
+    CHECK(found == 1);
+    raise(with_ring, all(with_ring, 0));
+    CHECK(elements<0>(with_ring).empty());
+    CHECK(with_ring.mesh().slaves.empty());
+  });
+}
+
+TEST_CASE("fields, momentum and energy are kept when degrees change, and the mesh comes back",
+          "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    constexpr int dim = P::dim;
+    auto body = P::body(backend);
+    auto const mesh = body.mesh();
+    Random random(8);
+    auto const u = uniform(mesh.nodes, some_gradient<dim>());
+    body.set_displacements(u);
+    body.set_velocities(random.field<dim>(mesh.nodes.size(), 1));
+    auto const before = momentum(body);
+    double const energy = strain_energy(body);
+
+    change(body, random);
+
+    auto const expected = uniform(body.mesh().nodes, some_gradient<dim>());
+    CHECK(difference(body.displacements(), expected) < 1e-14);
+    CHECK(strain_energy(body) == Approx(energy).epsilon(1e-12));
+    auto const mixed = momentum(body);
+    for (std::size_t k = 0; k < dim; ++k) CHECK(mixed[k] == Approx(before[k]).margin(1e-13));
+    auto const& mass = body.parts().layout.mass_list;
+    std::vector<bool> hangs(mass.size(), false);
+    for (auto const& slave : body.mesh().slaves) hangs[static_cast<std::size_t>(slave.node)] = true;
+    for (std::size_t i = 0; i < mass.size(); ++i) CHECK((hangs[i] ? mass[i] == 0 : mass[i] > 0));
+
+    undo(body);
+
+    CHECK(body.displacements() == u);
+    auto const after = momentum(body);
+    for (std::size_t k = 0; k < dim; ++k) CHECK(after[k] == Approx(before[k]).margin(1e-13));
+    CHECK(body.mesh().nodes == mesh.nodes);
+    CHECK(body.mesh().tables == mesh.tables);
+    CHECK(body.mesh().boundaries == mesh.boundaries);
+    CHECK(body.mesh().slaves.empty());
+
+    Point<dim> v{};
+    for (std::size_t k = 0; k < dim; ++k) v[k] = 0.3 - 0.7 * static_cast<double>(k);
+    body.set_velocities(FieldOf<dim>(mesh.nodes.size(), v));
+    change(body, random);
+    for (auto const& own : body.velocities()) CHECK(own == v);
+    undo(body);
+    for (auto const& own : body.velocities()) CHECK(own == v);
+  });
+}
+
+TEST_CASE("raised elements go to the group of their law", "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    auto body = P::body(backend);
+    body.template assign<typename P::LowSoft>({1});
+    raise(body, {{0, 1, 2}, {}});
+    using Quadratic = typename P::High::element;
+    CHECK(body.template groups_of<Quadratic>() == std::vector<Tag>{1, 0, 1});
+    lower(body, {{}, {0, 1}});
+    CHECK(body.template groups_of<Quadratic>() == std::vector<Tag>{1});
+    using Linear = typename P::Low::element;
+    auto const groups = body.template groups_of<Linear>();
+    CHECK(groups[0] == 0);
+    CHECK(groups[1] == 1);
+  });
+}
+
+TEST_CASE("conditions, pressures and loads go along with degrees", "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    constexpr int dim = P::dim;
+    auto body = P::body(backend);
+    auto const mesh = body.mesh();
+    body.clamp(mesh.boundary("left"));
+    body.press(mesh.boundary("right"), 0.25);
+    auto const pressure = total(body.forces());
+    raise(body, all(body, 0));
+    auto const corners = mesh.boundary("left")[0].size();
+    for (auto const& facet : body.mesh().boundary("left")) CHECK(facet.size() > corners);
+    CHECK(body.state().prescribed->conditions[0].nodes == nodes_of(body.mesh().boundary("left")));
+    CHECK(body.state().prescribed->pressures[0].facets == body.mesh().boundary("right"));
+    auto const now = total(body.forces());
+    for (std::size_t k = 0; k < dim; ++k) CHECK(now[k] == Approx(pressure[k]).margin(1e-13));
+
+    Point<dim> load{};
+    load[1] = 0.125;
+    body.set_load(body.nodes() - 1, load);  // a node between corners
+    lower(body, all(body, 1));
+    CHECK(body.mesh().boundaries == mesh.boundaries);
+    CHECK(body.state().prescribed->conditions[0].nodes == nodes_of(mesh.boundary("left")));
+    Point<dim> sum{};
+    for (auto const& own : nodal_loads(body))
+      for (std::size_t k = 0; k < dim; ++k) sum[k] += own[k];
+    for (std::size_t k = 0; k < dim; ++k) CHECK(sum[k] == Approx(load[k]).margin(1e-15));
+
+    // A node that a condition names stays.
+    raise(body, all(body, 0));
+    std::vector<Index> const named{body.nodes() - 1};
+    body.clamp(named);
+    CHECK(lower(body, all(body, 1)).lowered > 0);
+    REQUIRE(elements<1>(body).size() > 0);
+    auto const& held = body.state().prescribed->conditions[1].nodes;
+    REQUIRE(held.size() == 1);
+    for (auto const& nodes : elements<1>(body)) CHECK(std::ranges::count(nodes, held[0]) == 1);
+  });
+}
+
+TEST_CASE("quadratic meshes are lowered, and their nodes keep their numbers", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using Low = Formulation<Hex8, Gauss<2>, NeoHookean>;
+    using High = Formulation<Hex27, Gauss<3>, NeoHookean>;
+    auto const mesh = mesh::with_types<Hex8, Hex27>(distorted_mesh<Hex27>(3));
+    Body body(backend, mesh, soft, Group<Low>{}, Group<High>{});
+    auto const u = uniform(mesh.nodes, some_gradient<3>());
+    body.set_displacements(u);
+    double const energy = strain_energy(body);
+    CHECK(lower(body, {{}, {0, 3, 4}}).lowered == 3);
+    CHECK(body.mesh().nodes == mesh.nodes);
+    CHECK(strain_energy(body) == Approx(energy).epsilon(1e-12));
+    refine(body, {{1}, {2}});
+    Random random(4);
+    change(body, random);
+    CHECK(difference(body.displacements(), uniform(body.mesh().nodes, some_gradient<3>())) < 1e-14);
+    while (coarsen(body, all(body, 2)).merged > 0 || raise(body, all(body, 0)).raised > 0) {
+    }
+    CHECK(body.mesh().nodes == mesh.nodes);
+    CHECK(body.mesh().tables == mesh.tables);
+    CHECK(body.mesh().boundaries == mesh.boundaries);
+    CHECK(body.mesh().slaves.empty());
+    CHECK(difference(body.displacements(), u) < 1e-14);
+  });
+}
+
+TEST_CASE("a body of mixed degrees steps, saves and resumes", "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    constexpr int dim = P::dim;
+    auto const run = [](auto& body, int steps) {
+      CentralDifference step({.step = 1e-3});
+      step(body, steps);
+    };
+    auto body = P::body(backend);
+    Random random(12);
+    body.set_velocities(random.field<dim>(body.mesh().nodes.size(), 0.1));
+    change(body, random);
+    run(body, 5);
+    std::stringstream file;
+    body.save(file);
+    auto other = P::body(backend);
+    other.load(file);
+    for (auto* own : {&body, &other}) {
+      run(*own, 3);
+      undo(*own);
+      run(*own, 3);
+    }
+    CHECK(body.mesh().nodes == other.mesh().nodes);
+    CHECK(body.mesh().tables == other.mesh().tables);
+    for (auto const& x : body.displacements())
+      for (double y : x) CHECK(std::isfinite(y));
+    CHECK(difference(body.displacements(), other.displacements()) <= between_runs(1e-14));
+  });
+}
+
+TEST_CASE("degrees that cannot change are refused", "[topology][errors]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    using P = Pair<Tri3, 1, Tri6, 2>;
+    auto body = P::body(backend);
+    raise(body, {{0}, {}});
+    auto const nodes = body.mesh().nodes;
+    CHECK_THROWS_WITH(raise(body, {{}, {0}}), says("Tri6 elements are of degree 2"));
+    CHECK_THROWS_WITH(lower(body, {{0}, {}}), says("Tri3 elements are of degree 1"));
+    CHECK_THROWS_WITH(raise(body, {{99}, {}}), says("no Tri3 element 99"));
+    CHECK_THROWS_WITH(raise(body, {{0}}), says("1 element types, but the mesh has 2"));
+    CHECK_THROWS_WITH(raise(body, {{0}, {}}, {.ring = -1}), says("a ring of -1"));
+    set_mesh_limits(body, {.nodes = nodes.size() + 1});
+    CHECK_THROWS_WITH(raise(body, {{0, 1, 2, 3}, {}}), says("the limit is"));
+    CHECK(body.mesh().nodes == nodes);
+    auto plain = body_of<typename P::Low>(backend, distorted_mesh<Tri3>(2));
+    CHECK_THROWS_WITH(raise(plain, {{0}}), says("no element type of another degree"));
+  });
+}
+
+}  // namespace pliant::test::degree_suite
