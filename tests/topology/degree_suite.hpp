@@ -392,6 +392,52 @@ TEST_CASE("a body of mixed degrees steps, saves and resumes", "[topology]") {
   });
 }
 
+TEST_CASE("rules raise, refine, lower and merge by criteria", "[topology]") {
+  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+    auto body = P::body(backend);
+    auto const mesh = body.mesh();
+    using Low = typename P::Low;
+    using High = typename P::HighSoft;  // in which raised elements of Low are not
+    using Raised = typename P::High;
+    Adaptation adapt{when<Low>(StrainNorm{}).above(0.02).raise({.ring = 1}),
+                     when<Raised>(StrainNorm{}).above(0.2).refine({.max_level = 1}),
+                     when<Raised>(StrainNorm{}).below(0.01).lower(),
+                     when<Raised>(StrainNorm{}).below(0.01).coarsen(),
+                     when<Low>(StrainNorm{}).below(0.01).coarsen()};
+    auto const stretch = [&](double amount) {
+      FieldOf<P::dim> u;
+      for (auto const& x : body.mesh().nodes) {
+        auto& own = u.emplace_back();
+        own[0] = amount * std::max(x[0] - 0.5, 0.0);
+      }
+      body.set_displacements(u);
+    };
+    stretch(0.001);
+    adapt.now(body);
+    CHECK(body.mesh().tables == mesh.tables);
+    stretch(0.05);
+    adapt.now(body);
+    auto const raised = elements<1>(body).size();
+    CHECK(raised > 0);
+    CHECK(elements<0>(body).size() > 0);
+    CHECK(elements<0>(body).size() + raised == elements<0>(P::body(backend)).size());
+    CHECK(std::ranges::count(body.template groups_of<typename High::element>(), Tag{0}) == 0);
+    stretch(0.5);
+    adapt.now(body);
+    CHECK(elements<1>(body).size() > raised);
+    stretch(0);
+    for (int k = 0; k < 4; ++k) adapt.now(body);
+    CHECK(body.mesh().nodes == mesh.nodes);
+    CHECK(body.mesh().tables == mesh.tables);
+    std::string actions;
+    for (auto const& entry : ledger(body)) actions += entry.action + ", ";
+    CHECK(actions.find("raise") != std::string::npos);
+    CHECK(actions.find("lower") != std::string::npos);
+    CHECK_THROWS_WITH(when<Low>(StrainNorm{}).above(1).raise({.ring = -1}), says("ring of -1"));
+    CHECK_THROWS_WITH(when<Raised>(StrainNorm{}).below(1).stay(2).lower(), says("no stay"));
+  });
+}
+
 TEST_CASE("degrees that cannot change are refused", "[topology][errors]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     using P = Pair<Tri3, 1, Tri6, 2>;

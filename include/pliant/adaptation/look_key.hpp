@@ -29,6 +29,8 @@ void name_marking(std::string& text, TheRule const& rule) {
   add_bytes(text, marking.budget);
   if constexpr (SwitchingRule<TheRule>) add_bytes(text, std::int64_t{rule.stay});
   if constexpr (RefiningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.max_level});
+  if constexpr (CoarseningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.min_level});
+  if constexpr (RaisingRule<TheRule>) add_bytes(text, std::int64_t{rule.options.ring});
 }
 template <class TheRule>
 void name_choice(std::string& text, TheRule const& rule) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <pliant/adaptation/family_momentum.hpp>
+#include <pliant/adaptation/rule.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/change_topology.hpp>
 #include <pliant/topology/plan.hpp>
@@ -167,10 +168,6 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   tell_listeners(body.parts(), *plan);
   return {plan->merged, plan->transfer.gone().size()};
 }
-
-struct RaiseOptions {
-  int ring = 0;  ///< so many rings of neighbours, across edges, are raised along
-};
 
 /// Gives linear elements of a body the degree two: they become elements of the mesh's quadratic type on the same cell (Tri3
 /// Tri6, Quad4 Quad8 or Quad9, Tet4 Tet10, Hex8 Hex20 or Hex27), which the mesh names, with no elements or some, and of

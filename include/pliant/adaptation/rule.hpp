@@ -42,6 +42,28 @@ struct CoarsenRule {
   CoarsenOptions options;
 };
 
+struct RaiseOptions {
+  int ring = 0;  // so many rings of neighbours, across edges, are raised along
+};
+
+/// Linear elements of From that a criterion marks become quadratic, as by raise.
+template <class From, class C>
+struct RaiseRule {
+  using from = From;
+  C criterion;
+  Marking marking;
+  RaiseOptions options;
+};
+
+/// Quadratic elements of From that a criterion marks become linear, as by lower.
+template <class From, class C>
+struct LowerRule {
+  using from = From;
+  static constexpr bool lowers = true;
+  C criterion;
+  Marking marking;
+};
+
 struct SleepOptions {
   double below;  // m/s
   std::int64_t for_steps = 64;
@@ -78,9 +100,15 @@ template <class R>
 concept CoarseningRule = detail::MarksElements<R> && requires(R const& rule) {
   { rule.options.min_level } -> std::convertible_to<int>;
 };
+template <class R>
+concept RaisingRule = detail::MarksElements<R> && requires(R const& rule) {
+  { rule.options.ring } -> std::convertible_to<int>;
+};
+template <class R>
+concept LoweringRule = detail::MarksElements<R> && R::lowers;
 /// Changes the mesh.
 template <class R>
-concept MeshRule = RefiningRule<R> || CoarseningRule<R>;
+concept MeshRule = RefiningRule<R> || CoarseningRule<R> || RaisingRule<R> || LoweringRule<R>;
 /// Puts patches to sleep that are at rest, whatever their formulation; `sleep` makes one.
 template <class R>
 concept SleepingRule = requires(R const& rule) {

@@ -10,6 +10,8 @@
 //   when<Linear>(RecoveredStress{}).bulk(0.5).refine({.max_level = 6})
 //   when<Linear>(all(VonMises{} > 1e5, Rotation{} < 0.1)).holds().become<Nonlinear>()
 //   when<Linear>(RecoveredStress{}).below(1e-6).coarsen()
+//   when<Linear>(RecoveredStress{}).bulk(0.5).raise({.ring = 1})
+//   when<Quadratic>(RecoveredStress{}).below(1e-6).lower()
 //   sleep({.below = 1e-3, .for_steps = 64})
 namespace pliant {
 
@@ -63,8 +65,7 @@ class Marked {
   auto refine(RefineOptions options = {}) const {
     static_assert(Refinable<typename From::element>,
                   "refine: available for the catalogue's elements, pyramids aside");
-    if (stay_ != 0)
-      throw Error("strategy: refine has no stay; use stay with become, or check less often");
+    check_no_stay("refine");
     if (options.max_level < 0)
       throw Error("strategy: a max_level of ", options.max_level, "; give at least 0");
     return RefineRule<From, C>{criterion_, marking_, options};
@@ -73,14 +74,33 @@ class Marked {
   auto coarsen(CoarsenOptions options = {}) const {
     static_assert(Refinable<typename From::element>,
                   "coarsen: available for the catalogue's elements, pyramids aside");
-    if (stay_ != 0)
-      throw Error("strategy: coarsen has no stay; use stay with become, or check less often");
+    check_no_stay("coarsen");
     if (options.min_level < 0)
       throw Error("strategy: a min_level of ", options.min_level, "; give at least 0");
     return CoarsenRule<From, C>{criterion_, marking_, options};
   }
+  /// See raise. Of elements that another rule refines in the same look, these are divided.
+  auto raise(RaiseOptions options = {}) const {
+    static_assert(From::element::degree == 1 && Refinable<typename From::element>,
+                  "raise: for linear elements, pyramids aside");
+    check_no_stay("raise");
+    if (options.ring < 0)
+      throw Error("strategy: a ring of ", options.ring, "; give the number of rings, 0 or more");
+    return RaiseRule<From, C>{criterion_, marking_, options};
+  }
+  /// See lower. Elements that another rule refines in the same look keep their degree.
+  auto lower() const {
+    static_assert(From::element::degree == 2, "lower: for quadratic elements");
+    check_no_stay("lower");
+    return LowerRule<From, C>{criterion_, marking_};
+  }
 
  private:
+  void check_no_stay(char const* action) const {
+    if (stay_ != 0)
+      throw Error("strategy: ", action, " has no stay; use stay with become, or check less often");
+  }
+
   C criterion_;
   Marking marking_;
   long stay_ = 0;

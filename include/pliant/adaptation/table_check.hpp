@@ -30,7 +30,7 @@ auto rules_on(std::tuple<Rules...> const& rules) {
 }
 
 /// One check of one element type: `decide` evaluates all criteria and changes nothing that a user
-/// sees, `act` moves elements between groups, `mark` lists those to refine and to coarsen. None waits for the
+/// sees, `act` moves elements between groups, `mark` lists those to refine, to coarsen, to raise and to lower. None waits for the
 /// backend, `mark` aside.
 template <class Parts, class Table, class Elements, class Rules>
 class TableCheck;
@@ -50,6 +50,11 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
   static_assert(count <= 32, "an Adaptation has at most 32 rules for one element type");
   static_assert((has_target<Table, Rules> && ...),
                 "a rule names a formulation of which the body has no Group");
+  static_assert(
+      ((!RaisingRule<Rules> && !LoweringRule<Rules>)&&...) ||
+          converted_type<typename Table::element, typename Parts::mesh_type> != no_type,
+      "a rule raises or lowers, but the body's mesh has no element type of another degree "
+      "on that cell");
 
  public:
   TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules)
@@ -96,29 +101,48 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (switches) this->count_those_stiffened(allowance);
   }
 
-  /// Adds a list of the elements that rules want refined, and one of those that rules would merge and none refines, by
-  /// the user's number; `max_level` grows to the rules'.
+  /// Adds lists of the elements that rules want refined; raised, and not refined; and merged or lowered, and neither, by
+  /// the user's number. `max_level` grows to the rules'.
   void mark(MarkedElements& marked, int& max_level) const {
     auto& refine = marked.refine.emplace_back();
     auto& coarsen = marked.coarsen.emplace_back();
+    auto& raise = marked.raise.emplace_back();
+    auto& lower = marked.lower.emplace_back();
     if constexpr (changes_mesh) {
       auto const decision = this->decision();
       if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return MeshRule<R>; });
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
-      std::uint32_t refining = 0;  // bits of rules
+      std::uint32_t refining = 0, raising = 0, lowering = 0, coarsening = 0;  // bits of rules
       int r = 0;
       auto const look_at = [&]<class R>(R const& rule) {
+        std::uint32_t const bit = std::uint32_t{1} << r++;
         if constexpr (RefiningRule<R>) {
-          refining |= std::uint32_t{1} << r;
+          refining |= bit;
           max_level = std::max(max_level, rule.options.max_level);
+        } else if constexpr (CoarseningRule<R>) {
+          coarsening |= bit;
+        } else if constexpr (RaisingRule<R>) {
+          raising |= bit;
+          marked.raised_rings = std::max(marked.raised_rings, rule.options.ring);
+        } else if constexpr (LoweringRule<R>) {
+          lowering |= bit;
         }
-        ++r;
       };
       std::apply([&](auto const&... rule) { (look_at(rule), ...); }, rules_.rules);
       auto const masks = download<std::uint32_t>(workspace().mesh_marks);
-      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
-        if (masks[e] != 0)
-          ((masks[e] & refining) != 0 ? refine : coarsen).push_back(table_.user_element[e]);
+      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e) {
+        auto const mask = masks[e];
+        if (mask == 0) continue;
+        Index const element = table_.user_element[e];
+        if ((mask & refining) != 0) {
+          refine.push_back(element);
+        } else if ((mask & raising) != 0) {
+          raise.push_back(element);
+        } else {
+          if ((mask & coarsening) != 0) coarsen.push_back(element);
+          if ((mask & lowering) != 0) lower.push_back(element);
+        }
+      }
     }
   }
   /// Keeps what `act` changes, and puts it back.
