@@ -87,6 +87,66 @@ struct Plane {
   }
 };
 
+/// Linear and quadratic elements of two laws, whose degrees go up and down beside refinement.
+template <Backend B, Element E, Element Quadratic>
+struct Degrees {
+  using Low = Formulation<E, Gauss<E::cell::corners == E::dim + 1 ? 1 : 2>, SaintVenantKirchhoff>;
+  using High =
+      Formulation<Quadratic, Gauss<E::cell::corners == E::dim + 1 ? 2 : 3>, SaintVenantKirchhoff>;
+  using HighRubber = Formulation<Quadratic, typename High::quadrature, NeoHookean>;
+  using body_type = Body<B, Mesh<E, Quadratic>, Low, High, HighRubber>;
+
+  B backend{};
+  unsigned seed = 1;
+  int cells = 4;  // along an edge
+
+  body_type body() const {
+    body_type made{
+        backend,       mesh::with_types<E, Quadratic>(test::distorted_mesh<E>(cells, seed)),
+        soft,          Group<Low>{},
+        Group<High>{}, Group<HighRubber>{}};
+    set_mesh_limits(made, {.nodes = static_cast<std::size_t>(30 * cells * cells)});
+    return made;
+  }
+  void switch_groups(body_type& body) const {
+    static Adaptation rules =
+        Adaptation{when<High>(Rotation{}).above(0.02).template become<HighRubber>(),
+                   when<HighRubber>(Rotation{}).below(0.01).template become<High>()}
+            .every(5);
+    rules(body);
+  }
+  void make_finer(body_type& body) const {
+    static Adaptation degrees =
+        Adaptation{when<Low>(StrainNorm{}).top_share(0.05).raise({.ring = 1}),
+                   when<High>(StrainNorm{}).below(0.001).lower()}
+            .every(40);
+    if (body.nodes() < static_cast<Index>(15 * cells * cells)) degrees(body);
+  }
+  void refine(body_type& body, unsigned seed_of_marks) const {
+    test::Random random(seed_of_marks);
+    switch (random.below(4)) {
+      case 0:
+        pliant::coarsen(body, {most_of<E>(body, random), most_of<Quadratic>(body, random)});
+        break;
+      case 1:
+        pliant::raise(body, {some_of<E>(body, 10, random), {}},
+                      {.ring = static_cast<int>(random.below(2))});
+        break;
+      case 2:
+        pliant::lower(body, {{}, some_of<Quadratic>(body, 3, random)});
+        break;
+      default: {
+        auto linear = some_of<E>(body, 20, random);
+        pliant::refine(body, {linear, some_of<Quadratic>(body, 20, random)}, 2);
+      }
+    }
+  }
+  void assign(body_type& body, unsigned seed_of_marks) const {
+    test::Random random(seed_of_marks);
+    body.template assign<HighRubber>(some_of<Quadratic>(body, 10, random));
+  }
+};
+
 /// Solid elements of two laws, refined and coarsened as they go; those without internal variables switch between them.
 template <Backend B, Element E, template <class> class Second>
 struct Solid {

@@ -371,7 +371,7 @@ class Storm {
   double switches() {
     double sum = 0;
     for (auto const& entry : ledger(*one_))
-      if (entry.action != "refine" && entry.action != "coarsen") sum += entry.elements;
+      if (entry.action.find(" group ") != std::string::npos) sum += entry.elements;
     return sum;
   }
 
