@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include <pliant/law/decorators/per_element.hpp>
+#include <pliant/law/decorators/viscosity.hpp>
 #include <pliant/mesh/with_types.hpp>
 
 #include "support/formulations.hpp"
@@ -41,12 +43,14 @@ using pairs_on = std::conditional_t<std::same_as<B, MainBackend>, All, Few>;
 #endif
 
 /// Calls visit(B{}, pair): all pairs on the main backend of CPUs, some on the others.
+template <class B, class Visit, class... P>
+void on_each_pair(Visit const& visit, List<P...>) {
+  (visit(B{}, P{}), ...);
+}
 template <class Bs, class Visit>
 void on_pairs(Visit const& visit) {
   [&]<class... B>(std::tuple<B...> const*) {
-    ([&]<class... P>(B const& backend, List<P...>) { (visit(backend, P{}), ...); }(B{},
-                                                                                   pairs_on<B>{}),
-     ...);
+    (on_each_pair<B>(visit, pairs_on<B>{}), ...);
   }(static_cast<Bs const*>(nullptr));
 }
 
@@ -461,6 +465,74 @@ TEST_CASE("forces on a mesh of mixed degrees are the same on all backends", "[to
     for (std::size_t i = 0; i < f.size(); ++i)
       for (std::size_t k = 0; k < dim; ++k)
         CHECK(f[i][k] == Approx(expected[i][k]).margin(1e-12 * scale));
+  });
+}
+
+TEST_CASE("raised elements take their values and what their points keep along", "[topology]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    using Graded = Formulation<Quad4, Gauss<2>, PerElement<SaintVenantKirchhoff>::law>;
+    using Viscous = Formulation<Quad4, Gauss<2>, Prony<SaintVenantKirchhoff>::law>;
+    using Plain = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+    using Graded9 = Formulation<Quad9, Gauss<3>, PerElement<SaintVenantKirchhoff>::law>;
+    using Viscous9 = Formulation<Quad9, Gauss<3>, Prony<SaintVenantKirchhoff>::law>;
+    auto const relaxing = [] {
+      return typename Viscous::template law<double>{{3, 2}, {0.5}, {0.1}};
+    };
+    auto const mesh = mesh::with_types<Quad4, Quad9>(distorted_mesh<Quad4>(4));
+    std::size_t const count = mesh.elements<Quad4>().size();
+    Random random;
+    std::vector<std::array<double, 2>> values(count);
+    for (auto& v : values) v = {4 + random(), 2 + random()};
+    auto const h = some_gradient<2>();
+    {
+      Body body{backend,
+                mesh,
+                soft,
+                Group<Graded>{.values = values},
+                Group<Viscous9>{relaxing()},
+                Group<Viscous>{relaxing()},
+                Group<Graded9>{}};
+      std::vector<Index> every_other;
+      for (std::size_t e = 0; e < count; e += 2) every_other.push_back(static_cast<Index>(e));
+      body.template assign<Viscous>(every_other);
+      body.clamp(boundary_nodes(mesh));
+      // A linear field is exact on every mesh; it is kept for a while, so that branches relax in part.
+      take_steps(body.parts(), 0.01, 1);
+      body.set_displacements(uniform(mesh.nodes, h));
+      commit_at(body.parts(), std::as_const(body.parts()).u());
+      set_step_size(body.parts(), 0.05);
+      auto const along = uniform(mesh.nodes, h);
+      double const energy = strain_energy(body), work = inner(body.forces(), along);
+
+      raise(body, {{0, 1, 4, 5}, {}});
+      refine(body, {{1}, {0, 3}});
+      lower(body, {{}, {0, 2}});
+
+      CHECK(elements<1>(body).size() > 5);
+      CHECK(strain_energy(body) == Approx(energy).epsilon(1e-13));
+      CHECK(inner(body.forces(), uniform(body.mesh().nodes, h)) == Approx(work).epsilon(1e-13));
+      undo(body);
+      CHECK(body.mesh().nodes == mesh.nodes);
+      CHECK(strain_energy(body) == Approx(energy).epsilon(1e-13));
+      CHECK(inner(body.forces(), along) == Approx(work).epsilon(1e-13));
+    }
+    {  // Points whose law kept nothing begin at rest.
+      Body body{backend, mesh, soft, Group<Plain>{}, Group<Viscous9>{relaxing()}};
+      body.set_displacements(uniform(mesh.nodes, h));
+      raise(body, all(body, 0));
+      double const energy = strain_energy(body);
+      auto const f = body.forces();
+      equilibrate(body.parts());
+      CHECK(strain_energy(body) == Approx(energy).epsilon(1e-14));
+      CHECK(difference(body.forces(), f) < 1e-14);
+      CHECK(largest(f) > 0.01);
+    }
+    {  // There is nothing from which to take values.
+      Body body{backend, mesh, soft, Group<Plain>{}, Group<Graded9>{}};
+      CHECK_THROWS_WITH(raise(body, {{0}, {}}), says("values per element of type 1") &&
+                                                    says("elements of type 0 have not"));
+      CHECK(body.mesh().nodes == mesh.nodes);
+    }
   });
 }
 

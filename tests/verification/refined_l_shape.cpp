@@ -1,5 +1,6 @@
 #include <pliant/adaptation/adaptation.hpp>
 #include <pliant/adaptation/estimator/recovered_stress.hpp>
+#include <pliant/mesh/with_types.hpp>
 #include <pliant/solve.hpp>
 
 #include "verification/support/form.hpp"
@@ -49,33 +50,54 @@ bool on_outer(Point<Dim> const& p) {
   return on_outer_l_shape({p[0], p[1]});
 }
 
-/// Rounds of refinement until there are so many unknowns: of each round, how many there were, and the error.
-template <Element E>
-Runs refined(int n, long most, double share) {
-  using F = Formulation<E, Full<E>, Hooke>;
-  auto body = body_of<F>(initial_mesh<E>(n), l_shape_material);
-  body.clamp(mesh::outer_sides_where(body.mesh(), on_outer<E::dim>));
-  if constexpr (E::dim == 3)
+/// Rounds of adaptation until there are so many unknowns: of each round, how many there were, and the error of the
+/// elements Es.
+template <Element... Es, class TheBody, class Adapt>
+Runs adapted(TheBody& body, long most, Adapt&& adapt) {
+  constexpr int dim = TheBody::dim;
+  body.clamp(mesh::outer_sides_where(body.mesh(), on_outer<dim>));
+  if constexpr (dim == 3)
     body.hold(
         mesh::outer_sides_where(
             body.mesh(), [](Point<3> const& p) { return p[2] == 0 || p[2] == std::sqrt(2.0); }),
         4);
-  Adaptation adapt{when<F>(RecoveredStress{}).bulk(share).refine()};
   Runs runs;
   for (;;) {
     auto u = body.displacements();
     for (std::size_t i = 0; i < u.size(); ++i) {
       auto const& p = body.mesh().nodes[i];
-      if (!on_outer<E::dim>(p)) continue;
+      if (!on_outer<dim>(p)) continue;
       auto const exact = displacement_in_l_shape({p[0], p[1]});
       for (std::size_t k = 0; k < 2; ++k) u[i][k] = exact[k];
     }
     body.set_displacements(u);
     auto const report = solve_static(body, where_forces_cancel);
-    runs.push_back({static_cast<int>(report.unknowns), {error_in_l_shape<E>(body)}});
+    double const squares = (square(error_in_l_shape<Es>(body)) + ...);
+    runs.push_back({static_cast<int>(report.unknowns), {std::sqrt(squares)}});
     if (report.unknowns > most) return runs;
     adapt.now(body);
   }
+}
+
+/// Refined where the estimate says.
+template <Element E>
+Runs refined(int n, long most, double share) {
+  using F = Formulation<E, Full<E>, Hooke>;
+  auto body = body_of<F>(initial_mesh<E>(n), l_shape_material);
+  return adapted<E>(body, most, Adaptation{when<F>(RecoveredStress{}).bulk(share).refine()});
+}
+
+/// Linear elements are raised where the estimate says, with their neighbours, and then refined.
+template <Element E, Element Quadratic>
+Runs raised_and_refined(int n, long most, double share) {
+  using Low = Formulation<E, Full<E>, Hooke>;
+  using High = Formulation<Quadratic, Full<Quadratic>, Hooke>;
+  Body body(Reference<double>{}, mesh::with_types<E, Quadratic>(initial_mesh<E>(n)),
+            l_shape_material, Group<Low>{}, Group<High>{});
+  return adapted<E, Quadratic>(
+      body, most,
+      Adaptation{when<Low>(RecoveredStress{}).bulk(share).raise({.ring = 1}),
+                 when<High>(RecoveredStress{}).bulk(share).refine()});
 }
 
 /// The round that ended, and the last before with at most a quarter of its unknowns.
@@ -94,6 +116,15 @@ void row(Table& table, int n, long most, double rate) {
                  ends_of(runs), 0, rate);
 }
 
+template <Element E, Element Quadratic>
+void mixed_row(Table& table, int n, long most, double rate) {
+  auto const runs = raised_and_refined<E, Quadratic>(n, most, E::dim == 2 ? 0.5 : 0.4);
+  table.converge({std::string("8, L-shape") + (E::dim == 3 ? ", extruded" : "") + ", energy norm",
+                  std::string(E::name()) + " and " + Quadratic::name() + ", Gauss, Hooke",
+                  "raised and refined by RecoveredStress, unknowns"},
+                 ends_of(runs), 0, rate);
+}
+
 }  // namespace pliant::verification::refined_l_shape
 
 int main(int argc, char** argv) {
@@ -103,6 +134,7 @@ int main(int argc, char** argv) {
   bool const full = table.full();
   row<Tri3>(table, 4, full ? 20000 : 4000, 0.5);
   row<Tri6>(table, 2, full ? 20000 : 4000, 1);
+  mixed_row<Tri3, Tri6>(table, 4, full ? 20000 : 4000, 1);
   if constexpr (verification::has_full_form) {
     if (!full) return table.finish();
     double const of_uniform_meshes = verification::alpha / 3;
@@ -112,6 +144,8 @@ int main(int argc, char** argv) {
     row<Tet4>(table, 2, 60000, of_uniform_meshes);
     row<Hex8>(table, 2, 60000, of_uniform_meshes);
     row<Tet10>(table, 1, 60000, of_uniform_meshes);
+    mixed_row<Quad4, Quad9>(table, 4, 20000, 1);
+    mixed_row<Tet4, Tet10>(table, 2, 60000, of_uniform_meshes);
   }
   return table.finish();
 }
