@@ -43,7 +43,7 @@ struct Cook {
                                               verification::towards_ends(3)));
   }
   inline static double reference = 0;
-  template <Element E, class TheBody>
+  template <Element... Es, class TheBody>
   static double error(TheBody const&, NewtonReport const& report) {
     return error_of(report.energy, reference);
   }
@@ -112,7 +112,7 @@ struct SquareHole {
         n, [](double x) { return 1 + std::copysign(std::pow(std::abs(x - 1), 4.5), x - 1); });
   }
   inline static double reference = 0;
-  template <Element E, class TheBody>
+  template <Element... Es, class TheBody>
   static double error(TheBody const&, NewtonReport const& report) {
     return error_of(report.energy, reference);
   }

@@ -90,10 +90,10 @@ struct SlitPlate {
   static void load(TheBody&) {}
 
   inline static double reference = 0;
-  template <Element E, class TheBody>
+  template <Element... Es, class TheBody>
   static double error(TheBody const& body, NewtonReport const&) {
-    return std::sqrt(energy_of_error<E>(body, Hooke<double>::from(material()), gradient, {0, 0}) /
-                     reference);
+    auto const law = Hooke<double>::from(material());
+    return std::sqrt((energy_of_error<Es>(body, law, gradient, {0, 0}) + ...) / reference);
   }
   /// The strain energy of the field: that of the error of a body at rest.
   static void find_reference() {

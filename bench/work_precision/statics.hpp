@@ -16,7 +16,7 @@
 //   mesh<E>(n)                a mesh, n cells across
 //   hold(body)                the conditions, once for a body
 //   load(body)                what a user says again for each mesh: loads
-//   error<E>(body, report)    the relative error in the energy norm
+//   error<Es...>(body, report)   the relative error in the energy norm, over elements of some types
 //   coarse                    n of the mesh that adaptive runs start from
 //   enough                    the error at which they end
 namespace pliant::bench {
@@ -34,11 +34,10 @@ struct Limits {
   }
 };
 
-template <class Problem, class F>
+/// Elements of the first formulation's type, which may turn into those of others.
+template <class Problem, class F, class... Others>
 class Statics {
  public:
-  using E = typename F::element;
-
   explicit Statics(Options const& options) : threads_(options.threads) {}
 
   /// One mesh.
@@ -97,8 +96,10 @@ class Statics {
   }
   auto made(int n, Answer& answer) const {
     Stopwatch const watch(answer.making);
-    Body body{OpenMP<double>{{.threads = threads_}}, Problem::template mesh<E>(n),
-              Problem::material(), Group<F>{}};
+    using E = typename F::element;
+    Body body{OpenMP<double>{{.threads = threads_}},
+              mesh::with_types<E, typename Others::element...>(Problem::template mesh<E>(n)),
+              Problem::material(), Group<F>{}, Group<Others>{}...};
     Problem::hold(body);
     return body;
   }
@@ -113,8 +114,13 @@ class Statics {
               bool with_error) const {
     answer.unknowns = report.unknowns;
     answer.iterations = report.iterations;
-    answer.elements = static_cast<long>(body.mesh().template elements<E>().size());
-    if (with_error) answer.error = Problem::template error<E>(body, report);
+    answer.elements = 0;
+    std::apply(
+        [&](auto const&... list) { ((answer.elements += static_cast<long>(list.size())), ...); },
+        body.mesh().tables);
+    if (with_error)
+      answer.error =
+          Problem::template error<typename F::element, typename Others::element...>(body, report);
   }
 
   int threads_;
@@ -136,11 +142,11 @@ void add_uniform(std::vector<Contestant>& contestants, Options const& options,
   }
 }
 
-/// An adaptive run from the coarse mesh; `rule` makes its Adaptation.
-template <class Problem, class F, class MakeAdaptation>
+/// An adaptive run from the coarse mesh, of the first of some formulations; `rule` makes its Adaptation.
+template <class Problem, class... Fs, class MakeAdaptation>
 void add_adaptive(std::vector<Contestant>& contestants, Options const& options,
                   std::string const& name, MakeAdaptation const& rule) {
-  Statics<Problem, F> const statics(options);
+  Statics<Problem, Fs...> const statics(options);
   contestants.push_back({"adaptive", [=, rounds = std::make_shared<int>(0)](bool with_errors) {
                            auto answers = statics.adaptive(rule, name, Limits::of(options), *rounds,
                                                            with_errors);
@@ -167,6 +173,22 @@ void add_rules(std::vector<Contestant>& contestants, Options const& options) {
     });
 }
 
+/// Linear elements that are raised, and refined then.
+template <class Problem, Element E, Element Quadratic>
+void add_degrees(std::vector<Contestant>& contestants, Options const& options) {
+  using Low = Formulation<E, Full<E>, Problem::template law>;
+  using High = Formulation<Quadratic, Full<Quadratic>, Problem::template law>;
+  for (double share : {0.5, 0.65}) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s to %s, RecoveredStress bulk(%g)", E::name(),
+                  Quadratic::name(), share);
+    add_adaptive<Problem, Low, High>(contestants, options, text, [share] {
+      return Adaptation{when<Low>(RecoveredStress{}).bulk(share).raise({.ring = 1}),
+                        when<High>(RecoveredStress{}).bulk(share).refine()};
+    });
+  }
+}
+
 template <class Problem>
 void compare_meshes(Options const& options, std::vector<Contestant> contestants = {}) {
   auto const uniform = [&]<Element E>(E) {
@@ -182,6 +204,8 @@ void compare_meshes(Options const& options, std::vector<Contestant> contestants 
   add_rules<Problem, Quad4>(contestants, options);
   add_rules<Problem, Tri6>(contestants, options);
   add_rules<Problem, Quad9>(contestants, options);
+  add_degrees<Problem, Tri3, Tri6>(contestants, options);
+  add_degrees<Problem, Quad4, Quad9>(contestants, options);
   hold_contest(Problem::name, contestants, options);
 }
 
