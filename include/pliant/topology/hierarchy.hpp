@@ -17,6 +17,7 @@
 #include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
+#include <pliant/topology/tree_queries.hpp>
 
 namespace pliant {
 
@@ -120,7 +121,7 @@ class Hierarchy {
     if (wanted.empty()) return {};
 
     Refinement<Dim> done{
-        .parents = tree_.closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
+        .parents = TreeQueries(tree_).closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
     auto const nodes = check_room(done.parents, limits);
     auto whole = Dim == 2 ? tree_.edges_of(done.parents) : tree_.sides_of(done.parents);
     std::erase_if(whole, [&](Index s) { return first_part(s) >= 0; });
@@ -133,7 +134,7 @@ class Hierarchy {
       points_.push_back(mean_of_parents(done.new_nodes.back()));
     }
     for (Index const s : whole) done.facets.push_back(divided(s));
-    leaf_count_ += tree_.count_new_cells(done.parents) - done.parents.size();
+    leaf_count_ += TreeQueries(tree_).count_new_cells(done.parents) - done.parents.size();
     return done;
   }
 
@@ -192,7 +193,7 @@ class Hierarchy {
   /// exceeded; the hierarchy is then as it was.
   Raising raise(std::vector<CellConversion> const& conversions,
                 RefinementLimits const& limits = {}) {
-    auto const nodes = points_.size() + tree_.count_new_nodes(conversions);
+    auto const nodes = points_.size() + TreeQueries(tree_).count_new_nodes(conversions);
     if (nodes > std::min(limits.nodes, most_))
       throw Error("Hierarchy: to raise the degree of ", conversions.size(), " cells takes ", nodes,
                   " nodes in all, and the limit is ", std::min(limits.nodes, most_),
@@ -272,8 +273,8 @@ class Hierarchy {
 
   /// How many nodes it takes to refine the cells. Throws Error where a limit would be exceeded.
   std::size_t check_room(std::vector<Index> const& parents, RefinementLimits const& limits) const {
-    auto const nodes = tree_.count_new_nodes(parents);
-    auto const cells_made = tree_.count_new_cells(parents);
+    auto const nodes = TreeQueries(tree_).count_new_nodes(parents);
+    auto const cells_made = TreeQueries(tree_).count_new_cells(parents);
     auto const check = [&](char const* what, std::size_t needed, std::size_t limit) {
       if (needed > limit)
         throw Error("Hierarchy: to refine ", parents.size(),
@@ -283,7 +284,7 @@ class Hierarchy {
     check("nodes", points_.size() + nodes, std::min(limits.nodes, most_));
     check("leaves", leaf_count_ + cells_made - parents.size(), limits.leaves);
     check("cells", cells().size() + cells_made, most_);
-    check("edges", tree_.edges().size() + tree_.most_new_edges(parents), most_);
+    check("edges", tree_.edges().size() + TreeQueries(tree_).most_new_edges(parents), most_);
     return nodes;
   }
 

@@ -8,6 +8,7 @@
 #include <pliant/topology/cell_changes.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
+#include <pliant/topology/tree_queries.hpp>
 
 // From marks on elements to changes of the cells that they are.
 namespace pliant {
@@ -104,7 +105,7 @@ std::vector<CellConversion> raised_cells(M const& mesh, RefinementTree<M> const&
   check_conversion(mesh, "raise", 1, marked);
   auto cells = each_once(cells_of(mesh, old.cells, "raise", marked));
   for (int ring = 0; ring < rings && !cells.empty(); ++ring)
-    cells = old.tree->tree().with_neighbours(cells);
+    cells = TreeQueries(old.tree->tree()).with_neighbours(cells);
   std::vector<CellConversion> raised;
   for (Index const c : cells)
     for_each_type_of(mesh, [&]<Element E>(E, std::size_t) {

@@ -1,0 +1,168 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include <pliant/topology/cell_tree.hpp>
+
+namespace pliant {
+
+/// What is asked of a tree before it changes. Refers to the tree.
+class TreeQueries {
+ public:
+  explicit TreeQueries(CellTree const& tree)
+      : tree_(tree), cells_(tree.cells()), edges_(tree.edges()), sides_(tree.sides()) {}
+
+  /// The leaves, given each once, and all that must be refined before them so that levels differ by
+  /// one at most across edges and sides: coarser ones first, then ascending. (Children of those can meet cells two levels
+  /// finer at an edge, until these are refined again: of what is made anew, nothing is refined in one go.)
+  [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
+    std::unordered_set<Index> seen(leaves.begin(), leaves.end());
+    std::optional<std::vector<std::pair<Index, Index>>> on_edge;
+    auto const want = [&](Index c) {
+      if (c >= 0 && tree_.is_leaf(c) && seen.insert(c).second) leaves.push_back(c);
+    };
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      auto const cell = cells_[at(leaves[i])];
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+        Index coarse = edges_[at(cell.edges[e])].parent;
+        while (coarse >= 0 && edges_[at(coarse)].leaves == 0) coarse = edges_[at(coarse)].parent;
+        if (coarse < 0) continue;
+        if (!on_edge) on_edge = leaves_on_bisected_edges();
+        auto const first = std::ranges::lower_bound(*on_edge, std::pair(coarse, Index{-1}));
+        for (auto entry = first; entry != on_edge->end() && entry->first == coarse; ++entry)
+          want(entry->second);
+      }
+      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
+        Index const coarse = sides_[at(cell.sides[s])].parent;
+        if (coarse < 0) continue;
+        for (Index neighbour : sides_[at(coarse)].cells) want(neighbour);
+      }
+    }
+    std::ranges::sort(leaves, {}, [&](Index c) { return std::pair(cells_[at(c)].level, c); });
+    return leaves;
+  }
+
+  /// The leaves that share an edge, whole or in part, with given ones, and these: each once, ascending.
+  [[nodiscard]] std::vector<Index> with_neighbours(std::vector<Index> const& leaves) const {
+    std::vector<bool> near(edges_.size(), false);
+    for (Index const e : tree_.edges_of(leaves)) {
+      auto const& edge = edges_[at(e)];
+      near[at(e)] = true;
+      if (edge.parent >= 0 && edges_[at(edge.parent)].leaves > 0) near[at(edge.parent)] = true;
+      for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
+        near[at(half)] = true;
+    }
+    std::vector<Index> found;
+    for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+      auto const& cell = cells_[at(c)];
+      for (std::size_t e = 0; cell.first_child < 0 && e < at(cell.pattern().edges); ++e)
+        if (near[at(cell.edges[e])]) {
+          found.push_back(c);
+          break;
+        }
+    }
+    return found;
+  }
+
+  /// How many nodes it takes to split all of these leaves.
+  [[nodiscard]] std::size_t count_new_nodes(std::vector<Index> const& leaves) const {
+    std::size_t nodes = 0;
+    std::unordered_set<Index> without_middle, bisected, without_centre, divided;
+    auto const needs_middle = [&](Index e) {
+      if (edges_[at(e)].middle < 0) without_middle.insert(e);
+    };
+    auto const needs_centre = [&](Index s) {
+      if (sides_[at(s)].centre < 0 && sides_[at(s)].corners() == 4) without_centre.insert(s);
+    };
+    for (Index const c : leaves) {
+      auto const& cell = cells_[at(c)];
+      auto const& p = cell.pattern();
+      bool const quadratic = cell.has != CellNodes::corners, all = cell.has == CellNodes::all;
+      for (std::size_t e = 0; e < at(p.edges); ++e) {
+        needs_middle(cell.edges[e]);
+        if (!quadratic || !bisected.insert(cell.edges[e]).second) continue;
+        Index const half = edges_[at(cell.edges[e])].first_half;
+        if (half < 0) nodes += 2;
+        for (Index h = half; half >= 0 && h < half + 2; ++h) needs_middle(h);
+      }
+      for (std::size_t s = 0; s < at(p.sides); ++s) {
+        needs_centre(cell.sides[s]);
+        if (!quadratic || !divided.insert(cell.sides[s]).second) continue;
+        auto const& side = sides_[at(cell.sides[s])];
+        auto const n = static_cast<Index>(side.corners());
+        if (side.first_child < 0) nodes += side.corners() + (all && n == 4 ? 4 : 0);
+        for (Index k = 0; side.first_child >= 0 && k < n; ++k) {
+          needs_middle(side.first_inner_edge + k);
+          if (all) needs_centre(side.first_child + k);
+        }
+      }
+      nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
+      nodes += quadratic ? at(p.inner_edges) : 0;
+      if (all && p.centre >= 0) nodes += at(p.inner_sides + p.children);
+    }
+    return nodes + without_middle.size() + without_centre.size();
+  }
+
+  /// How many nodes it takes to give leaves other degrees.
+  [[nodiscard]] std::size_t count_new_nodes(std::vector<CellConversion> const& raised) const {
+    std::size_t nodes = 0;
+    std::unordered_set<Index> edges, sides;
+    for (auto const& [c, has] : raised) {
+      auto const& cell = cells_[at(c)];
+      auto const& p = cell.pattern();
+      for (std::size_t e = 0; e < at(p.edges); ++e)
+        if (edges_[at(cell.edges[e])].middle < 0) edges.insert(cell.edges[e]);
+      if (has != CellNodes::all) continue;
+      for (std::size_t s = 0; s < at(p.sides); ++s)
+        if (p.side_centre[s] >= 0 && sides_[at(cell.sides[s])].centre < 0)
+          sides.insert(cell.sides[s]);
+      nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
+    }
+    return nodes + edges.size() + sides.size();
+  }
+
+  /// How many cells it takes to split all of these leaves.
+  [[nodiscard]] std::size_t count_new_cells(std::vector<Index> const& leaves) const {
+    std::size_t cells = 0;
+    for (Index const c : leaves) cells += at(cells_[at(c)].pattern().children);
+    return cells;
+  }
+
+  /// The most edges that splits of these leaves can make.
+  [[nodiscard]] std::size_t most_new_edges(std::vector<Index> const& leaves) const {
+    std::size_t edges = 0;
+    for (Index const c : leaves) {
+      auto const& p = cells_[at(c)].pattern();
+      edges += at(2 * p.edges + 4 * p.sides + p.inner_edges);
+    }
+    return edges;
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  /// (edge, leaf) for each leaf with a whole edge that is bisected, ascending.
+  [[nodiscard]] std::vector<std::pair<Index, Index>> leaves_on_bisected_edges() const {
+    std::vector<std::pair<Index, Index>> list;
+    for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+      auto const& cell = cells_[at(c)];
+      if (cell.first_child >= 0) continue;
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
+        if (edges_[at(cell.edges[e])].first_half >= 0) list.emplace_back(cell.edges[e], c);
+    }
+    std::ranges::sort(list);
+    return list;
+  }
+
+  CellTree const& tree_;
+  SharedList<TreeCell> const& cells_;
+  SharedList<TreeEdge> const& edges_;
+  SharedList<TreeSide> const& sides_;
+};
+
+}  // namespace pliant
