@@ -5,6 +5,7 @@
 #include <pliant/solver/linear/conjugate_gradients.hpp>
 #include <pliant/solver/linear/definitions/multilevel.hpp>
 #include <pliant/solver/linear/direct_solver.hpp>
+#include <pliant/solver/linear/minres.hpp>
 
 #include "support/formulations.hpp"
 #include "support/random.hpp"
@@ -103,6 +104,91 @@ TEST_CASE("conjugate gradients end at the tolerance that was asked", "[solver]")
                                        b, x, 1e-11, 3);
   CHECK(few.iterations == 3);
   CHECK_FALSE(few.converged);
+}
+
+/// Symmetric, with so many eigenvalues below zero and others above, of sizes from 1 to 10.
+Eigen::MatrixXd symmetric(Eigen::Index size, Eigen::Index negative, unsigned seed) {
+  Random random(seed);
+  Eigen::MatrixXd any(size, size);
+  for (double& x : any.reshaped()) x = random();
+  Eigen::MatrixXd const q = Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ();
+  Eigen::VectorXd values(size);
+  for (Eigen::Index i = 0; i < size; ++i)
+    values[i] = (5.5 + 4.5 * random()) * (i < negative ? -1 : 1);
+  return q * values.asDiagonal() * q.transpose();
+}
+
+TEST_CASE("MINRES has the least residual of all in the Krylov space", "[solver]") {
+  constexpr Eigen::Index n = 24;
+  for (Eigen::Index negative : {0, 1, 9, 24}) {
+    Eigen::MatrixXd const a = symmetric(n, negative, 5);
+    Eigen::VectorXd const b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+    // M = L Lᵀ: the space and the norm are those of Lᵀ A L.
+    Eigen::MatrixXd const m = symmetric(n, 0, 6), l = m.llt().matrixL();
+    Eigen::MatrixXd const inner = l.transpose() * a * l;
+    Eigen::MatrixXd basis(n, 0);
+    for (int k = 1; k <= 8; ++k) {
+      basis.conservativeResize(n, k);
+      Eigen::VectorXd next = l.transpose() * b;
+      if (k > 1) next = inner * basis.col(k - 2);
+      basis.col(k - 1) = next.normalized();
+      Eigen::VectorXd const y = (inner * basis).householderQr().solve(l.transpose() * b);
+      Eigen::VectorXd x;
+      auto const found = minres([&](auto const& v, auto& out) { out = a * v; },
+                                [&](auto const& v, auto& out) { out = m * v; }, b, x, 1e-12, k);
+      CHECK(found.iterations == k);
+      CHECK((x - l * (basis * y)).norm() < 1e-8 * x.norm());
+      CHECK(found.residual == Approx((b - a * x).norm()).epsilon(1e-10));
+    }
+  }
+}
+
+TEST_CASE("MINRES solves symmetric systems, definite or not, and tells which", "[solver]") {
+  constexpr Eigen::Index n = 30;
+  Eigen::VectorXd const b = Eigen::VectorXd::LinSpaced(n, -1, 1);
+  auto const by_nothing = [](auto const& r, auto& z) { z = r; };
+  for (Eigen::Index negative : {0, 1, 10, 30}) {
+    Eigen::MatrixXd const a = symmetric(n, negative, 8);
+    auto const apply_a = [&](auto const& v, auto& out) { out = a * v; };
+    Eigen::VectorXd x, by_gradients;
+    auto const found = minres(apply_a, by_nothing, b, x, 1e-11, 200);
+    CHECK(found.converged);
+    CHECK(found.indefinite == (negative > 0));
+    CHECK((b - a * x).norm() <= 1.01e-11 * b.norm());
+    CHECK((x - a.fullPivLu().solve(b)).norm() < 1e-9 * x.norm());
+    auto const cg = conjugate_gradients(apply_a, by_nothing, b, by_gradients, 1e-11, 200);
+    CHECK(cg.converged == (negative == 0));
+    if (negative == 0) {
+      CHECK((x - by_gradients).norm() < 1e-9 * x.norm());
+      CHECK(found.iterations <= cg.iterations);
+    }
+  }
+}
+
+TEST_CASE("MINRES tells what has no solution, and what does not precondition", "[solver]") {
+  Eigen::VectorXd const values = Eigen::Vector4d{2, -1, 3, 0}, b = Eigen::Vector4d{1, 2, 3, 4};
+  auto const apply_a = [&](auto const& v, auto& out) { out = values.cwiseProduct(v); };
+  auto const by_nothing = [](auto const& r, auto& z) { z = r; };
+  Eigen::VectorXd x;
+  auto const image = minres(apply_a, by_nothing, values.cwiseProduct(b), x, 1e-12, 100);
+  CHECK(image.converged);
+  CHECK((x - Eigen::VectorXd(Eigen::Vector4d{1, 2, 3, 0})).norm() < 1e-12);
+
+  auto const outside = minres(apply_a, by_nothing, b, x, 1e-12, 100);
+  CHECK_FALSE(outside.converged);
+  CHECK(outside.iterations == 3);                                  // the Krylov space ends
+  CHECK((x.head(3) - Eigen::Vector3d{0.5, -2, 1}).norm() < 1e-6);  // of least residual
+
+  auto const nothing = minres(apply_a, by_nothing, Eigen::VectorXd::Zero(4), x, 1e-12, 100);
+  CHECK(nothing.converged);
+  CHECK(nothing.iterations == 0);
+  CHECK(x == Eigen::VectorXd::Zero(4));
+
+  auto const turned = [](auto const& r, auto& z) { z = -r; };
+  auto const unfit = minres(apply_a, turned, b, x, 1e-12, 100);
+  CHECK(unfit.indefinite);
+  CHECK_FALSE(unfit.converged);
+  CHECK(x == Eigen::VectorXd::Zero(4));
 }
 
 template <class F>
@@ -214,6 +300,24 @@ TEST_CASE("factors and the multilevel method find the same equilibrium", "[solve
   check_methods<Plane>(16);
   check_methods<Formulation<Tri3, Gauss<1>, NeoHookean>>(16);
   check_methods<Solid>(6);
+}
+
+TEST_CASE("the hierarchy of a definite stiffness serves an indefinite one", "[solver]") {
+  auto const mesh = mesh::rectangle({.size = {1, 0.1}, .cells = {40, 4}});
+  auto const solved = [&](LinearMethod method) {
+    Body body{Reference<double>{}, mesh, Elastic{1e6, 0.3, 1000}, Group<Plane>{}};
+    body.clamp(mesh.boundary("left"));
+    body.drive(mesh.boundary("right"), [](double) { return Point<2>{-0.15, 0}; });
+    body.set_load(102, {0, 100});
+    return solve_static(body, {.linear = method});
+  };
+  auto const levels = solved(LinearMethod::multilevel), direct = solved(LinearMethod::direct);
+  CHECK(direct.indefinite);
+  CHECK(levels.indefinite);
+  CHECK(levels.linear.minres > 0);
+  CHECK(levels.factorisations == 0);
+  CHECK(levels.linear.method == LinearMethod::multilevel);
+  CHECK(levels.energy == Approx(direct.energy).epsilon(1e-9));
 }
 
 TEST_CASE("large bodies take the multilevel method unasked, and keep its hierarchy", "[solver]") {

@@ -50,7 +50,7 @@ struct Machine {
   }
   Field conditioned(Field const& r) {
     balance.arrays().residual = upload(r);
-    multigrid.apply(parts, balance.arrays(), a);
+    multigrid.apply(parts, balance.arrays(), a, node_field<dim>(balance.arrays().residual));
     detail::keep_unknowns(parts, node_field<dim>(balance.arrays().conditioned));
     return unpadded(balance.arrays().conditioned);
   }

@@ -20,7 +20,7 @@ class HostArray {
   HostArray() = default;
   /// Zeroed. Throws Error when memory runs out.
   explicit HostArray(std::size_t count) : data_(allocate(count)), size_(count) {
-    std::fill_n(data_, count, U(0));
+    std::fill_n(data_, count, U{});
   }
   ~HostArray() { ::operator delete(data_, line); }
   HostArray(HostArray&& other) noexcept

@@ -9,9 +9,9 @@
 namespace pliant {
 
 namespace detail {
-/// What a solver keeps of preconditioning a body's matrices.
-struct KeptPreconditioner {
-  virtual ~KeptPreconditioner() = default;
+/// What a solver keeps of preconditioning a body's matrices, and of a method for them.
+struct KeptBySolver {
+  virtual ~KeptBySolver() = default;
 };
 }  // namespace detail
 
@@ -27,21 +27,22 @@ struct SolverArrays {
   Array<T> trial;                             // a change of it that is tried, m
   Array<T> place, speed, acceleration;        // where balance is asked for: m, m/s, m/s²
   Array<T> force, inert, residual;            // N; the first two with scratch rows
-  Array<T> solution, direction, conditioned;  // of conjugate gradients
+  Array<T> solution, direction, conditioned;  // of Krylov methods
   Array<T> image;                             // of the direction, with scratch rows
   Array<T> blocks;                            // (dim, nodes, 4): inverse blocks of nodes
-  Array<double> scalars;                      // of conjugate gradients
+  Array<double> scalars;                      // of Krylov methods
 
-  /// Iterations of conjugate gradients, and the matrix of which they are.
+  /// Iterations of a Krylov method, and the matrix of which they are.
   struct Recorded {
     typename B::Recording recording;
     long revision;
     std::array<double, 4> matrix;
     std::array<T const*, 2> fields;
-    detail::KeptPreconditioner const* preconditioner;
+    detail::KeptBySolver const* preconditioner;
+    detail::KeptBySolver const* method;
   };
   std::optional<Recorded> recorded{};
-  std::unique_ptr<detail::KeptPreconditioner> preconditioner{};  // made when first asked for
+  std::unique_ptr<detail::KeptBySolver> preconditioner{}, minres{};  // made when first asked for
 
   SolverArrays(B const& backend, std::size_t rows, std::size_t rows_and_scratch, int dim) {
     for (auto* array : {&increment, &trial, &place, &speed, &acceleration, &residual, &solution,

@@ -24,8 +24,9 @@ struct ImplicitOptions {
   double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
   /// Automatic: on hosts with a matrix, on GPUs without; there with one (on the host) in steps that find no other way.
   LinearMethod linear = LinearMethod::automatic;
-  int max_linear_iterations = 10000;  // without a matrix, per iteration
-  /// Of conjugate gradients without a matrix. Kept from iteration to iteration of a step as long as it serves.
+  int max_linear_iterations = 10000;              // without a matrix, per iteration
+  KrylovMethod krylov = KrylovMethod::automatic;  // without a matrix
+  /// Without a matrix. Kept from iteration to iteration of a step as long as it serves.
   Preconditioner preconditioner = Preconditioner::automatic;
   bool accept_folded = false;  // steps that fold the body somewhere, instead of an Error
 };
@@ -361,13 +362,14 @@ class Implicit {
           return false;
         }
       } else {
-        auto const cg = detail::solve_matrix_free(parts_, own, matrix, tolerance,
-                                                  options_.max_linear_iterations, preconditioning_);
+        auto const found = detail::solve_matrix_free(parts_, own, matrix, tolerance,
+                                                     options_.max_linear_iterations,
+                                                     preconditioning_, options_.krylov);
         // Along a direction of negative curvature the iteration stops where it is: still a way down.
-        if (cg.iterations == 0 && cg.indefinite) {
+        if (found.iterations == 0 && found.indefinite) {
           why_not_ = detail::message({Scheme::name,
                                       ": the tangent is not positive definite; take smaller steps, "
-                                      "or LinearMethod::direct"});
+                                      "KrylovMethod::minres or LinearMethod::direct"});
           return false;
         }
       }

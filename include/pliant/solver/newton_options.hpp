@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <pliant/solver/least_jacobian.hpp>
+#include <pliant/solver/linear/krylov_method.hpp>
 #include <pliant/solver/linear/linear_method.hpp>
 #include <pliant/solver/mass_product.hpp>
 
@@ -22,8 +23,9 @@ struct NewtonOptions {
   /// For the linear systems: automatic takes a matrix, or none on a GPU in double precision where there are many
   /// unknowns and all forces have a potential. Without one all goes on in the body's precision.
   LinearMethod linear = LinearMethod::automatic;
-  int max_linear_iterations = 10000;  // without a matrix, per iteration
-  /// Of conjugate gradients without a matrix. Kept from iteration to iteration as long as it serves.
+  int max_linear_iterations = 10000;              // without a matrix, per iteration
+  KrylovMethod krylov = KrylovMethod::automatic;  // without a matrix
+  /// Without a matrix. Kept from iteration to iteration as long as it serves.
   Preconditioner preconditioner = Preconditioner::automatic;
   bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
@@ -40,7 +42,7 @@ struct NewtonReport {
   std::vector<double> residuals;  // N: where each iteration of the last load step began
   double energy = 0;              // strain energy, J
   MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
-  /// Of the last stiffness: where it has a negative pivot, or conjugate gradients met a direction of negative curvature.
+  /// Of the last stiffness: where it has a negative pivot, or an iteration without a matrix met a direction of no positive curvature.
   /// The answer is a saddle then, in balance but not stable. Not told where forces have no potential.
   bool indefinite = false;
   LeastJacobian least_J{};  // det F where it is least, at points of elements and between them

@@ -11,7 +11,7 @@
 namespace pliant::detail {
 
 /// Newton's method for rest without a matrix, in the memory of a body's backend and in its precision: the load steps and
-/// the line search of solve_static, with conjugate gradients for the linear systems. For forces that have a potential.
+/// the line search of solve_static, with Krylov methods for the linear systems. For forces that have a potential.
 template <class Parts>
 class MatrixFreeStatics {
   using T = typename Parts::T;
@@ -149,12 +149,14 @@ class MatrixFreeStatics {
       double const pull = std::sqrt(dot(own.residual, own.residual));
       double const enough = std::max(driving ? driving_forcing : forcing,
                                      0.1 * options_.tolerance * now.scale / pull);
-      auto const cg = solve_matrix_free(parts_, own, a, std::min(enough, 0.1),
-                                        options_.max_linear_iterations, preconditioning_);
-      report_.indefinite = cg.indefinite;
-      if (cg.indefinite && cg.iterations == 0) {
-        auto const text = message({"solve_static: the stiffness is not positive definite ",
-                                   step.name(), "; use more load_steps, or LinearMethod::direct"});
+      auto const found =
+          solve_matrix_free(parts_, own, a, std::min(enough, 0.1), options_.max_linear_iterations,
+                            preconditioning_, options_.krylov);
+      report_.indefinite = found.indefinite;
+      if (found.indefinite && found.iterations == 0) {
+        auto const text =
+            message({"solve_static: the stiffness is not positive definite ", step.name(),
+                     "; use more load_steps, KrylovMethod::minres or LinearMethod::direct"});
         if (iteration == 0) throw Error(text);
         throw LoadStepFailed(text);
       }

@@ -1,28 +1,9 @@
 #pragma once
 
-#include <pliant/solver/linear/polynomial_smoother.hpp>
+#include <pliant/solver/linear/krylov_fields.hpp>
 
-// The steps of conjugate gradients on a backend, as functors, with the numbers that they share.
+// Conjugate gradients on a backend: the steps as functors, and the iteration of them.
 namespace pliant::detail {
-
-/// The numbers of conjugate gradients, in the backend's memory.
-struct Scalars {
-  enum Name : int {
-    rz,  // 0: the first iteration, or the first one under another preconditioner
-    curvature,
-    rr,
-    next_rz,
-    beta,
-    enough,
-    iterations,
-    most,
-    stopped,
-    indefinite,
-    unfit
-  };
-  double* values;
-  PLIANT_HOST_DEVICE double& operator[](Name name) const { return values[name]; }
-};
 
 /// Behind r·z: stops where the preconditioner is not positive definite along r.
 struct BeginIteration {
@@ -76,16 +57,42 @@ struct GoAlong {
     if (conditions) z.set(i, conditioned_at(columns, left, i));
   }
 };
-/// Behind r·r.
-struct EndIteration {
-  Scalars s;
-  PLIANT_HOST_DEVICE void operator()(Index) const {
-    if (s[Scalars::stopped] != 0) return;
-    s[Scalars::iterations] += 1;
-    // A residual that is not a number stops too.
-    if (!(s[Scalars::rr] > s[Scalars::enough]) || s[Scalars::iterations] >= s[Scalars::most])
-      s[Scalars::stopped] = 1;
+/// An iteration of preconditioned conjugate gradients (Hestenes and Stiefel 1952).
+template <class Parts>
+class GradientIteration {
+  using Fields = KrylovFields<Parts>;
+  using T = typename Parts::T;
+  static constexpr int dim = Parts::dim;
+
+ public:
+  /// `by`: null where inverse blocks precondition.
+  GradientIteration(Fields const& fields, Multigrid<Parts> const* by) : f_(fields), by_(by) {}
+
+  /// What a recording depends on, besides the matrix.
+  KeptBySolver const* kept() const { return nullptr; }
+  /// Before the first one, or the first one under another preconditioner.
+  void begin() const {
+    if (!by_) f_.precondition_by_blocks(f_.r);
   }
+  void operator()() const {
+    auto const& backend = f_.backend();
+    if (by_) f_.precondition(*by_, f_.r);
+    f_.dot_into(Scalars::next_rz, f_.r, f_.z);
+    backend.for_each(1, BeginIteration{f_.s});
+    backend.for_each(f_.n, TurnDirection<T, dim>{f_.s, f_.p, Fields::fixed(f_.z)});
+    f_.multiply();
+    f_.dot_into(Scalars::curvature, f_.p, f_.q);
+    backend.for_each(1, CheckCurvature{f_.s});
+    backend.for_each(
+        f_.n, f_.with_columns(GoAlong<T, dim>{
+                  f_.s, f_.x, f_.r, f_.z, Fields::fixed(f_.p), Fields::fixed(f_.q), {}, !by_}));
+    f_.dot_into(Scalars::rr, f_.r, f_.r);
+    backend.for_each(1, EndIteration{f_.s});
+  }
+
+ private:
+  Fields f_;
+  Multigrid<Parts> const* by_;
 };
 
 }  // namespace pliant::detail

@@ -4,117 +4,135 @@
 #include <cmath>
 
 #include <pliant/backend/host_recording.hpp>
-#include <pliant/body/solver_arrays.hpp>
 #include <pliant/solver/linear/gradient_steps.hpp>
+#include <pliant/solver/linear/krylov_method.hpp>
 #include <pliant/solver/linear/krylov_report.hpp>
+#include <pliant/solver/linear/minres_steps.hpp>
 #include <pliant/solver/linear/preconditioning.hpp>
 
-// Conjugate gradients where a body's arrays lie: no host waits inside a run of iterations.
+// Krylov methods where a body's arrays lie: no host waits inside a run of iterations.
 namespace pliant::detail {
 
-/// Solves A x = b for x in arrays.solution, from 0, until |b − A x| ≤ tolerance |b|: preconditioned conjugate gradients
-/// (Hestenes and Stiefel 1952), with sums in double precision. b stands in arrays.residual, zero at what is no unknown,
-/// and is lost. On a GPU iterations are recorded and replayed by the stretch; what is behind the last one of a stretch
-/// does nothing. Another preconditioner goes on from the x of the one before.
+/// A x = b for x in arrays.solution, from 0, with b in arrays.residual, by the iterations of one method behind another.
 template <class Parts>
-KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backend_type>& arrays,
-                               ShiftedTangent<Parts> const& a, double tolerance, int max_iterations,
-                               Preconditioning<Parts>& by) {
+class MatrixFreeSystem {
   using T = typename Parts::T;
-  constexpr int dim = Parts::dim;
-  auto const& backend = parts.backend;
-  Index const n = parts.layout.nodes;
-  auto const x = node_field<dim>(arrays.solution), r = node_field<dim>(arrays.residual),
-             p = node_field<dim>(arrays.direction), z = node_field<dim>(arrays.conditioned),
-             q = node_field<dim>(arrays.image);
-  using Const = NodeField<T const, dim>;
-  using Dot = DotAt<T, dim>;
-  Scalars const s{arrays.scalars.data()};
-  auto const dot_into = [=](Scalars::Name name, auto const& one, auto const& other) {
-    backend.add_sum(n, Dot{{one.data}, {other.data}}, &s[name]);
-  };
-  auto const with_columns = [&](auto functor) {
-    for (int k = 0; k < dim; ++k)
-      functor.columns[k] = {ShiftedTangent<Parts>::column(parts, arrays.blocks.data(), k).data};
-    return functor;
-  };
+  static constexpr int dim = Parts::dim;
+  using Arrays = SolverArrays<typename Parts::backend_type>;
 
-  backend.for_each(n, Clear<T>{x.data});
-  std::vector<double> values(arrays.scalars.size(), 0.0);
-  arrays.scalars.upload(values);
-  dot_into(Scalars::rr, r, r);
-  values = download<double>(arrays.scalars);
-  KrylovReport report{.residual = std::sqrt(values[Scalars::rr])};
-  double const size = values[Scalars::rr];
-  if (!(size > 0) || !std::isfinite(size)) {
-    report.converged = size == 0;
-    return report;
+ public:
+  MatrixFreeSystem(Parts& parts, Arrays& arrays, ShiftedTangent<Parts> const& a, double tolerance,
+                   int max_iterations, Preconditioning<Parts>& by)
+      : parts_(parts),
+        arrays_(arrays),
+        fields_(parts, arrays, a),
+        tolerance_(tolerance),
+        by_(by),
+        values_(arrays.scalars.size(), 0.0) {
+    parts.backend.for_each(fields_.n, Clear<T>{fields_.x.data});
+    arrays.scalars.upload(values_);
+    fields_.dot_into(Scalars::rr, fields_.r, fields_.r);
+    values_ = download<double>(arrays.scalars);
+    size_ = values_[Scalars::rr];
+    values_[Scalars::enough] = tolerance * tolerance * size_;
+    values_[Scalars::most] = max_iterations;
+    if (is_regular()) by.begin(parts, arrays, a);
   }
-  values[Scalars::enough] = tolerance * tolerance * size;
-  values[Scalars::most] = max_iterations;
+  /// Whether b is finite, and not zero.
+  bool is_regular() const { return size_ > 0 && std::isfinite(size_); }
+  /// Whether x stayed 0.
+  bool ended_at_once() const { return values_[Scalars::iterations] == 0; }
 
-  auto const record = [&] {
-    auto& kept = arrays.recorded;
+  /// From the x so far, until |b − A x| ≤ tolerance |b|. On a GPU iterations are recorded and replayed by the stretch; what
+  /// is behind the last one of a stretch does nothing. Another preconditioner goes on from the x of the one before.
+  template <template <class> class Iteration>
+  void iterate() {
+    auto& a = fields_.a;
+    begin<Iteration>();
+    for (;;) {
+      arrays_.recorded->recording.replay(1);
+      values_ = download<double>(arrays_.scalars);
+      if (values_[Scalars::stopped] == 0) {
+        if (!by_.should_turn_to_multigrid(parts_, static_cast<int>(values_[Scalars::iterations]),
+                                          share(), tolerance_))
+          continue;
+        by_.turn_to_multigrid(parts_, arrays_, a);
+      } else if (values_[Scalars::unfit] == 0 || !by_.replace(parts_, arrays_, a)) {
+        return;
+      }
+      begin<Iteration>();
+    }
+  }
+  /// |b − A x| / |b|.
+  double share() const { return std::sqrt(values_[Scalars::rr] / size_); }
+  KrylovReport report() const {
+    return {static_cast<int>(values_[Scalars::iterations]), std::sqrt(values_[Scalars::rr]),
+            values_[Scalars::rr] <= values_[Scalars::enough],
+            values_[Scalars::indefinite] != 0 || values_[Scalars::unfit] != 0};
+  }
+
+ private:
+  template <template <class> class Iteration>
+  void begin() {
+    Multigrid<Parts> const* const condition = by_.in(arrays_);
+    Iteration<Parts> const iteration(fields_, condition);
+    iteration.begin();
+    values_[Scalars::rz] = values_[Scalars::next_rz] = values_[Scalars::curvature] = 0;
+    values_[Scalars::stopped] = values_[Scalars::unfit] = 0;
+    arrays_.scalars.upload(values_);
+
+    auto& kept = arrays_.recorded;
+    auto const& a = fields_.a;
     std::array const matrix{a.inertia, a.stiffness, a.damping, static_cast<double>(a.mass)};
-    std::array const fields{a.place.data, a.start.data};
-    Multigrid<Parts> const* const condition = by.in(arrays);
-    if (kept && kept->revision == parts.revision && kept->matrix == matrix &&
-        kept->fields == fields && kept->preconditioner == condition)
+    std::array const places{a.place.data, a.start.data};
+    if (kept && kept->revision == parts_.revision && kept->matrix == matrix &&
+        kept->fields == places && kept->preconditioner == condition &&
+        kept->method == iteration.kept())
       return;
-    auto const step =
-        with_columns(GoAlong<T, dim>{s, x, r, z, Const{p.data}, Const{q.data}, {}, !condition});
-    TurnDirection<T, dim> const turn{s, p, Const{z.data}};
     // The functors live on in the recording.
-    auto const iterate = [&parts, &arrays, a, backend, n, s, p, q, r, z, step, turn, condition,
-                          dot_into] {
+    auto const stretch = [iteration, s = fields_.s, long_ones = condition != nullptr] {
       // A stretch of long iterations is one of them: those behind the last one cost more than a look at it.
-      for (int k = 0; k < (condition ? 1 : 8); ++k) {
-        if (condition) condition->apply(parts, arrays, a);
-        dot_into(Scalars::next_rz, r, z);
-        backend.for_each(1, BeginIteration{s});
-        backend.for_each(n, turn);
-        a.apply(parts, p, q);
-        dot_into(Scalars::curvature, p, q);
-        backend.for_each(1, CheckCurvature{s});
-        backend.for_each(n, step);
-        dot_into(Scalars::rr, r, r);
-        backend.for_each(1, EndIteration{s});
+      for (int k = 0; k < (long_ones ? 1 : 8); ++k) {
+        iteration();
         if constexpr (std::same_as<typename Parts::backend_type::Recording, HostRecording>)
           if (s[Scalars::stopped] != 0) return;
       }
     };
-    kept = {backend.record(iterate), parts.revision, matrix, fields, condition};
-  };
-  auto const begin = [&] {
-    if (by.is_nodal()) backend.for_each(n, with_columns(ConditionAt<T, dim>{z, Const{r.data}, {}}));
-    values[Scalars::rz] = values[Scalars::next_rz] = values[Scalars::curvature] = 0;
-    values[Scalars::stopped] = values[Scalars::unfit] = 0;
-    arrays.scalars.upload(values);
-    record();
-  };
-
-  by.begin(parts, arrays, a);
-  begin();
-  for (;;) {
-    arrays.recorded->recording.replay(1);
-    values = download<double>(arrays.scalars);
-    auto const iterations = static_cast<int>(values[Scalars::iterations]);
-    if (values[Scalars::stopped] == 0) {
-      if (!by.should_turn_to_multigrid(parts, iterations, std::sqrt(values[Scalars::rr] / size),
-                                       tolerance))
-        continue;
-      by.turn_to_multigrid(parts, arrays, a);
-    } else if (values[Scalars::unfit] == 0 || !by.replace(parts, arrays, a)) {
-      break;
-    }
-    begin();
+    kept = {parts_.backend.record(stretch),
+            parts_.revision,
+            matrix,
+            places,
+            condition,
+            iteration.kept()};
   }
-  report.iterations = static_cast<int>(values[Scalars::iterations]);
-  report.residual = std::sqrt(values[Scalars::rr]);
-  report.indefinite = values[Scalars::indefinite] != 0 || values[Scalars::unfit] != 0;
-  report.converged = report.residual <= tolerance * std::sqrt(size);
-  by.end(report.iterations, report.residual / std::sqrt(size));
-  parts.layout.interpolation.apply(backend, x);
+
+  Parts& parts_;
+  Arrays& arrays_;
+  KrylovFields<Parts> fields_;
+  double tolerance_, size_ = 0;  // |b|²
+  Preconditioning<Parts>& by_;
+  std::vector<double> values_;
+};
+
+/// Solves A x = b for x in arrays.solution, from 0, until |b − A x| ≤ tolerance |b|, with sums in double precision, by
+/// conjugate gradients or MINRES, preconditioned. b stands in arrays.residual, zero at what is no unknown, and is lost.
+/// Automatic: MINRES solves it where the first direction of conjugate gradients has no positive curvature.
+template <class Parts>
+KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backend_type>& arrays,
+                               ShiftedTangent<Parts> const& a, double tolerance, int max_iterations,
+                               Preconditioning<Parts>& by,
+                               KrylovMethod method = KrylovMethod::conjugate_gradients) {
+  MatrixFreeSystem<Parts> system(parts, arrays, a, tolerance, max_iterations, by);
+  if (!system.is_regular()) return system.report();
+  if (method != KrylovMethod::minres) system.template iterate<GradientIteration>();
+  bool const has_no_way = method == KrylovMethod::automatic && system.ended_at_once();
+  if (method == KrylovMethod::minres || has_no_way) {
+    by.note_minres();
+    system.template iterate<MinresIteration>();
+  }
+  auto const report = system.report();
+  by.end(report.iterations, system.share());
+  parts.layout.interpolation.apply(parts.backend, node_field<Parts::dim>(arrays.solution));
   return report;
 }
 

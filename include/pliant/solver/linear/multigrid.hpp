@@ -11,7 +11,7 @@ namespace pliant::detail {
 /// coarse functions are linear along each axis of a regular grid around the body, whatever its mesh. Positive definite where
 /// the matrix is. It stands as long as the body's topology; what it is made from the matrix, as long as that serves.
 template <class Parts>
-class Multigrid final : public KeptPreconditioner {
+class Multigrid final : public KeptBySolver {
   using T = typename Parts::T;
   using B = typename Parts::backend_type;
   static constexpr int dim = Parts::dim;
@@ -56,9 +56,11 @@ class Multigrid final : public KeptPreconditioner {
     double const largest = 1.1 * largest_eigenvalue_on(parts.backend, fields, product(parts, a));
     per_largest_.upload(std::vector{static_cast<T>(1 / largest)});
   }
-  /// arrays.conditioned from arrays.residual. The image is lost.
-  void apply(Parts const& parts, Arrays& arrays, ShiftedTangent<Parts> const& a) const {
-    auto const fields = fine_fields(parts, arrays);
+  /// arrays.conditioned from r. The image is lost.
+  void apply(Parts const& parts, Arrays& arrays, ShiftedTangent<Parts> const& a,
+             NodeField<T, dim> r) const {
+    auto fields = fine_fields(parts, arrays);
+    fields.b = r;
     auto const& backend = parts.backend;
     smooth(backend, fields, polynomial_, Guess::zero, product(parts, a));
     if (grids_.empty()) return;

@@ -62,6 +62,8 @@ class Preconditioning {
     begin(parts, arrays, a);
     return true;
   }
+  /// A system that is solved by MINRES.
+  void note_minres() { ++report_.minres; }
   /// Behind the iterations of a system, which left that share of the residual.
   void end(int iterations, double share) {
     report_.preconditioner = now_;

@@ -7,6 +7,7 @@
 #include <pliant/solver/linear/conjugate_gradients.hpp>
 #include <pliant/solver/linear/direct_solver.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
+#include <pliant/solver/linear/minres.hpp>
 #include <pliant/solver/linear/multilevel.hpp>
 
 namespace pliant::detail {
@@ -17,7 +18,9 @@ class LinearSolver<Dim>::Methods {
   Methods(std::string name, LinearMethod method) : direct_(std::move(name)), method_(method) {}
 
   double reached() const { return reached_; }
-  bool indefinite() const { return report_.method == LinearMethod::direct && direct_.indefinite(); }
+  bool indefinite() const {
+    return report_.method == LinearMethod::direct ? direct_.indefinite() : indefinite_;
+  }
   LinearReport report() const {
     auto report = report_;
     report.factorisations = direct_.factorisations();
@@ -74,14 +77,22 @@ class LinearSolver<Dim>::Methods {
         ++report_.hierarchies;
         if (!multilevel_->is_definite()) return false;
       }
-      auto const cg = conjugate_gradients(
-          [&](auto const& v, auto& out) { multiply(tasks, a, v, out); },
-          [&](auto const& v, auto& out) { multilevel_->apply(tasks, v, out); }, r, x, tolerance,
-          fresh ? most_iterations(system, tolerance) : allowed(tolerance));
-      report_.iterations += cg.iterations;
-      if (cg.converged) {
-        note_reached(cg, r);
-        if (fresh && cg.iterations > 0) iterations_per_digit_ = cg.iterations / digits(tolerance);
+      auto const apply_a = [&](auto const& v, auto& out) { multiply(tasks, a, v, out); };
+      auto const apply_m = [&](auto const& v, auto& out) { multilevel_->apply(tasks, v, out); };
+      int const most = most_iterations(system, tolerance);
+      auto found =
+          conjugate_gradients(apply_a, apply_m, r, x, tolerance, fresh ? most : allowed(tolerance));
+      report_.iterations += found.iterations;
+      indefinite_ = found.indefinite;
+      if (indefinite_) {  // the hierarchy is definite: it is of this matrix or an earlier one
+        found = minres(apply_a, apply_m, r, x, tolerance, most);
+        report_.iterations += found.iterations;
+        ++report_.minres;
+      }
+      if (found.converged) {
+        note_reached(found, r);
+        if (fresh && !indefinite_ && found.iterations > 0)
+          iterations_per_digit_ = found.iterations / digits(tolerance);
         return true;
       }
     }
@@ -119,9 +130,9 @@ class LinearSolver<Dim>::Methods {
     if (cg.converged) note_reached(cg, r);
     return cg.converged;
   }
-  void note_reached(KrylovReport const& cg, Eigen::VectorXd const& r) {
+  void note_reached(KrylovReport const& found, Eigen::VectorXd const& r) {
     double const size = r.norm();
-    reached_ = size > 0 ? cg.residual / size : 0;
+    reached_ = size > 0 ? found.residual / size : 0;
   }
 
   DirectSolver direct_;
@@ -130,7 +141,8 @@ class LinearSolver<Dim>::Methods {
   LinearReport report_;
   double iterations_per_digit_ = 0, reached_ = 0;
   int failures_ = 0;
-  bool serves_ = false;  // whether what is kept is of a matrix that this one follows
+  bool indefinite_ = false;  // the last matrix of the multilevel method
+  bool serves_ = false;      // whether what is kept is of a matrix that this one follows
 };
 
 template <int Dim>
