@@ -179,8 +179,10 @@ void add_terms(Parts const& parts, Eigen::VectorXd const& u, double pressure_sha
           rest, displacement, sum.with_stiffness(), [&](ElementMatrix const& element) {
             nodes.clear();
             for (Index node : element.nodes) nodes.push_back(user(node));
-            sum.add_element(nodes, share * element.energy, scaled(element.force, force),
-                            scaled(element.stiffness, stiffness));
+            double* const tangent = scaled(element.stiffness, stiffness);
+            if (sum.with_stiffness() && term->has_energy())
+              sum.project(tangent, dim * nodes.size());
+            sum.add_element(nodes, share * element.energy, scaled(element.force, force), tangent);
           });
   };
   add(parts.pressures, pressure_share);
@@ -190,14 +192,16 @@ void add_terms(Parts const& parts, Eigen::VectorXd const& u, double pressure_sha
 /// Assembles into `sum`, whose stiffness keeps the pattern that it has, and gets one where it has none.
 template <class Parts>
 void assemble_into(AssembledBlocks<Parts::dim>& sum, Parts const& parts, Eigen::VectorXd const& u,
-                   Assemble what, double dt, double pressure_share) {
+                   Assemble what, double dt, double pressure_share,
+                   ElementTangents tangents = ElementTangents::exact) {
   HostTasks const tasks(parts.backend);
   auto const nodes = static_cast<Index>(parts.layout.user_node.size());
   if (what != Assemble::energy_and_force && sum.stiffness.rows() == 0)
     sum.stiffness = stiffness_blocks(parts, {});
   std::vector<std::vector<Index>> besides;
   for (;;) {
-    Assembler<Parts::dim> assembler(tasks, parts.state.topology->interpolation, what, nodes, sum);
+    Assembler<Parts::dim> assembler(tasks, parts.state.topology->interpolation, what, nodes, sum,
+                                    tangents);
     add_groups(parts, u, dt, assembler);
     add_terms(parts, u, pressure_share, assembler);
     auto const& lacking = assembler.lacking();

@@ -6,7 +6,9 @@
 
 #include <pliant/backend/host_tasks.hpp>
 #include <pliant/constraint/interpolation.hpp>
+#include <pliant/solver/element_tangents.hpp>
 #include <pliant/solver/linear/block_matrix.hpp>
+#include <pliant/solver/linear/positive_part.hpp>
 
 namespace pliant {
 
@@ -30,11 +32,12 @@ class Assembler {
  public:
   /// The stiffness of `sum` has room for all elements that are added by add_elements.
   Assembler(HostTasks const& tasks, Interpolation const& interpolation, Assemble what, Index nodes,
-            AssembledBlocks<Dim>& sum)
+            AssembledBlocks<Dim>& sum, ElementTangents tangents = ElementTangents::exact)
       : tasks_(tasks),
         interpolation_(interpolation),
         with_force_(what != Assemble::stiffness),
         with_stiffness_(what != Assemble::energy_and_force),
+        tangents_(tangents),
         sum_(sum) {
     sum_.energy = 0;
     sum_.force.setZero(with_force_ ? Eigen::Index{Dim} * nodes : 0);
@@ -71,6 +74,7 @@ class Assembler {
           if (with_force_) std::fill_n(force(e), width, 0.0);
           if (with_stiffness_) std::fill_n(stiffness(e), width * width, 0.0);
           energy_[static_cast<std::size_t>(e)] = evaluate(first + e, force(e), stiffness(e));
+          if (with_stiffness_) project(stiffness(e), width);
         }
       });
       for (Index e = 0; e < n; ++e) sum_.energy += energy_[static_cast<std::size_t>(e)];
@@ -81,6 +85,12 @@ class Assembler {
           add_to_rows(nodes_of(first + e), force(e), stiffness(e), masters, share, shares);
       });
     }
+  }
+  /// Makes a symmetric tangent positive semidefinite where that is wanted.
+  void project(double* stiffness, std::size_t width) const {
+    auto const size = static_cast<Eigen::Index>(width);
+    if (tangents_ == ElementTangents::positive_semidefinite)
+      keep_positive_part(Eigen::MatrixXd::Map(stiffness, size, size));
   }
   /// One element, of nodes that need not have a place in the stiffness yet: see `lacking`.
   template <class Nodes>
@@ -149,6 +159,7 @@ class Assembler {
   HostTasks const& tasks_;
   Interpolation const& interpolation_;
   bool with_force_, with_stiffness_;
+  ElementTangents tangents_;
   AssembledBlocks<Dim>& sum_;
   std::vector<double> energy_, force_, stiffness_;  // of the elements that are added at once
   std::vector<Master> masters_;

@@ -4,6 +4,7 @@
 #include <pliant/solver/linear/definitions/lanczos_matrix.hpp>
 #include <pliant/solver/linear/definitions/linear_solver.hpp>
 #include <pliant/solver/linear/definitions/multilevel.hpp>
+#include <pliant/solver/linear/definitions/positive_part.hpp>
 
 template class pliant::detail::Multilevel<2>;
 template class pliant::detail::Multilevel<3>;

@@ -73,7 +73,8 @@ class StaticNewton {
       u_ = reached;
       linear_.begin_anew();
     });
-    report_.indefinite = conservative_ && linear_.indefinite();
+    report_.indefinite =
+        conservative_ && options_.tangents == ElementTangents::exact && linear_.indefinite();
     report_.linear = linear_.report();
     report_.factorisations = report_.linear.factorisations;
     report_.least_J = least_jacobian_at(body_.parts(), u_, true);
@@ -87,7 +88,8 @@ class StaticNewton {
     Vector force;   // N
   };
   void assemble_at(Vector const& u, Assemble what) {
-    assemble_into(sum_, body_.parts(), u, what, std::numeric_limits<double>::infinity(), step_.to);
+    assemble_into(sum_, body_.parts(), u, what, std::numeric_limits<double>::infinity(), step_.to,
+                  options_.tangents);
   }
   Evaluated evaluate(Vector const& u) {
     assemble_at(u, Assemble::energy_and_force);
@@ -218,6 +220,10 @@ NewtonReport solve_static_matrix_free(TheBody& body, NewtonOptions const& option
     throw Error(
         "solve_static: pressures that follow a surface have no symmetric tangent, which conjugate "
         "gradients ask for; take LinearMethod::automatic");
+  if (options.tangents != ElementTangents::exact)
+    throw Error(
+        "solve_static: tangents of elements are projected where they are assembled; take "
+        "LinearMethod::automatic, or ElementTangents::exact");
   WithStepSize<typename TheBody::parts_type> const at_rest(parts,
                                                            std::numeric_limits<double>::infinity());
   MatrixFreeStatics<typename TheBody::parts_type> statics(parts, options,
@@ -259,7 +265,8 @@ NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
   if (options.linear == LinearMethod::matrix_free) {
     report = detail::solve_static_matrix_free(body, options);
     solved = true;
-  } else if (options.linear == LinearMethod::automatic && detail::lies_better_on_backend(body)) {
+  } else if (options.linear == LinearMethod::automatic &&
+             options.tangents == ElementTangents::exact && detail::lies_better_on_backend(body)) {
     try {
       report = detail::solve_static_matrix_free(body, options);
       solved = true;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <pliant/solver/element_tangents.hpp>
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/krylov_method.hpp>
 #include <pliant/solver/linear/linear_method.hpp>
@@ -27,6 +28,8 @@ struct NewtonOptions {
   KrylovMethod krylov = KrylovMethod::automatic;  // without a matrix
   /// Without a matrix. Kept from iteration to iteration as long as it serves.
   Preconditioner preconditioner = Preconditioner::automatic;
+  /// Of the assembled matrix. Projected ones take more iterations near an answer and fewer far from it.
+  ElementTangents tangents = ElementTangents::exact;
   bool accept_folded = false;  // an answer that is folded somewhere, instead of an Error
 };
 
@@ -43,7 +46,7 @@ struct NewtonReport {
   double energy = 0;              // strain energy, J
   MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted
   /// Of the last stiffness: where it has a negative pivot, or an iteration without a matrix met a direction of no positive curvature.
-  /// The answer is a saddle then, in balance but not stable. Not told where forces have no potential.
+  /// The answer is a saddle then, in balance but not stable. Not told where forces have no potential, or tangents are projected.
   bool indefinite = false;
   LeastJacobian least_J{};  // det F where it is least, at points of elements and between them
 };
