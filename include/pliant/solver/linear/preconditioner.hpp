@@ -2,7 +2,7 @@
 
 namespace pliant {
 
-/// By what conjugate gradients without a matrix are preconditioned.
+/// By what Krylov methods without a matrix are preconditioned.
 enum class Preconditioner {
   automatic,     // nodal blocks, and multigrid where these turn out to take many iterations
   nodal_blocks,  // the inverse blocks of the diagonal, of a node each
