@@ -29,7 +29,8 @@ LEVELS = {
     "plate with a square hole": (0.03, None),
     "smooth field, finite strain": (0.02, None),
 }
-ELEMENTS = ["Tri3", "Quad4", "Tri6", "Quad9"]
+# "A to B": elements A that are raised to B where rules say, and then refined. They stand beside uniform meshes of B.
+ELEMENTS = ["Tri3", "Quad4", "Tri6", "Quad9", "Tri3 to Tri6", "Quad4 to Quad9"]
 
 
 def interpolated(points, error):
@@ -67,7 +68,7 @@ class Problem:
         """(seconds, whether extrapolated, contestant) of the fastest uniform meshes."""
         names = [c for c in self.contestants if self.kind(c) == "uniform"]
         if element:
-            names = [c for c in names if c.startswith(element + ",")]
+            names = [c for c in names if c.startswith(element.split(" to ")[-1] + ",")]
         return min((*interpolated(self.points(c), error), c) for c in names)
 
     def first_within(self, contestant, error):
@@ -265,7 +266,8 @@ def draw(data, path, overview=False):
         axis.remove()
     corner.axis("off")  # for the legend of all static problems
     marks = "ov^sDPX*<>"
-    colours = dict(zip(["Tri3", "Quad4", "Tri6", "Quad8", "Quad9"], matplotlib.colormaps["tab10"].colors))
+    colours = dict(zip(["Tri3", "Quad4", "Tri6", "Quad8", "Quad9", "Tri3 to Tri6", "Quad4 to Quad9"],
+                       matplotlib.colormaps["tab10"].colors))
     for axis, problem in zip(panels, problems):
         static = any(problem.kind(c) == "uniform" for c in problem.contestants)
         rules = rules_of(problem) if static else []
