@@ -1,13 +1,10 @@
 #pragma once
 
-#include <sstream>
-
 #include <pliant/law/decorators/per_element.hpp>
 #include <pliant/law/decorators/viscosity.hpp>
 #include <pliant/mesh/with_types.hpp>
 
-#include "support/formulations.hpp"
-#include "support/repeatable.hpp"
+#include "topology/mixed_meshes.hpp"
 
 // Bodies of linear and quadratic elements side by side: degrees are raised and lowered, beside refinement.
 namespace pliant::test::degree_suite {
@@ -54,64 +51,28 @@ void on_pairs(Visit const& visit) {
   }(static_cast<Bs const*>(nullptr));
 }
 
-template <std::size_t Type, class TheBody>
-auto const& elements(TheBody const& body) {
-  return std::get<Type>(body.mesh().tables);
-}
-template <class TheBody>
-std::vector<std::vector<Index>> some(TheBody const& body, std::size_t one_in, Random& random,
-                                     std::size_t type_wanted) {
-  std::vector<std::vector<Index>> lists(2);
-  std::size_t const counts[] = {elements<0>(body).size(), elements<1>(body).size()};
-  for (std::size_t type = 0; type < 2; ++type)
-    for (Index e = 0; e < static_cast<Index>(counts[type]); ++e)
-      if ((type_wanted == 2 || type == type_wanted) && random.below(one_in) == 0)
-        lists[type].push_back(e);
-  return lists;
-}
-template <class TheBody>
-std::vector<std::vector<Index>> all(TheBody const& body, std::size_t type_wanted) {
-  Random random(1);
-  return some(body, 1, random, type_wanted);
-}
 /// Raises, refines, lowers and merges at random.
 template <class TheBody>
 void change(TheBody& body, Random& random) {
   raise(body, some(body, TheBody::dim == 3 ? 6 : 8, random, 0), {.ring = 1});
-  refine(body, some(body, TheBody::dim == 3 ? 4 : 3, random, 2), 3);
+  refine(body, some(body, TheBody::dim == 3 ? 4 : 3, random, -1), 3);
   raise(body, some(body, 6, random, 0));
-  refine(body, some(body, TheBody::dim == 3 ? 16 : 5, random, 2), 3);
+  refine(body, some(body, TheBody::dim == 3 ? 16 : 5, random, -1), 3);
   lower(body, some(body, 4, random, 1));
-  coarsen(body, some(body, 1 + random.below(1), random, 2));
+  coarsen(body, some(body, 1 + random.below(1), random, -1));
   raise(body, some(body, 9, random, 0), {.ring = 1});
-  refine(body, some(body, TheBody::dim == 3 ? 16 : 5, random, 2), 3);
+  refine(body, some(body, TheBody::dim == 3 ? 16 : 5, random, -1), 3);
   lower(body, some(body, 9, random, 1));
 }
 /// Back to the mesh of the beginning.
 template <class TheBody>
 void undo(TheBody& body) {
   do lower(body, all(body, 1));
-  while (coarsen(body, all(body, 2)).merged > 0);
-}
-template <int Dim>
-Tensor<double, Dim> some_gradient() {
-  auto h = Tensor<double, Dim>::zero();
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j)
-      h(i, j) = 0.03 * (1 + i) - 0.05 * j + (i == j ? 0.04 : 0.02 * i * j);
-  return h;
-}
-template <class TheBody>
-Point<TheBody::dim> momentum(TheBody& body) {
-  auto p = body.velocities();
-  for (std::size_t i = 0; i < p.size(); ++i)
-    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
-  return total(p);
+  while (coarsen(body, all(body, -1)).merged > 0);
 }
 
 TEST_CASE("a mesh of mixed degrees passes the patch test", "[topology]") {
   on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
-    constexpr int dim = P::dim;
     auto body = P::body(backend);
     Random random(5);
     change(body, random);
@@ -121,91 +82,19 @@ TEST_CASE("a mesh of mixed degrees passes the patch test", "[topology]") {
     REQUIRE_FALSE(mesh.slaves.empty());
     CHECK(total_mass(body) == Approx(soft.density).epsilon(1e-13));
 
-    // Both types go by the same law.
-    std::vector<Index> every(elements<0>(body).size());
-    for (std::size_t e = 0; e < every.size(); ++e) every[e] = static_cast<Index>(e);
-    body.template assign<typename P::Low>(every);
-    every.resize(elements<1>(body).size());
-    for (std::size_t e = 0; e < every.size(); ++e) every[e] = static_cast<Index>(e);
-    body.template assign<typename P::High>(every);
-    auto const h = some_gradient<dim>();
-    auto const f = forces_at(body, uniform(mesh.nodes, h));
-
-    double inside = 0;
-    std::vector<bool> outside(mesh.nodes.size(), false);
-    for (auto const& [name, facets] : mesh.boundaries)
-      for (Index i : nodes_of(facets)) outside[static_cast<std::size_t>(i)] = true;
-    for (std::size_t i = 0; i < f.size(); ++i)
-      for (double x : f[i])
-        if (!outside[i]) inside = std::max(inside, std::abs(x));
-    CHECK(inside < 1e-13);
-    CHECK(strain_energy(body) ==
-          Approx(energy_density(law_at_a_point<typename P::Low>(body), h)).epsilon(1e-12));
+    assign_all<typename P::Low>(body);
+    assign_all<typename P::High>(body);
+    check_patch<typename P::Low>(body);
   });
 }
 
-/// The displacement at a point of an element.
-template <Element E, class M>
-Point<E::dim> at_place(M const& mesh, FieldOf<E::dim> const& u, Connectivity<E> const& nodes,
-                       Vector<double, E::dim> const& xi, FieldOf<E::dim>& places) {
-  auto const shape = E::shape(xi);
-  Point<E::dim> value{}, place{};
-  for (int a = 0; a < E::nodes; ++a)
-    for (std::size_t k = 0; k < E::dim; ++k) {
-      auto const node = static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)]);
-      value[k] += shape[a] * u[node][k];
-      place[k] += shape[a] * mesh.nodes[node][k];
-    }
-  places.push_back(place);
-  return value;
-}
-
 TEST_CASE("displacements of mixed degrees are continuous", "[topology]") {
-  // At all places of a grid on the sides of each element: where such places of others coincide, they agree, and the
-  // places of fine elements are among those of coarse ones.
   on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
-    constexpr int dim = P::dim;
     for (unsigned seed : {3u, 4u}) {
       auto body = P::body(backend);
       Random random(seed);
       change(body, random);
-      body.set_displacements(random.field<dim>(body.mesh().nodes.size(), 1));
-      auto const u = body.displacements();
-      auto const& mesh = body.mesh();
-      FieldOf<dim> places, values;
-      auto const look_at = [&]<Element E>(E, std::vector<Connectivity<E>> const& list) {
-        constexpr int n = 16;  // of the coarsest; levels up to 3
-        bool const simplex = SimplexCell<typename E::cell>;
-        for (auto const& nodes : list)
-          for (int i = 0; i <= n; ++i)
-            for (int j = 0; j <= n; ++j)
-              for (int k = 0; k <= (dim == 3 ? n : 0); ++k) {
-                bool const edge = i == 0 || j == 0 || i == n || j == n ||
-                                  (dim == 3 && (k == 0 || k == n)) || (simplex && i + j + k == n);
-                if (!edge || (simplex && i + j + k > n)) continue;
-                Vector<double, dim> xi;
-                int const ijk[] = {i, j, k};
-                for (int d = 0; d < dim; ++d)
-                  xi[d] = simplex ? ijk[d] / double(n) : 2 * ijk[d] / double(n) - 1;
-                values.push_back(at_place<E>(mesh, u, nodes, xi, places));
-              }
-      };
-      look_at(typename P::Low::element{}, elements<0>(body));
-      look_at(typename P::High::element{}, elements<1>(body));
-      std::map<std::array<long, 3>, Point<dim>> seen;
-      double worst = 0;
-      std::size_t met = 0;
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        std::array<long, 3> key{};
-        for (std::size_t k = 0; k < dim; ++k) key[k] = std::lround(places[i][k] * 1e9);
-        auto const [at, is_new] = seen.emplace(key, values[i]);
-        if (is_new) continue;
-        ++met;
-        for (std::size_t k = 0; k < dim; ++k)
-          worst = std::max(worst, std::abs(at->second[k] - values[i][k]));
-      }
-      CHECK(met > places.size() / 20);
-      CHECK(worst < 1e-12);
+      check_continuity(body, random);
     }
   });
 }
@@ -248,45 +137,9 @@ TEST_CASE("raised elements are of their degree where all around them are", "[top
 TEST_CASE("fields, momentum and energy are kept when degrees change, and the mesh comes back",
           "[topology]") {
   on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
-    constexpr int dim = P::dim;
     auto body = P::body(backend);
-    auto const mesh = body.mesh();
-    Random random(8);
-    auto const u = uniform(mesh.nodes, some_gradient<dim>());
-    body.set_displacements(u);
-    body.set_velocities(random.field<dim>(mesh.nodes.size(), 1));
-    auto const before = momentum(body);
-    double const energy = strain_energy(body);
-
-    change(body, random);
-
-    auto const expected = uniform(body.mesh().nodes, some_gradient<dim>());
-    CHECK(difference(body.displacements(), expected) < 1e-14);
-    CHECK(strain_energy(body) == Approx(energy).epsilon(1e-12));
-    auto const mixed = momentum(body);
-    for (std::size_t k = 0; k < dim; ++k) CHECK(mixed[k] == Approx(before[k]).margin(1e-13));
-    auto const& mass = body.parts().layout.mass_list;
-    std::vector<bool> hangs(mass.size(), false);
-    for (auto const& slave : body.mesh().slaves) hangs[static_cast<std::size_t>(slave.node)] = true;
-    for (std::size_t i = 0; i < mass.size(); ++i) CHECK((hangs[i] ? mass[i] == 0 : mass[i] > 0));
-
-    undo(body);
-
-    CHECK(body.displacements() == u);
-    auto const after = momentum(body);
-    for (std::size_t k = 0; k < dim; ++k) CHECK(after[k] == Approx(before[k]).margin(1e-13));
-    CHECK(body.mesh().nodes == mesh.nodes);
-    CHECK(body.mesh().tables == mesh.tables);
-    CHECK(body.mesh().boundaries == mesh.boundaries);
-    CHECK(body.mesh().slaves.empty());
-
-    Point<dim> v{};
-    for (std::size_t k = 0; k < dim; ++k) v[k] = 0.3 - 0.7 * static_cast<double>(k);
-    body.set_velocities(FieldOf<dim>(mesh.nodes.size(), v));
-    change(body, random);
-    for (auto const& own : body.velocities()) CHECK(own == v);
-    undo(body);
-    for (auto const& own : body.velocities()) CHECK(own == v);
+    check_what_is_kept(
+        body, [](auto& own, Random& random) { change(own, random); }, [](auto& own) { undo(own); });
   });
 }
 
@@ -361,7 +214,7 @@ TEST_CASE("quadratic meshes are lowered, and their nodes keep their numbers", "[
     Random random(4);
     change(body, random);
     CHECK(difference(body.displacements(), uniform(body.mesh().nodes, some_gradient<3>())) < 1e-14);
-    while (coarsen(body, all(body, 2)).merged > 0 || raise(body, all(body, 0)).raised > 0) {
+    while (coarsen(body, all(body, -1)).merged > 0 || raise(body, all(body, 0)).raised > 0) {
     }
     CHECK(body.mesh().nodes == mesh.nodes);
     CHECK(body.mesh().tables == mesh.tables);
@@ -373,30 +226,9 @@ TEST_CASE("quadratic meshes are lowered, and their nodes keep their numbers", "[
 
 TEST_CASE("a body of mixed degrees steps, saves and resumes", "[topology]") {
   on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
-    constexpr int dim = P::dim;
-    auto const run = [](auto& body, int steps) {
-      CentralDifference step({.step = 1e-3});
-      step(body, steps);
-    };
-    auto body = P::body(backend);
-    Random random(12);
-    body.set_velocities(random.field<dim>(body.mesh().nodes.size(), 0.1));
-    change(body, random);
-    run(body, 5);
-    std::stringstream file;
-    body.save(file);
-    auto other = P::body(backend);
-    other.load(file);
-    for (auto* own : {&body, &other}) {
-      run(*own, 3);
-      undo(*own);
-      run(*own, 3);
-    }
-    CHECK(body.mesh().nodes == other.mesh().nodes);
-    CHECK(body.mesh().tables == other.mesh().tables);
-    for (auto const& x : body.displacements())
-      for (double y : x) CHECK(std::isfinite(y));
-    CHECK(difference(body.displacements(), other.displacements()) <= between_runs(1e-14));
+    check_resuming([&] { return P::body(backend); },
+                   [](auto& own, Random& random) { change(own, random); },
+                   [](auto& own) { undo(own); });
   });
 }
 
@@ -448,23 +280,9 @@ TEST_CASE("rules raise, refine, lower and merge by criteria", "[topology]") {
 
 TEST_CASE("forces on a mesh of mixed degrees are the same on all backends", "[topology]") {
   on_pairs<std::tuple<MainBackend>>([]<class B, class P>(B const& backend, P) {
-    constexpr int dim = P::dim;
-    auto const changed = [](auto const& on) {
-      auto body = P::body(on);
-      Random random(7);
-      change(body, random);
-      body.set_displacements(random.field<dim>(body.mesh().nodes.size(), 0.002));
-      return body;
-    };
-    auto body = changed(backend);
-    auto reference = changed(Reference<double>{});
-    REQUIRE(body.mesh().nodes == reference.mesh().nodes);
-    REQUIRE(body.mesh().tables == reference.mesh().tables);
-    auto const f = body.forces(), expected = reference.forces();
-    double const scale = largest(expected);
-    for (std::size_t i = 0; i < f.size(); ++i)
-      for (std::size_t k = 0; k < dim; ++k)
-        CHECK(f[i][k] == Approx(expected[i][k]).margin(1e-12 * scale));
+    check_agreement(
+        backend, [](auto const& on) { return P::body(on); },
+        [](auto& own, Random& random) { change(own, random); });
   });
 }
 
