@@ -75,13 +75,14 @@ TEST_CASE("facets of solids give way to four parts that run round as they do", "
 
 /// Nodes 2 and 4 go; elements 0 to 3 of six become one.
 inline Transfer<2> merging() {
-  return Transfer<2>({.old_nodes = 6,
-                      .renumbered = {0, 1, -1, 2, -1, 3},
-                      .gone = {{2, {{0, 0.25}, {5, 0.75}}}, {4, {{1, 0.5}, {3, 0.5}}}},
-                      .old_elements = {6},
-                      .origins = {{{4, -1}, {0, Transfer<2>::Origin::merged, 0}, {5, -1}}},
-                      .families = {{0, {0, 1, 2, 3}, {1}, {0.125, 0.125, 0.25, 0.5}}},
-                      .merged = {{{0, 5}, {{0, 2}, {2, 5}}}}});
+  return Transfer<2>(
+      {.old_nodes = 6,
+       .renumbered = {0, 1, -1, 2, -1, 3},
+       .gone = {{2, {{0, 0.25}, {5, 0.75}}}, {4, {{1, 0.5}, {3, 0.5}}}},
+       .old_elements = {6},
+       .origins = {{{4, -1}, {0, Transfer<2>::Origin::merged, 0}, {5, -1}}},
+       .families = {{{{0, 0}, {0, 1}, {0, 2}, {0, 3}}, {{0, 1}}, {0.125, 0.125, 0.25, 0.5}}},
+       .merged = {{{0, 5}, {{0, 2}, {2, 5}}}}});
 }
 
 TEST_CASE("values at nodes that go are left behind, and sums handed on", "[topology]") {

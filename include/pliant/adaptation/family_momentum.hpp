@@ -22,37 +22,20 @@ Point<E::dim> momentum(Connectivity<E> const& nodes, Vector<double, E::nodes> co
   return p;
 }
 
-/// The momentum that some elements of a mesh carry: see above.
-template <class M>
-Point<M::dim> momentum_of(M const& mesh, std::size_t wanted, std::vector<Index> const& elements,
-                          double density, std::vector<Point<M::dim>> const& v,
-                          Point<M::dim> const& base) {
-  Point<M::dim> sum{};
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    if (type != wanted) return;
-    for (Index e : elements) {
-      auto const& nodes = mesh.template elements<E>()[static_cast<std::size_t>(e)];
-      auto const p =
-          momentum<E>(nodes, host_nodal_volumes<E>(nodal(mesh, nodes)), density, v, base);
-      for (std::size_t k = 0; k < p.size(); ++k) sum[k] += p[k];
-    }
+/// Calls visit(E{}, nodes) for an element of a mesh.
+template <class M, class Visit>
+void visit_member(M const& mesh, typename Transfer<M::dim>::Member const& member,
+                  Visit const& visit) {
+  for_each_type_of(mesh, [&]<Element E>(E element, std::size_t type) {
+    if (type == member.type)
+      visit(element, mesh.template elements<E>()[static_cast<std::size_t>(member.element)]);
   });
-  return sum;
-}
-/// A node of an element.
-template <class M>
-Index first_node(M const& mesh, std::size_t wanted, Index element) {
-  Index node = -1;
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    if (type == wanted) node = mesh.template elements<E>()[static_cast<std::size_t>(element)][0];
-  });
-  return node;
 }
 
-/// What each node must be given so that a family, of elements E after the change, keeps its momentum: the difference that
-/// lumping made, shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the
-/// numbers of the mesh before and after.
-template <Element E, class M>
+/// What each node must be given so that a family keeps its momentum: the difference that lumping made, shared in
+/// proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of the mesh before and
+/// after.
+template <class M>
 void add_family_impulse(TopologyPlan<M> const& plan,
                         typename Transfer<M::dim>::Family const& family, double density,
                         std::vector<Point<M::dim>> const& v_before,
@@ -60,25 +43,31 @@ void add_family_impulse(TopologyPlan<M> const& plan,
   constexpr std::size_t dim = M::dim;
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
-  Point<dim> const base =
-      v_before[static_cast<std::size_t>(first_node(old, family.old_type, family.before[0]))];
-  Point<dim> lost = momentum_of(old, family.old_type, family.before, density, v_before, base);
+  Point<dim> base{}, lost{};
+  visit_member(old, family.before[0], [&](auto, auto const& nodes) {
+    base = v_before[static_cast<std::size_t>(nodes[0])];
+  });
+  for (auto const& member : family.before)
+    visit_member(old, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
+      auto const p =
+          momentum<E>(nodes, host_nodal_volumes<E>(nodal(old, nodes)), density, v_before, base);
+      for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
+    });
   double volume = 0;
-  std::vector<Vector<double, E::nodes>> shares;
-  for (Index e : family.after) {
-    auto const& nodes = now.template elements<E>()[static_cast<std::size_t>(e)];
-    shares.push_back(host_nodal_volumes<E>(nodal(now, nodes)));
-    auto const p = momentum<E>(nodes, shares.back(), density, v, base);
-    for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
-    for (int a = 0; a < E::nodes; ++a) volume += shares.back()[a];
-  }
-  for (std::size_t i = 0; i < family.after.size(); ++i) {
-    auto const& nodes = now.template elements<E>()[static_cast<std::size_t>(family.after[i])];
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      for (std::size_t k = 0; k < dim; ++k)
-        impulse[static_cast<std::size_t>(nodes[a])][k] +=
-            lost[k] * shares[i][static_cast<int>(a)] / volume;
-  }
+  std::vector<std::pair<Index, double>> shares;  // of nodes, in this volume
+  for (auto const& member : family.after)
+    visit_member(now, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
+      auto const own = host_nodal_volumes<E>(nodal(now, nodes));
+      auto const p = momentum<E>(nodes, own, density, v, base);
+      for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
+      for (int a = 0; a < E::nodes; ++a) {
+        volume += own[a];
+        shares.emplace_back(nodes[static_cast<std::size_t>(a)], own[a]);
+      }
+    });
+  for (auto const& [node, share] : shares)
+    for (std::size_t k = 0; k < dim; ++k)
+      impulse[static_cast<std::size_t>(node)][k] += lost[k] * share / volume;
 }
 
 /// What each node must be given where an element stays, but one of its nodes begins or ceases to hang: the difference in the
@@ -137,10 +126,9 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, double density, La
   plan.before->interpolation.apply_masses(components(v_before), M::dim);
   plan.after->interpolation.apply_masses(components(moving), M::dim);
   std::vector<Point<dim>> impulse(v.size(), Point<dim>{});
+  for (auto const& family : plan.transfer.families())
+    add_family_impulse(plan, family, density, v_before, moving, impulse);
   for_each_type_of(plan.after->mesh, [&]<Element E>(E, std::size_t type) {
-    for (auto const& family : plan.transfer.families())
-      if (family.type == type)
-        add_family_impulse<E>(plan, family, density, v_before, moving, impulse);
     add_impulse_of_slaves<E>(plan, type, density, v_before, moving, impulse);
   });
   plan.after->interpolation.hand_masses(components(impulse), M::dim);

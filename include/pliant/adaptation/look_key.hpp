@@ -31,6 +31,7 @@ void name_marking(std::string& text, TheRule const& rule) {
   if constexpr (RefiningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.max_level});
   if constexpr (CoarseningRule<TheRule>) add_bytes(text, std::int64_t{rule.options.min_level});
   if constexpr (RaisingRule<TheRule>) add_bytes(text, std::int64_t{rule.options.ring});
+  if constexpr (SplittingRule<TheRule>) add_bytes(text, std::int64_t{rule.options.triangles});
 }
 template <class TheRule>
 void name_choice(std::string& text, TheRule const& rule) {

@@ -46,11 +46,22 @@ std::string actions_of(TopologyPlan<M> const& plan) {
   auto const add = [&](std::size_t count, char const* word) {
     if (count > 0) words += (words.empty() ? "" : " and ") + std::string(word);
   };
-  add(plan.refined, "refine");
-  add(plan.merged, "coarsen");
-  add(plan.raised, "raise");
-  add(plan.lowered, "lower");
+  auto const& counts = plan.counts;
+  add(counts.refined, "refine");
+  add(counts.coarsened, "coarsen");
+  add(counts.raised, "raise");
+  add(counts.lowered, "lower");
+  add(counts.split, "split");
+  add(counts.merged, "merge");
   return words;
+}
+
+/// How many elements a change acts on.
+template <class M>
+std::size_t count_actions(TopologyPlan<M> const& plan) {
+  auto const& counts = plan.counts;
+  return counts.refined + counts.coarsened + counts.raised + counts.lowered + counts.split +
+         counts.merged;
 }
 
 }  // namespace detail
@@ -79,7 +90,19 @@ struct LoweringReport {
   std::size_t gone_nodes = 0;
 };
 
-/// Plans a change of a body's mesh: see refine, coarsen, raise and lower. Empty where nothing changes. Throws Error where an
+/// What splitting did.
+struct SplittingReport {
+  std::size_t split = 0;
+  std::size_t new_nodes = 0;
+};
+
+/// What merging did.
+struct MergingReport {
+  std::size_t merged = 0;  // elements that took the place of those into which they were split
+  std::size_t gone_nodes = 0;
+};
+
+/// Plans a change of a body's mesh: see refine, coarsen, raise, lower, split and merge. Empty where nothing changes. Throws Error where an
 /// element is unknown or the body's limits would be exceeded.
 template <class Parts>
 auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
@@ -104,13 +127,12 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   auto [next, taken] = change_topology(parts, plan.after, plan.transfer, give_back);
   auto const after = energy_now(next);
   auto const change = [](double from, double to) { return detail::zero_if_not_finite(to - from); };
-  LedgerEntry<dim> const entry{
-      next.state.time,
-      detail::actions_of(plan),
-      static_cast<double>(plan.refined + plan.merged + plan.raised + plan.lowered),
-      change(before.energies.strain, after.energies.strain),
-      change(before.energies.kinetic, after.energies.kinetic),
-      taken};
+  LedgerEntry<dim> const entry{next.state.time,
+                               detail::actions_of(plan),
+                               static_cast<double>(detail::count_actions(plan)),
+                               change(before.energies.strain, after.energies.strain),
+                               change(before.energies.kinetic, after.energies.kinetic),
+                               taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
   double const added = next.watched_energy ? watched_change(next, before, after) : 0;
@@ -141,13 +163,13 @@ template <DeformableBody TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
                         int max_level = 30) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "refinement is available for meshes of the catalogue's elements, pyramids aside");
+                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists(body.mesh(), "refine", marked);
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
-  return {plan->refined, plan->transfer.new_nodes().size()};
+  return {plan->counts.refined, plan->transfer.new_nodes().size()};
 }
 
 /// Undoes refinement: where all children of an element are marked (as for refine), and none is refined itself,
@@ -160,13 +182,13 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
 template <DeformableBody TheBody>
 CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& marked) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "coarsening is available for meshes of the catalogue's elements, pyramids aside");
+                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists(body.mesh(), "coarsen", marked);
   auto const plan = plan_change(body.parts(), {.coarsen = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
-  return {plan->merged, plan->transfer.gone().size()};
+  return {plan->counts.coarsened, plan->transfer.gone().size()};
 }
 
 /// Gives linear elements of a body the degree two: they become elements of the mesh's quadratic type on the same cell (Tri3
@@ -182,7 +204,7 @@ template <DeformableBody TheBody>
 RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked,
                     RaiseOptions options = {}) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "raising is available for meshes of the catalogue's elements, pyramids aside");
+                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists(body.mesh(), "raise", marked);
   if (options.ring < 0)
     throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
@@ -190,7 +212,7 @@ RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
-  return {plan->raised, plan->transfer.new_nodes().size()};
+  return {plan->counts.raised, plan->transfer.new_nodes().size()};
 }
 
 /// Undoes raising, and gives quadratic elements of the initial mesh corners only. Nodes between corners go where no other
@@ -200,13 +222,53 @@ RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked
 template <DeformableBody TheBody>
 LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marked) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "lowering is available for meshes of the catalogue's elements, pyramids aside");
+                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists(body.mesh(), "lower", marked);
   auto const plan = plan_change(body.parts(), {.lower = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
-  return {plan->lowered, plan->transfer.gone().size()};
+  return {plan->counts.lowered, plan->transfer.gone().size()};
+}
+
+/// Puts elements of another shape in the place of linear ones, of which no edge or side is divided: a Quad4 becomes four
+/// triangles (Tri3) around a new node in its middle, or two (`triangles` = 2) along its shorter diagonal, and a Hex8 six
+/// pyramids (Pyramid5) around a new node; the mesh names that type, with no elements or some, and the body has a Group
+/// of it. `marked` as for refine. They can be refined further (pyramids into pyramids and Tet4, which the mesh names too).
+/// A new node takes the displacement and velocity of the middle; each element keeps its momentum. Groups as of raise.
+/// Throws Error, with the body as it was, as refine, for elements of other types, where the mesh has not the type that
+/// they become, and for another number of triangles.
+template <DeformableBody TheBody>
+SplittingReport split(TheBody& body, std::vector<std::vector<Index>> const& marked,
+                      SplitOptions options = {}) {
+  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
+                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+  detail::check_lists(body.mesh(), "split", marked);
+  if (options.triangles != 2 && options.triangles != 4)
+    throw Error("split: into ", options.triangles, " triangles; give 2 or 4");
+  MarkedElements wanted;
+  (options.triangles == 2 ? wanted.split_in_two : wanted.split) = marked;
+  auto const plan = plan_change(body.parts(), wanted);
+  if (!plan) return {};
+  commit(body.parts(), *plan);
+  tell_listeners(body.parts(), *plan);
+  return {plan->counts.split, plan->transfer.new_nodes().size()};
+}
+
+/// Undoes splitting: where all elements that one was split into are marked, and none is refined itself or of degree two, it
+/// takes their place. The node in its middle goes, unless a condition on nodes names it; then it stays split. Groups,
+/// values of elements, internal variables, momentum and loads as of coarsen. Throws Error as refine, and for elements
+/// of types that nothing is split into.
+template <DeformableBody TheBody>
+MergingReport merge(TheBody& body, std::vector<std::vector<Index>> const& marked) {
+  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
+                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+  detail::check_lists(body.mesh(), "merge", marked);
+  auto const plan = plan_change(body.parts(), {.merge = marked});
+  if (!plan) return {};
+  commit(body.parts(), *plan);
+  tell_listeners(body.parts(), *plan);
+  return {plan->counts.merged, plan->transfer.gone().size()};
 }
 
 /// How often each element of a type was refined, by the user's number.

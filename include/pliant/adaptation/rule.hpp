@@ -64,6 +64,28 @@ struct LowerRule {
   Marking marking;
 };
 
+struct SplitOptions {
+  int triangles = 4;  // into which quadrilaterals are split: two or four
+};
+
+/// Elements of From that a criterion marks give way to such of another shape, as by split.
+template <class From, class C>
+struct SplitRule {
+  using from = From;
+  C criterion;
+  Marking marking;
+  SplitOptions options;
+};
+
+/// Elements of From all of which, of one that was split into them, a criterion marks are merged, as by merge.
+template <class From, class C>
+struct MergeRule {
+  using from = From;
+  static constexpr bool merges = true;
+  C criterion;
+  Marking marking;
+};
+
 struct SleepOptions {
   double below;  // m/s
   std::int64_t for_steps = 64;
@@ -106,9 +128,16 @@ concept RaisingRule = detail::MarksElements<R> && requires(R const& rule) {
 };
 template <class R>
 concept LoweringRule = detail::MarksElements<R> && R::lowers;
+template <class R>
+concept SplittingRule = detail::MarksElements<R> && requires(R const& rule) {
+  { rule.options.triangles } -> std::convertible_to<int>;
+};
+template <class R>
+concept MergingRule = detail::MarksElements<R> && R::merges;
 /// Changes the mesh.
 template <class R>
-concept MeshRule = RefiningRule<R> || CoarseningRule<R> || RaisingRule<R> || LoweringRule<R>;
+concept MeshRule = RefiningRule<R> || CoarseningRule<R> || RaisingRule<R> || LoweringRule<R> ||
+                   SplittingRule<R> || MergingRule<R>;
 /// Puts patches to sleep that are at rest, whatever their formulation; `sleep` makes one.
 template <class R>
 concept SleepingRule = requires(R const& rule) {

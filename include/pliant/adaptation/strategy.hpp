@@ -64,7 +64,7 @@ class Marked {
   }
   auto refine(RefineOptions options = {}) const {
     static_assert(Refinable<typename From::element>,
-                  "refine: available for the catalogue's elements, pyramids aside");
+                  "refine: available for the catalogue's elements");
     check_no_stay("refine");
     if (options.max_level < 0)
       throw Error("strategy: a max_level of ", options.max_level, "; give at least 0");
@@ -73,7 +73,7 @@ class Marked {
   /// See CoarsenRule. An element that another rule refines in the same look is not merged.
   auto coarsen(CoarsenOptions options = {}) const {
     static_assert(Refinable<typename From::element>,
-                  "coarsen: available for the catalogue's elements, pyramids aside");
+                  "coarsen: available for the catalogue's elements");
     check_no_stay("coarsen");
     if (options.min_level < 0)
       throw Error("strategy: a min_level of ", options.min_level, "; give at least 0");
@@ -82,7 +82,7 @@ class Marked {
   /// See raise. Of elements that another rule refines in the same look, these are divided.
   auto raise(RaiseOptions options = {}) const {
     static_assert(From::element::degree == 1 && Refinable<typename From::element>,
-                  "raise: for linear elements, pyramids aside");
+                  "raise: for linear elements of the catalogue");
     check_no_stay("raise");
     if (options.ring < 0)
       throw Error("strategy: a ring of ", options.ring, "; give the number of rings, 0 or more");
@@ -93,6 +93,23 @@ class Marked {
     static_assert(From::element::degree == 2, "lower: for quadratic elements");
     check_no_stay("lower");
     return LowerRule<From, C>{criterion_, marking_};
+  }
+  /// See split. Elements that another rule refines or raises in the same look are not split.
+  auto split(SplitOptions options = {}) const {
+    static_assert(!std::is_void_v<SplitInto<typename From::element>>,
+                  "split: for Quad4 and Hex8 elements");
+    check_no_stay("split");
+    if (options.triangles != 2 && options.triangles != 4)
+      throw Error("strategy: a split into ", options.triangles, " triangles; give 2 or 4");
+    return SplitRule<From, C>{criterion_, marking_, options};
+  }
+  /// See merge. Elements that another rule refines, raises or splits in the same look are not merged.
+  auto merge() const {
+    static_assert(std::same_as<typename From::element, Tri3> ||
+                      std::same_as<typename From::element, Pyramid5>,
+                  "merge: for Tri3 and Pyramid5 elements, into which others are split");
+    check_no_stay("merge");
+    return MergeRule<From, C>{criterion_, marking_};
   }
 
  private:

@@ -101,46 +101,49 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (switches) this->count_those_stiffened(allowance);
   }
 
-  /// Adds lists of the elements that rules want refined; raised, and not refined; and merged or lowered, and neither, by
-  /// the user's number. `max_level` grows to the rules'.
+  /// Adds lists of the elements that rules want changed, by the user's number: what is refined, else raised, else split,
+  /// else merged or lowered. `max_level` grows to the rules'.
   void mark(MarkedElements& marked, int& max_level) const {
-    auto& refine = marked.refine.emplace_back();
-    auto& coarsen = marked.coarsen.emplace_back();
-    auto& raise = marked.raise.emplace_back();
-    auto& lower = marked.lower.emplace_back();
+    std::array const lists{&marked.refine,  &marked.raise, &marked.split, &marked.split_in_two,
+                           &marked.coarsen, &marked.lower, &marked.merge};
+    constexpr std::size_t first_of_last = 4;  // an element can be in more than one of these
+    for (auto* list : lists) list->emplace_back();
     if constexpr (changes_mesh) {
       auto const decision = this->decision();
       if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return MeshRule<R>; });
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
-      std::uint32_t refining = 0, raising = 0, lowering = 0, coarsening = 0;  // bits of rules
+      std::array<std::uint32_t, lists.size()> rules{};  // bits of those of each list
       int r = 0;
       auto const look_at = [&]<class R>(R const& rule) {
-        std::uint32_t const bit = std::uint32_t{1} << r++;
+        auto const add_to = [&](auto const& list) {
+          for (std::size_t l = 0; l < lists.size(); ++l)
+            if (lists[l] == &list) rules[l] |= std::uint32_t{1} << r;
+        };
         if constexpr (RefiningRule<R>) {
-          refining |= bit;
+          add_to(marked.refine);
           max_level = std::max(max_level, rule.options.max_level);
         } else if constexpr (CoarseningRule<R>) {
-          coarsening |= bit;
+          add_to(marked.coarsen);
         } else if constexpr (RaisingRule<R>) {
-          raising |= bit;
+          add_to(marked.raise);
           marked.raised_rings = std::max(marked.raised_rings, rule.options.ring);
         } else if constexpr (LoweringRule<R>) {
-          lowering |= bit;
+          add_to(marked.lower);
+        } else if constexpr (SplittingRule<R>) {
+          add_to(rule.options.triangles == 2 ? marked.split_in_two : marked.split);
+        } else if constexpr (MergingRule<R>) {
+          add_to(marked.merge);
         }
+        ++r;
       };
       std::apply([&](auto const&... rule) { (look_at(rule), ...); }, rules_.rules);
       auto const masks = download<std::uint32_t>(workspace().mesh_marks);
       for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e) {
-        auto const mask = masks[e];
-        if (mask == 0) continue;
-        Index const element = table_.user_element[e];
-        if ((mask & refining) != 0) {
-          refine.push_back(element);
-        } else if ((mask & raising) != 0) {
-          raise.push_back(element);
-        } else {
-          if ((mask & coarsening) != 0) coarsen.push_back(element);
-          if ((mask & lowering) != 0) lower.push_back(element);
+        if (masks[e] == 0) continue;
+        for (std::size_t l = 0; l < lists.size(); ++l) {
+          if ((masks[e] & rules[l]) == 0) continue;
+          lists[l]->back().push_back(table_.user_element[e]);
+          if (l < first_of_last) break;
         }
       }
     }

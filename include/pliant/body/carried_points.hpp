@@ -8,7 +8,7 @@
 
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/body/groups.hpp>
-#include <pliant/topology/refinement_pattern.hpp>
+#include <pliant/topology/patterns.hpp>
 #include <pliant/topology/transfer.hpp>
 
 // What quadrature points keep, from one mesh to another.
@@ -73,25 +73,28 @@ template <class Table, int Dim>
 CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vector<Tag> const& tags,
                              Transfer<Dim> const& transfer, std::size_t type) {
   using Cell = typename Table::element::cell;
+  using Family = typename Transfer<Dim>::Family;
+  using Member = typename Transfer<Dim>::Member;
   using Origin = typename Transfer<Dim>::Origin;
   constexpr std::size_t width{Table::Laws::internal_variable_count};
   auto const& origins = transfer.origins(type);
   CarriedPoints carried{std::vector<double>(width * origins.size()), {}};
   for (std::size_t e = 0; width > 0 && e < origins.size(); ++e) {
     auto const& origin = origins[e];
-    auto const* const family = origin.family >= 0
-                                   ? &transfer.families()[static_cast<std::size_t>(origin.family)]
-                                   : nullptr;
-    auto const& old = kept[origin.type < 0 ? type : static_cast<std::size_t>(origin.type)];
+    Family const* const family = origin.family >= 0
+                                     ? &transfer.families()[static_cast<std::size_t>(origin.family)]
+                                     : nullptr;
     auto const fill = [&]<int G>(GroupNumber<G>) {
       auto const now = points_of<typename Table::template formulation<G>>();
       for (std::size_t q = 0; now.size > 0 && q < now.places.size(); ++q) {
         auto at = now.places[q];
-        if (origin.child >= 0) at = on_parent<Cell>(at, origin.child, family->mirrored);
+        if (origin.child >= 0)
+          at = on_parent<Cell>(at, *family->pattern, origin.child, family->mirrored);
         double least = std::numeric_limits<double>::infinity();
         double const* from = nullptr;
-        auto const look_at = [&](Index element, auto const& place_of) {
-          auto const number = static_cast<std::size_t>(element);
+        auto const look_at = [&](Member const& member, auto const& place_of) {
+          auto const& old = kept[member.type];
+          auto const number = static_cast<std::size_t>(member.element);
           auto const& group = old.groups[old.tags[number]];
           if (*group.law != *now.law) return;
           for (std::size_t p = 0; p < group.places.size(); ++p) {
@@ -104,10 +107,18 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
         };
         if (origin.child == Origin::merged)
           for (int c = 0; c < static_cast<int>(family->before.size()); ++c)
-            look_at(family->before[static_cast<std::size_t>(c)],
-                    [&](auto const& xi) { return on_parent<Cell>(xi, c, family->mirrored); });
+            look_at(family->before[static_cast<std::size_t>(c)], [&](auto const& xi) {
+              Vector<double, Dim> place;
+              visit_cell(family->pattern->child_kind[static_cast<std::size_t>(c)],
+                         [&]<class Child>(Child) {
+                           if constexpr (Child::dim == Dim)
+                             place = on_parent<Child>(xi, *family->pattern, c, family->mirrored);
+                         });
+              return place;
+            });
         else
-          look_at(origin.element, [](auto const& xi) { return xi; });
+          look_at({origin.type < 0 ? type : static_cast<std::size_t>(origin.type), origin.element},
+                  [](auto const& xi) { return xi; });
         if (from == nullptr) {
           carried.at_rest.resize(origins.size(), false);
           carried.at_rest[e] = true;

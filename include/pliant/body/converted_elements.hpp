@@ -18,9 +18,7 @@ inline constexpr bool same_law =
 
 /// Whether elements of one table may go over to another.
 template <class From, class To>
-inline constexpr bool are_convertible =
-    std::same_as<typename From::element::cell, typename To::element::cell> &&
-    From::element::degree != To::element::degree;
+inline constexpr bool are_convertible = interchange<typename From::element, typename To::element>;
 
 /// The group that elements of a group of one table go to in another: the first of the same law, or the first of all.
 template <class From, class To>

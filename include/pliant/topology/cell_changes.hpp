@@ -23,20 +23,25 @@ namespace detail {
 
 /// What is to become of the cells of a tree, by their present numbers.
 struct CellChanges {
-  std::vector<Index> families, refine, lower;  // families: parents
+  std::vector<Index> families, refine, lower;  // families: parents, refined or split
   std::vector<CellConversion> raise;
+  std::vector<CellSplit> split;
 
-  bool none() const { return families.empty() && refine.empty() && lower.empty() && raise.empty(); }
+  bool none() const {
+    return families.empty() && refine.empty() && lower.empty() && raise.empty() && split.empty();
+  }
 };
 
-/// A change of the cells of a tree: families are merged and degrees lowered before cells are refined, and then degrees raised.
+/// A change of the cells of a tree: families are merged and degrees lowered before cells are refined; then degrees are raised
+/// and cells split.
 template <int Dim>
 struct ChangedCells {
   std::shared_ptr<Hierarchy<Dim>> tree;
   Coarsening<Dim> coarsening;
   Refinement<Dim> refinement;
-  Raising raising;
+  std::vector<NewNode> added;    // by raising and splitting
   std::vector<Index> converted;  // cells of another degree, by their old numbers, ascending
+  std::vector<Index> split;      // by their new numbers
   std::size_t raised = 0;
 
   /// The new number of a cell.
@@ -46,11 +51,12 @@ struct ChangedCells {
   }
 };
 
-/// Makes changes of cells. Those that are refined, or merged, are not raised.
+/// Makes changes of cells. Those that are refined, or merged, are not raised, and neither they nor raised ones are split.
 template <int Dim>
 ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& changes,
                                RefinementLimits const& limits) {
-  ChangedCells<Dim> changed{std::make_shared<Hierarchy<Dim>>(before), {}, {}, {}, changes.lower, 0};
+  ChangedCells<Dim> changed{
+      std::make_shared<Hierarchy<Dim>>(before), {}, {}, {}, changes.lower, {}, 0};
   auto& tree = *changed.tree;
   changed.coarsening = tree.merge(changes.families, changes.lower);
   auto refine = changes.refine;
@@ -63,9 +69,17 @@ ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& 
     raise.push_back({c, has});
     changed.converted.push_back(old);
   }
-  changed.raising = tree.raise(raise, limits);
+  changed.added = tree.raise(raise, limits).new_nodes;
   changed.raised = raise.size();
   std::ranges::sort(changed.converted);
+  std::vector<CellSplit> split;
+  for (auto const& [old, division] : changes.split) {
+    Index const c = changed.renumbered(old);
+    if (c < 0 || !tree.is_leaf(c) || tree.cell(c).has != CellNodes::corners) continue;
+    split.push_back({c, division});
+    changed.split.push_back(c);
+  }
+  std::ranges::move(tree.split(split, limits).new_nodes, std::back_inserter(changed.added));
   return changed;
 }
 
@@ -101,7 +115,7 @@ std::vector<Index> families_to_keep(Hierarchy<Dim> const& before,
   auto const has_to_stay = [&](Index parent) {
     auto const& cell = before.cell(parent);
     for (Index c = cell.first_child;
-         !(lost.empty() && cut.empty()) && c < cell.first_child + cell.pattern().children; ++c) {
+         !(lost.empty() && cut.empty()) && c < cell.first_child + cell.divided().children; ++c) {
       auto const nodes = before.tree().nodes_of(c);
       auto const has = [&](Index node) { return std::ranges::find(nodes, node) != nodes.end(); };
       for (Index node : nodes)

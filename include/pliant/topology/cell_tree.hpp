@@ -73,8 +73,8 @@ class CellTree {
   [[nodiscard]] SharedList<TreeCell> const& cells() const { return cells_; }
   [[nodiscard]] SharedList<TreeEdge> const& edges() const { return edges_; }
   [[nodiscard]] SharedList<TreeSide> const& sides() const { return sides_; }
-  /// The refined cells, each once.
-  [[nodiscard]] std::vector<Index> const& refined() const { return refined_; }
+  /// The cells that are divided, each once.
+  [[nodiscard]] std::vector<Index> const& divided() const { return divided_; }
   [[nodiscard]] TreeCell const& operator[](Index c) const { return cells_[at(c)]; }
   [[nodiscard]] bool is_leaf(Index c) const { return cells_[at(c)].first_child < 0; }
   [[nodiscard]] Index node_count() const { return nodes_; }
@@ -101,12 +101,13 @@ class CellTree {
     return each_once(std::move(list));
   }
 
-  /// Splits a leaf that has no coarser neighbour, and appends the nodes that it makes: the points of the
-  /// pattern in their order, then those of the children's elements.
-  void split(Index c, std::vector<PlacedNode>& made) {
-    TreeCell const parent = cells_[at(c)];
-    auto const& p = parent.pattern();
+  /// Divides a leaf, to be refined one that has no coarser neighbour, and appends the nodes that it makes: the points of
+  /// the pattern in their order, then those of the children's elements.
+  void divide(Index c, Division division, std::vector<PlacedNode>& made) {
     detach(c);
+    cells_.edit(at(c)).division = division;
+    TreeCell const parent = cells_[at(c)];
+    auto const& p = parent.divided();
     std::array<Index, RefinementPattern::most_points> point{};
     auto const make_node = [&](Index& node, std::array<double, 3> const& place) {
       if (node >= 0) return;
@@ -114,45 +115,48 @@ class CellTree {
       made.push_back({node, c, parent.has, place});
     };
     std::copy_n(parent.nodes.begin(), at(p.corners), point.begin());
-    for (std::size_t e = 0; e < at(p.edges); ++e) {
+    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
       auto const k = at(p.corners) + e;
       make_node(edges_.edit(at(parent.edges[e])).middle, p.place[k]);
       bisect(parent.edges[e]);
       point[k] = edges_[at(parent.edges[e])].middle;
     }
-    for (std::size_t s = 0; s < at(p.sides); ++s) {
+    for (std::size_t s = 0; p.halves && s < at(p.sides); ++s) {
       if (p.side_centre[s] >= 0) {
         auto& centre = sides_.edit(at(parent.sides[s])).centre;
         make_node(centre, p.place[at(p.side_centre[s])]);
         point[at(p.side_centre[s])] = centre;
       }
-      divide(parent.sides[s]);
+      divide_side(parent.sides[s]);
     }
     if (p.centre >= 0) {
       make_node(cells_.edit(at(c)).centre, p.place[at(p.centre)]);
       point[at(p.centre)] = cells_[at(c)].centre;
     }
+    int const level = parent.level + (p.halves ? 1 : 0);
     auto const first_inner_edge = static_cast<Index>(edges_.size());
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
       edges_.push_back({.nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
-                        .level = parent.level + 1});
-    std::array<Index, 12> inner_side;
+                        .level = level});
+    std::array<Index, RefinementPattern::most_inner_sides> inner_side;
     inner_side.fill(-1);
 
     auto const first_child = static_cast<Index>(cells_.size());
     for (std::size_t i = 0; i < at(p.children); ++i) {
-      TreeCell child{.kind = parent.kind,
+      TreeCell child{.kind = p.child_kind[i],
                      .has = parent.has,
                      .mirrored = parent.mirrored != p.mirrored[i],
-                     .level = parent.level + 1,
+                     .level = level,
                      .parent = c};
-      for (std::size_t a = 0; a < at(p.corners); ++a) child.nodes[a] = point[at(p.child[i][a])];
-      for (std::size_t e = 0; e < at(p.edges); ++e)
+      auto const& own = child.pattern();
+      for (std::size_t a = 0; a < child.corners(); ++a) child.nodes[a] = point[at(p.child[i][a])];
+      for (std::size_t e = 0; e < at(own.edges); ++e)
         child.edges[e] = edge_of_child(parent, child, e, p.child_edge[i][e], first_inner_edge);
-      for (std::size_t s = 0; s < at(p.sides); ++s) {
+      for (std::size_t s = 0; s < at(own.sides); ++s) {
         auto const [home, number] = p.child_side[i][s];
         if (home == RefinementPattern::Home::side) {
-          child.sides[s] = part_of_side(parent.sides[at(number)], side_of(child, s));
+          Index const whole = parent.sides[at(number)];
+          child.sides[s] = p.halves ? part_of_side(whole, side_of(child, s)) : whole;
           continue;
         }
         if (inner_side[at(number)] < 0) {
@@ -164,7 +168,7 @@ class CellTree {
       cells_.push_back(child);
     }
     cells_.edit(at(c)).first_child = first_child;
-    refined_.push_back(c);
+    divided_.push_back(c);
     attach(c);
     for (Index child = first_child; child < first_child + p.children; ++child) {
       attach(child);
@@ -172,16 +176,17 @@ class CellTree {
     }
   }
 
-  /// Whether the children of a refined cell are leaves of one degree that no neighbour keeps from being merged.
+  /// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, that no neighbour
+  /// keeps from being merged.
   [[nodiscard]] bool can_be_merged(Index c) const {
     auto const& cell = cells_[at(c)];
     if (cell.first_child < 0) return false;
-    auto const& p = cell.pattern();
-    for (Index child = cell.first_child; child < cell.first_child + p.children; ++child) {
-      if (!is_leaf(child) || cells_[at(child)].has != cells_[at(cell.first_child)].has)
-        return false;
-      for (std::size_t e = 0; e < at(p.edges); ++e)
-        if (edges_[at(cells_[at(child)].edges[e])].refined > 0) return false;
+    auto const has = cell.is_split() ? CellNodes::corners : cells_[at(cell.first_child)].has;
+    for (Index i = cell.first_child; i < cell.first_child + cell.divided().children; ++i) {
+      auto const& child = cells_[at(i)];
+      if (child.first_child >= 0 || child.has != has) return false;
+      for (std::size_t e = 0; !cell.is_split() && e < at(child.pattern().edges); ++e)
+        if (edges_[at(child.edges[e])].refined > 0) return false;
     }
     return true;
   }
@@ -208,7 +213,7 @@ class CellTree {
     forget_old_conversions();
   }
 
-  /// Gives refined cells, each of which can be merged, the degree of their children.
+  /// Gives divided cells, each of which can be merged, the degree of their children.
   void take_degree_of_children(std::vector<Index> const& parents) {
     for (Index const c : parents) {
       auto const has = cells_[at(cells_[at(c)].first_child)].has;
@@ -218,7 +223,7 @@ class CellTree {
     forget_old_conversions();
   }
 
-  /// Makes refined cells, each of which can be merged and has the degree of its children, leaves again, and takes leaves
+  /// Makes divided cells, each of which can be merged and has the degree of its children, leaves again, and takes leaves
   /// the nodes between their corners. Nodes, cells, edges and sides that nothing uses any more go, but for those
   /// of the initial mesh; the others move up.
   Renumbering merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
@@ -226,12 +231,13 @@ class CellTree {
     for (Index const c : parents) {
       auto& cell = cells_.edit(at(c));
       Index const first = cell.first_child;
-      for (Index child = first; child < first + cell.pattern().children; ++child) {
+      for (Index child = first; child < first + cell.divided().children; ++child) {
         detach(child);
         gone[at(child)] = true;
       }
       detach(c);
       cell.first_child = -1;
+      cell.division = Division::refined;
       attach(c);
     }
     auto touched = parents;
@@ -239,7 +245,7 @@ class CellTree {
       convert({c, CellNodes::corners});
       touched.push_back(c);
     }
-    std::erase_if(refined_, [&](Index c) { return is_leaf(c); });
+    std::erase_if(divided_, [&](Index c) { return is_leaf(c); });
     auto renumbered = compact(touched, std::move(gone));
     forget_old_conversions();
     return renumbered;
@@ -284,7 +290,7 @@ class CellTree {
     visit("cells", r.cells_...);
     visit("edges", r.edges_...);
     visit("sides", r.sides_...);
-    visit("refined cells", r.refined_...);
+    visit("divided cells", r.divided_...);
     visit("cells of other degrees", r.converted_...);
     visit("leaves with corners only", r.linear_leaves_...);
     visit("other leaves", r.quadratic_leaves_...);
@@ -325,6 +331,7 @@ class CellTree {
   void detach(Index c) { count_uses(c, -1); }
   void count_uses(Index c, int by) {
     auto const& cell = cells_[at(c)];
+    if (cell.is_split()) return;  // its children have its edges and sides
     auto const& p = cell.pattern();
     for (std::size_t e = 0; e < at(p.edges); ++e) {
       auto& edge = edges_.edit(at(cell.edges[e]));
@@ -361,7 +368,7 @@ class CellTree {
   }
 
   /// Divides a side whose edges are bisected, and which has its centre, in four.
-  void divide(Index s) {
+  void divide_side(Index s) {
     auto const side = sides_[at(s)];
     if (side.first_child >= 0) return;
     auto const n = side.corners();
@@ -403,6 +410,7 @@ class CellTree {
     Index const a = child.nodes[at(p.edge[e][0])], b = child.nodes[at(p.edge[e][1])];
     if (part.home == RefinementPattern::Home::edge) {
       Index const whole = parent.edges[at(part.number)];
+      if (!parent.divided().halves) return whole;
       auto const& ends = edges_[at(whole)].nodes;
       return half_at(whole, a == ends[0] || a == ends[1] ? a : b);
     }
@@ -431,12 +439,13 @@ class CellTree {
   void place_nodes(Index child, Index parent, MakeNode const& make_node) {
     auto& cell = cells_.edit(at(child));
     auto const& p = cell.pattern();
-    auto const i = at(child - cells_[at(parent)].first_child);
+    auto const& divided = cells_[at(parent)].divided();
+    auto const& corner = divided.child[at(child - cells_[at(parent)].first_child)];
     auto const mean = [&](auto const& corners, std::size_t count) {
       std::array<double, 3> sum{};
       for (std::size_t k = 0; k < count; ++k)
         for (std::size_t d = 0; d < 3; ++d)
-          sum[d] += p.place[at(p.child[i][at(corners[k])])][d] / static_cast<double>(count);
+          sum[d] += divided.place[at(corner[at(corners[k])])][d] / static_cast<double>(count);
       return sum;
     };
     for (std::size_t e = 0; e < at(p.edges); ++e)
@@ -508,7 +517,7 @@ class CellTree {
     auto const move = [](Index& number, std::vector<Index> const& to) {
       if (number >= 0) number = to[at(number)];
     };
-    for (Index& c : refined_) move(c, cell);
+    for (Index& c : divided_) move(c, cell);
     auto const move_within_cell = [&](TreeCell& c) {
       move(c.first_child, cell);
       move(c.centre, node);
@@ -521,8 +530,9 @@ class CellTree {
       move(s.centre, node);
       move(s.first_child, side);
       move(s.first_inner_edge, edge);
+      for (Index& c : s.cells) move(c, cell);  // parts of split cells among them
     };
-    auto knowing = initial_of(refined_);
+    auto knowing = initial_of(divided_);
     knowing.insert(knowing.end(), converted_.begin(), converted_.end());
     knowing = each_once(std::move(knowing));
     for (Index const c : knowing) move_within_cell(cells_.edit(at(c)));
@@ -548,7 +558,6 @@ class CellTree {
       move(s.parent, side);
       for (Index& p : s.nodes) move(p, node);
       for (Index& e : s.edges) move(e, edge);
-      for (Index& c : s.cells) move(c, cell);
     }
     nodes_ = static_cast<Index>(std::ranges::count(node_used, true));
     return {node, cell};
@@ -575,7 +584,7 @@ class CellTree {
   SharedList<TreeCell> cells_;
   SharedList<TreeEdge> edges_;
   SharedList<TreeSide> sides_;
-  std::vector<Index> refined_;
+  std::vector<Index> divided_;
   std::vector<Index> converted_;  // of the initial mesh, that have not what they had: each once
   Index linear_leaves_ = 0, quadratic_leaves_ = 0;
   Index nodes_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -31,63 +32,53 @@ struct ChangedElements {
   std::vector<typename Transfer<Dim>::Origin> origins;
 };
 
-/// What becomes of the elements of types that are the cells `old_cells` of a tree.
-template <int Dim>
+/// What becomes of the elements of a mesh, types of which are the cells `old_cells` of a tree.
+template <class M>
 class ElementChanges {
-  using Origin = typename Transfer<Dim>::Origin;
-  using Family = typename Transfer<Dim>::Family;
+  static constexpr int dim = M::dim;
+  using Origin = typename Transfer<dim>::Origin;
+  using Family = typename Transfer<dim>::Family;
+  using Member = typename Transfer<dim>::Member;
 
  public:
-  ElementChanges(std::vector<std::vector<Index>> const& old_cells, Hierarchy<Dim> const& before,
-                 std::vector<Index> const& merged, ChangedCells<Dim> const& changed)
-      : old_cells_(old_cells),
-        before_(before),
-        after_(*changed.tree),
-        merged_(merged),
-        changed_(changed),
-        divided_(changed.refinement.parents) {
-    std::ranges::sort(divided_);
+  ElementChanges(M const& mesh, std::vector<std::vector<Index>> const& old_cells,
+                 Hierarchy<dim> const& before, std::vector<Index> const& merged,
+                 ChangedCells<dim> const& changed)
+      : old_cells_(old_cells), before_(before), after_(*changed.tree), changed_(changed) {
+    for_each_type_of(mesh, [&]<Element E>(E, std::size_t) {
+      types_.emplace_back(kind_of<typename E::cell>, nodes_on_cell<E>);
+    });
+    for (Index const old : merged) add_merged(old);
+    for (Index const old : changed.converted) add_converted(old);
+    first_divided_ = families_.size();
+    for (Index const c : changed.refinement.parents) add_divided(c);
+    for (Index const c : changed.split) add_divided(c);
+    is_divided_ = changed.refinement.parents;
+    is_divided_.insert(is_divided_.end(), changed.split.begin(), changed.split.end());
+    std::ranges::sort(is_divided_);
   }
 
-  /// Those of a type after the change. Appends the families that are merged, converted or divided.
+  /// Those of a type after the change.
   template <Element E>
-  ChangedElements<Dim> of(std::size_t type, std::vector<Family>& families) const {
+  ChangedElements<dim> of(std::size_t type) {
     auto const& old_cells = old_cells_[type];
-    auto const arriving = arriving_at<E>(type);
-    ChangedElements<Dim> list;
+    auto const arriving = arriving_at<E>();
+    ChangedElements<dim> list;
     list.cells.reserve(old_cells.size() + arriving.size());
     list.origins.reserve(old_cells.size() + arriving.size());
     auto const add = [&](Index c, Origin const& origin) {
       list.cells.push_back(c);
       list.origins.push_back(origin);
     };
-    auto const add_family = [&](TreeCell const& cell, std::size_t old_type) -> Family& {
-      auto& family = families.emplace_back();
-      family.type = type;
-      family.old_type = old_type;
-      family.mirrored = cell.mirrored;
-      return family;
-    };
     auto next = arriving.begin();
     auto const add_arriving_before = [&](Index c) {
-      for (; next != arriving.end() && next->cell < c; ++next) {
-        auto const& cell = after_.cell(next->cell);
-        auto& family = add_family(cell, next->old_type);
-        family.after = {static_cast<Index>(list.cells.size())};
-        bool const merged = next->old_type == type;
-        Index const first = merged ? before_.cell(next->old_cell).first_child : next->old_cell;
-        for (Index k = 0; k < (merged ? cell.pattern().children : 1); ++k)
-          family.before.push_back(old_element(next->old_type, first + k));
-        add(next->cell, {family.before[0], merged ? Origin::merged : Origin::converted,
-                         static_cast<Index>(families.size()) - 1,
-                         merged ? Index{-1} : static_cast<Index>(next->old_type)});
-      }
+      for (; next != arriving.end() && next->cell < c; ++next)
+        add(next->cell, origin_of(type, next->child, next->family, list.cells.size()));
     };
 
     // Numbers of cells stay in order, and those of new ones follow.
-    auto next_divided = divided_.begin();
+    auto next_divided = is_divided_.begin();
     auto next_converted = changed_.converted.begin();
-    std::vector<Index> divided_elements;
     for (std::size_t e = 0; e < old_cells.size(); ++e) {
       Index const c = changed_.renumbered(old_cells[e]);
       if (c < 0) continue;
@@ -95,81 +86,130 @@ class ElementChanges {
         ++next_converted;
       if (next_converted != changed_.converted.end() && *next_converted == old_cells[e]) continue;
       add_arriving_before(c);
-      while (next_divided != divided_.end() && *next_divided < c) ++next_divided;
-      if (next_divided == divided_.end() || *next_divided != c)
+      while (next_divided != is_divided_.end() && *next_divided < c) ++next_divided;
+      if (next_divided == is_divided_.end() || *next_divided != c)
         add(c, {static_cast<Index>(e), Origin::same});
-      else
-        divided_elements.push_back(static_cast<Index>(e));
     }
     add_arriving_before(static_cast<Index>(after_.cells().size()));
-    std::vector<Index> own_divided;
-    std::ranges::copy_if(divided_, std::back_inserter(own_divided),
-                         [&](Index c) { return is_cell_of<E>(after_.cell(c)); });
-    for (Index const parent : changed_.refinement.parents) {
-      auto const& cell = after_.cell(parent);
-      if (!is_cell_of<E>(cell)) continue;
-      auto const place = std::ranges::lower_bound(own_divided, parent) - own_divided.begin();
-      auto& family = add_family(cell, type);
-      family.before = {divided_elements[static_cast<std::size_t>(place)]};
-      for (int child = 0; child < cell.pattern().children; ++child) {
-        family.after.push_back(static_cast<Index>(list.cells.size()));
-        add(cell.first_child + child,
-            {family.before[0], child, static_cast<Index>(families.size()) - 1});
-      }
-    }
     return list;
   }
 
+  /// Complete once `of` was asked for each type.
+  std::vector<Family> families() && { return std::move(families_); }
+
  private:
-  /// A cell that becomes an element of a type: by its new and old numbers, and the type that its old elements have.
+  /// A cell that becomes an element: its new number, its family and, as of Origin, its place there.
   struct Arriving {
-    Index cell, old_cell;
-    std::size_t old_type;
+    Index cell;
+    int child;
+    std::size_t family;
   };
-  /// Ascending. Merged cells, and converted ones.
+
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  /// The element that a cell was before.
+  Member old_element(Index cell) const {
+    auto const& own = before_.cell(cell);
+    auto const type = static_cast<std::size_t>(
+        std::ranges::find(types_, std::pair(own.kind, own.has)) - types_.begin());
+    auto const& cells = old_cells_[type];
+    return {type, static_cast<Index>(std::ranges::lower_bound(cells, cell) - cells.begin())};
+  }
+  Family& add_family(TreeCell const& whole) {
+    auto& family = families_.emplace_back();
+    family.mirrored = whole.mirrored;
+    return family;
+  }
+  void add_merged(Index old) {
+    auto const& cell = before_.cell(old);
+    auto& family = add_family(cell);
+    family.pattern = &cell.divided();
+    for (Index child = 0; child < family.pattern->children; ++child)
+      family.before.push_back(old_element(cell.first_child + child));
+    family.after.resize(1);
+    list_arriving(changed_.renumbered(old), Origin::merged);
+  }
+  void add_converted(Index old) {
+    auto& family = add_family(before_.cell(old));
+    family.before = {old_element(old)};
+    family.after.resize(1);
+    list_arriving(changed_.renumbered(old), Origin::converted);
+  }
+  void add_divided(Index c) {
+    auto const& cell = after_.cell(c);
+    auto& family = add_family(cell);
+    family.pattern = &cell.divided();
+    family.before = {old_element(old_number(c))};
+    family.after.resize(at(family.pattern->children));
+  }
+  void list_arriving(Index c, int child) { arriving_.push_back({c, child, families_.size() - 1}); }
+  Index old_number(Index c) {
+    auto const& renumbered = changed_.coarsening.renumbered.cells;
+    if (renumbered.empty()) return c;
+    if (old_numbers_.empty())
+      for (Index old = 0; old < static_cast<Index>(renumbered.size()); ++old)
+        if (renumbered[at(old)] >= 0) old_numbers_.push_back(old);
+    return old_numbers_[at(c)];
+  }
+
+  /// Ascending: merged and converted cells, and children.
   template <Element E>
-  std::vector<Arriving> arriving_at(std::size_t type) const {
+  std::vector<Arriving> arriving_at() const {
     std::vector<Arriving> list;
-    auto const add = [&](Index old, std::size_t old_type) {
-      if (Index const c = changed_.renumbered(old); is_cell_of<E>(after_.cell(c)))
-        list.push_back({c, old, old_type});
-    };
-    for (Index const parent : merged_) add(parent, type);
-    for (Index const old : changed_.converted) {
-      std::size_t old_type = 0;
-      while (!std::ranges::binary_search(old_cells_[old_type], old)) ++old_type;
-      add(old, old_type);
-    }
+    std::ranges::copy_if(arriving_, std::back_inserter(list),
+                         [&](Arriving const& own) { return is_cell_of<E>(after_.cell(own.cell)); });
     std::ranges::sort(list, {}, &Arriving::cell);
+    auto family = first_divided_;
+    auto const add_children = [&](std::vector<Index> const& parents) {
+      for (Index const parent : parents) {
+        Index const first = after_.cell(parent).first_child;
+        for (Index child = 0; child < after_.cell(parent).divided().children; ++child)
+          if (is_cell_of<E>(after_.cell(first + child)))
+            list.push_back({first + child, child, family});
+        ++family;
+      }
+    };
+    add_children(changed_.refinement.parents);
+    add_children(changed_.split);
     return list;
   }
-  Index old_element(std::size_t type, Index cell) const {
-    auto const& cells = old_cells_[type];
-    return static_cast<Index>(std::ranges::lower_bound(cells, cell) - cells.begin());
+  /// Of the element with a number in the list of its type. Makes it a member of its family.
+  Origin origin_of(std::size_t type, int child, std::size_t number, std::size_t element) {
+    auto& family = families_[number];
+    family.after[child < 0 ? 0 : at(child)] = {type, static_cast<Index>(element)};
+    auto const& from = family.before[0];
+    return {from.element, child, static_cast<Index>(number),
+            from.type == type ? Index{-1} : static_cast<Index>(from.type)};
   }
 
   std::vector<std::vector<Index>> const& old_cells_;
-  Hierarchy<Dim> const &before_, &after_;
-  std::vector<Index> const& merged_;  // parents, by their old numbers
-  ChangedCells<Dim> const& changed_;
-  std::vector<Index> divided_;  // ascending
+  Hierarchy<dim> const &before_, &after_;
+  ChangedCells<dim> const& changed_;
+  std::vector<std::pair<CellKind, CellNodes>> types_;
+  std::vector<Family> families_;    // merged cells, converted ones, refined ones, split ones
+  std::vector<Arriving> arriving_;  // merged and converted cells
+  std::size_t first_divided_ = 0;   // of the families
+  std::vector<Index> is_divided_;   // cells, by their new numbers, ascending
+  std::vector<Index> old_numbers_;  // of cells; empty until one is asked for that changed
 };
 
-/// The shares of the merged elements in the volume of their family.
+/// The shares of the elements before in the volume of their family, for those that are merged.
 template <class M>
 void share_volumes(M const& mesh, std::vector<typename Transfer<M::dim>::Family>& families) {
+  for (auto& family : families) family.shares.resize(family.before.size());
   for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    for (auto& family : families) {
-      if (family.old_type != type) continue;
-      double sum = 0;
-      for (Index e : family.before) {
-        auto const& nodes = mesh.template elements<E>()[static_cast<std::size_t>(e)];
-        family.shares.push_back(volume<E, MassQuadrature<E>>(nodal(mesh, nodes)));
-        sum += family.shares.back();
+    for (auto& family : families)
+      for (std::size_t i = 0; i < family.before.size(); ++i) {
+        if (family.before[i].type != type) continue;
+        auto const element = static_cast<std::size_t>(family.before[i].element);
+        family.shares[i] =
+            volume<E, MassQuadrature<E>>(nodal(mesh, mesh.template elements<E>()[element]));
       }
-      for (double& share : family.shares) share /= sum;
-    }
   });
+  for (auto& family : families) {
+    double const sum = std::accumulate(family.shares.begin(), family.shares.end(), 0.0);
+    for (double& share : family.shares) share /= sum;
+  }
 }
 
 /// The values that laws read, of the elements of a type after a change: (elements, values).

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include <pliant/mesh/mesh.hpp>
@@ -33,16 +34,37 @@ struct ConvertedType<E, Mesh<Es...>> {
 
 }  // namespace detail
 
+/// Elements that take the place of a linear one which is split: triangles of a quadrilateral, pyramids of a hexahedron.
+template <class E>
+using SplitInto = std::conditional_t<std::same_as<E, Quad4>, Tri3,
+                                     std::conditional_t<std::same_as<E, Hex8>, Pyramid5, void>>;
+
+/// Whether elements of one type can take the place of others of another type, or those of these: by degree, by shape, or as
+/// tetrahedra do where pyramids are refined.
+template <class One, class Other>
+inline constexpr bool interchange =
+    (std::same_as<typename One::cell, typename Other::cell> && One::degree != Other::degree) ||
+    std::same_as<SplitInto<One>, Other> || std::same_as<SplitInto<Other>, One> ||
+    (std::same_as<One, Pyramid5> && std::same_as<Other, Tet4>) ||
+    (std::same_as<One, Tet4> && std::same_as<Other, Pyramid5>);
+
 /// The place among a mesh's types of the first on the same cell as E that is of another degree; no_type where there is none.
 template <class E, class M>
 inline constexpr std::size_t converted_type = detail::ConvertedType<E, M>::value;
 
 namespace detail {
 
+template <class E, class M>
+inline constexpr bool has_type = false;
+template <class E, Element... Es>
+inline constexpr bool has_type<E, Mesh<Es...>> = (std::same_as<E, Es> || ...);
+
+/// Tetrahedra are among the children of pyramids.
 template <class M>
 inline constexpr bool can_be_refined = false;
 template <Element... Es>
-inline constexpr bool can_be_refined<Mesh<Es...>> = (Refinable<Es> && ...);
+inline constexpr bool can_be_refined<Mesh<Es...>> =
+    (Refinable<Es> && ...) && (!has_type<Pyramid5, Mesh<Es...>> || has_type<Tet4, Mesh<Es...>>);
 
 template <Element E>
 bool is_cell_of(TreeCell const& cell) {

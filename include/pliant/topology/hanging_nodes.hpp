@@ -27,10 +27,10 @@ class HangingNodes {
       listed_.assign(at(tree_.node_count()), false);
       linear_edge_.assign(edges_.size(), false);
     }
-    auto const& refined = tree_.refined();
-    auto divided = divided_sides(tree_.sides_of(refined));
+    auto const& divided_cells = tree_.divided();
+    auto divided = divided_sides(tree_.sides_of(divided_cells));
     if (mixed()) lower_sides(divided);
-    for (Index const e : tree_.edges_of(refined))
+    for (Index const e : tree_.edges_of(divided_cells))
       if (edges_[at(e)].leaves > 0) add_nodes_on(e);
     for (auto const& [side, has] : divided) add_nodes_on_parts(*side, has);
     if (mixed()) add_nodes_of_higher_degree();

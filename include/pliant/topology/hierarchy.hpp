@@ -21,7 +21,7 @@
 
 namespace pliant {
 
-/// The elements that can be refined: of the catalogue's shape functions, on all cells but pyramids.
+/// The elements that can be refined: of the catalogue's shape functions.
 template <class E>
 concept Refinable = Element<E> && has_pattern<typename E::cell> &&
                     (std::derived_from<E, LinearElement<typename E::cell>> || CurvedSimplex<E> ||
@@ -35,8 +35,8 @@ struct Refinement {
   std::vector<DividedFacet<Dim>> facets;  ///< sides that were divided, in the plane edges
 };
 
-/// What a call of Hierarchy::raise did.
-struct Raising {
+/// What a call of Hierarchy::raise or split did.
+struct AddedNodes {
   std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
 };
 
@@ -59,7 +59,7 @@ struct RefinementLimits {
 };
 
 /// The refinement tree of a mesh, plane or solid, of elements of degree one or two, as RefinementPattern divides
-/// their cells. Levels differ by one at most across edges and sides; nodes that hang there are slaves of the
+/// their cells, into smaller ones or between their corners. Levels differ by one at most across edges and sides; nodes that hang there are slaves of the
 /// coarser element's, so that fields are continuous. Refinement appends cells and nodes; coarsening takes
 /// away what nothing uses any more, and what stays keeps its order: nodes and cells of the initial mesh keep
 /// their numbers for good.
@@ -122,19 +122,16 @@ class Hierarchy {
 
     Refinement<Dim> done{
         .parents = TreeQueries(tree_).closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
-    auto const nodes = check_room(done.parents, limits);
+    auto const needed = TreeQueries(tree_).needed(done.parents);
+    check_room("refine", done.parents.size(), needed, limits);
     auto whole = Dim == 2 ? tree_.edges_of(done.parents) : tree_.sides_of(done.parents);
     std::erase_if(whole, [&](Index s) { return first_part(s) >= 0; });
     std::vector<PlacedNode> made;
-    made.reserve(nodes);
-    done.new_nodes.reserve(nodes);
-    for (Index const c : done.parents) tree_.split(c, made);
-    for (PlacedNode const& node : made) {
-      done.new_nodes.push_back(interpolated(node));
-      points_.push_back(mean_of_parents(done.new_nodes.back()));
-    }
+    made.reserve(needed.nodes);
+    for (Index const c : done.parents) tree_.divide(c, Division::refined, made);
+    done.new_nodes = add_points(made);
     for (Index const s : whole) done.facets.push_back(divided(s));
-    leaf_count_ += TreeQueries(tree_).count_new_cells(done.parents) - done.parents.size();
+    leaf_count_ += needed.cells - done.parents.size();
     return done;
   }
 
@@ -147,35 +144,23 @@ class Hierarchy {
   }
   /// The parents of the families that coarsen would merge, ascending.
   [[nodiscard]] std::vector<Index> families(std::span<Index const> marked) const {
-    std::vector<Index> sorted(marked.begin(), marked.end());
-    for (Index const c : sorted) {
-      check_number("coarsen", c);
-      if (!is_leaf(c))
-        throw Error("Hierarchy: cannot merge cell ", c, ", which is refined; mark leaves");
-    }
-    sort_and_unify(sorted);
-    std::vector<Index> parents;
-    for (std::size_t i = 0; i < sorted.size();) {
-      Index const parent = cell(sorted[i]).parent;
-      std::size_t next = i + 1;
-      while (next < sorted.size() && cell(sorted[next]).parent == parent) ++next;
-      if (parent >= 0 && next - i == at(cell(parent).pattern().children) &&
-          tree_.can_be_merged(parent))
-        parents.push_back(parent);
-      i = next;
-    }
-    std::ranges::sort(parents);
-    return parents;
+    return families(marked, [](TreeCell const& parent) { return !parent.is_split(); });
   }
-  /// Merges families that `families` gave, and takes other leaves the nodes between their corners.
+  /// The cells that were split into the marked leaves, all of which have corners only, ascending.
+  [[nodiscard]] std::vector<Index> split_cells(std::span<Index const> marked) const {
+    return families(marked, [](TreeCell const& parent) { return parent.is_split(); });
+  }
+  /// Merges what `families` and `split_cells` gave, and takes other leaves the nodes between their corners.
   Coarsening<Dim> merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
     Coarsening<Dim> done{.parents = parents, .renumbered = {}, .gone = {}, .facets = {}};
     if (parents.empty() && lowered.empty()) return done;
     tree_.take_degree_of_children(parents);
-    for (Index const s : sides_of_no_other(parents)) done.facets.push_back(divided(s));
+    auto refined = parents;
+    std::erase_if(refined, [&](Index c) { return cell(c).is_split(); });
+    for (Index const s : sides_of_no_other(refined)) done.facets.push_back(divided(s));
     auto const inside = between_nodes_of(parents, lowered);
     std::size_t children = 0;
-    for (Index const c : parents) children += at(cell(c).pattern().children);
+    for (Index const c : parents) children += at(cell(c).divided().children);
     done.renumbered = tree_.merge(parents, lowered);
     leaf_count_ += parents.size();
     leaf_count_ -= children;
@@ -191,21 +176,26 @@ class Hierarchy {
 
   /// Gives leaves that have corners only the nodes of another degree. Throws Error where the limit of nodes would be
   /// exceeded; the hierarchy is then as it was.
-  Raising raise(std::vector<CellConversion> const& conversions,
-                RefinementLimits const& limits = {}) {
+  AddedNodes raise(std::vector<CellConversion> const& conversions,
+                   RefinementLimits const& limits = {}) {
     auto const nodes = points_.size() + TreeQueries(tree_).count_new_nodes(conversions);
     if (nodes > std::min(limits.nodes, most_))
       throw Error("Hierarchy: to raise the degree of ", conversions.size(), " cells takes ", nodes,
                   " nodes in all, and the limit is ", std::min(limits.nodes, most_),
                   "; mark fewer cells or raise the limit");
-    Raising done;
     std::vector<PlacedNode> made;
     tree_.raise(conversions, made);
-    for (PlacedNode const& node : made) {
-      done.new_nodes.push_back(interpolated(node));
-      points_.push_back(mean_of_parents(done.new_nodes.back()));
-    }
-    return done;
+    return {add_points(made)};
+  }
+  /// Puts cells of another shape in the place of leaves that have corners only. They are neither coarser nor finer, and
+  /// no edge or side is divided. Throws Error as refine.
+  AddedNodes split(std::vector<CellSplit> const& splits, RefinementLimits const& limits = {}) {
+    auto const needed = TreeQueries(tree_).needed(splits);
+    check_room("split", splits.size(), needed, limits);
+    std::vector<PlacedNode> made;
+    for (auto const& [c, division] : splits) tree_.divide(c, division, made);
+    leaf_count_ += needed.cells - splits.size();
+    return {add_points(made)};
   }
   /// The whole sides of leaves (in the plane, edges), as facets with the nodes that they have now.
   [[nodiscard]] std::vector<DividedFacet<Dim>> whole_facets(
@@ -229,6 +219,31 @@ class Hierarchy {
   }
 
  private:
+  /// The parents of which all children are marked and can be merged, and of which wanted(cell).
+  template <class Wanted>
+  [[nodiscard]] std::vector<Index> families(std::span<Index const> marked,
+                                            Wanted const& wanted) const {
+    std::vector<Index> sorted(marked.begin(), marked.end());
+    for (Index const c : sorted) {
+      check_number("coarsen", c);
+      if (!is_leaf(c))
+        throw Error("Hierarchy: cannot merge cell ", c, ", which is divided; mark leaves");
+    }
+    sort_and_unify(sorted);
+    std::vector<Index> parents;
+    for (std::size_t i = 0; i < sorted.size();) {
+      Index const parent = cell(sorted[i]).parent;
+      std::size_t next = i + 1;
+      while (next < sorted.size() && cell(sorted[next]).parent == parent) ++next;
+      if (parent >= 0 && next - i == at(cell(parent).divided().children) && wanted(cell(parent)) &&
+          tree_.can_be_merged(parent))
+        parents.push_back(parent);
+      i = next;
+    }
+    std::ranges::sort(parents);
+    return parents;
+  }
+
   static constexpr std::size_t most_ = std::numeric_limits<Index>::max();
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -271,23 +286,31 @@ class Hierarchy {
     }
   }
 
-  /// How many nodes it takes to refine the cells. Throws Error where a limit would be exceeded.
-  std::size_t check_room(std::vector<Index> const& parents, RefinementLimits const& limits) const {
-    auto const nodes = TreeQueries(tree_).count_new_nodes(parents);
-    auto const cells_made = TreeQueries(tree_).count_new_cells(parents);
-    auto const check = [&](char const* what, std::size_t needed, std::size_t limit) {
-      if (needed > limit)
-        throw Error("Hierarchy: to refine ", parents.size(),
-                    " cells, coarser neighbours included, takes ", needed, " ", what,
+  /// Throws Error where it takes more than a limit to divide so many cells.
+  void check_room(char const* verb, std::size_t count, TreeQueries::Needed const& needed,
+                  RefinementLimits const& limits) const {
+    auto const check = [&](char const* what, std::size_t in_all, std::size_t limit) {
+      if (in_all > limit)
+        throw Error("Hierarchy: to ", verb, " ", count,
+                    " cells, coarser neighbours included, takes ", in_all, " ", what,
                     " in all, and the limit is ", limit, "; mark fewer cells or raise the limit");
     };
-    check("nodes", points_.size() + nodes, std::min(limits.nodes, most_));
-    check("leaves", leaf_count_ + cells_made - parents.size(), limits.leaves);
-    check("cells", cells().size() + cells_made, most_);
-    check("edges", tree_.edges().size() + TreeQueries(tree_).most_new_edges(parents), most_);
-    return nodes;
+    check("nodes", points_.size() + needed.nodes, std::min(limits.nodes, most_));
+    check("leaves", leaf_count_ + needed.cells - count, limits.leaves);
+    check("cells", cells().size() + needed.cells, most_);
+    check("edges", tree_.edges().size() + needed.edges, most_);
   }
 
+  /// Gives new nodes their points.
+  std::vector<NewNode> add_points(std::vector<PlacedNode> const& made) {
+    std::vector<NewNode> nodes;
+    nodes.reserve(made.size());
+    for (PlacedNode const& node : made) {
+      nodes.push_back(interpolated(node));
+      points_.push_back(mean_of_parents(nodes.back()));
+    }
+    return nodes;
+  }
   NewNode interpolated(PlacedNode const& node) const {
     auto const& parent = cell(node.cell);
     return {node.node,
@@ -391,7 +414,7 @@ class Hierarchy {
     }
     for (Index const c : parents) {
       auto const& own = cell(c);
-      auto const& p = own.pattern();
+      auto const& p = own.divided();
       auto const nodes = tree_.nodes_of(c);
       for (Index child = own.first_child; child < own.first_child + p.children; ++child) {
         auto const& corners = p.child[at(child - own.first_child)];
@@ -401,7 +424,7 @@ class Hierarchy {
           if (seen[at(list[a])] || std::ranges::find(nodes, list[a]) != nodes.end()) continue;
           seen[at(list[a])] = true;
           std::array<double, 3> place{};
-          for (std::size_t b = 0; b < at(p.corners); ++b)
+          for (std::size_t b = 0; b < cell(child).corners(); ++b)
             for (std::size_t k = 0; k < 3; ++k)
               place[k] += places[a][b] * p.place[at(corners[b])][k];
           found.push_back({list[a], detail::shape_weights(own.kind, own.has, nodes, place)});

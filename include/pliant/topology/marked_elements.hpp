@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -13,16 +15,19 @@
 // From marks on elements to changes of the cells that they are.
 namespace pliant {
 
-/// Elements to refine, to coarsen, and to give a higher or lower degree: for each element type in the order of the mesh,
-/// their numbers. A list of no types marks none.
+/// Elements to refine, to coarsen, to give a higher or lower degree, to split (quadrilaterals into four triangles, or into
+/// two) and to merge: for each element type in the order of the mesh, their numbers. A list of no types marks none.
 struct MarkedElements {
-  std::vector<std::vector<Index>> refine{}, coarsen{}, raise{}, lower{};
+  std::vector<std::vector<Index>> refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{},
+      merge{};
   int raised_rings = 0;  ///< so many rings of neighbours across edges are raised along
 
   bool none() const {
-    auto const empty = [](auto const& list) { return list.empty(); };
-    return std::ranges::all_of(refine, empty) && std::ranges::all_of(coarsen, empty) &&
-           std::ranges::all_of(raise, empty) && std::ranges::all_of(lower, empty);
+    auto const empty = [](auto const& list) {
+      return std::ranges::all_of(list, [](auto const& own) { return own.empty(); });
+    };
+    return empty(refine) && empty(coarsen) && empty(raise) && empty(lower) && empty(split) &&
+           empty(split_in_two) && empty(merge);
   }
 };
 
@@ -117,6 +122,66 @@ std::vector<CellConversion> raised_cells(M const& mesh, RefinementTree<M> const&
   return raised;
 }
 
+/// The shorter diagonal of a quadrilateral, of equal ones that from corner 0.
+template <int Dim>
+Division shorter_diagonal(Hierarchy<Dim> const& tree, Index c) {
+  auto const length = [&](std::size_t a) {
+    auto const& cell = tree.cell(c);
+    auto const &from = tree.points()[static_cast<std::size_t>(cell.nodes[a])],
+               &to = tree.points()[static_cast<std::size_t>(cell.nodes[a + 2])];
+    return std::hypot(to[0] - from[0], to[1] - from[1]);
+  };
+  // What rounding tells apart is as long.
+  return length(1) < (1 - 1e-12) * length(0) ? Division::diagonal_1 : Division::diagonal_0;
+}
+
+/// Throws Error where elements are marked that cannot be split.
+template <class M>
+void check_splits(M const& mesh, std::vector<std::vector<Index>> const& marked) {
+  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+    if (marked.empty() || marked[type].empty()) return;
+    if constexpr (std::is_void_v<SplitInto<E>>)
+      throw Error("split: ", E::name(), " elements cannot be split; mark Quad4 or Hex8 elements");
+    else if constexpr (!has_type<SplitInto<E>, M>)
+      throw Error("split: the mesh has no ", SplitInto<E>::name(), ", into which ", E::name(),
+                  " elements are split; add it to the types of the mesh, with no elements, and a "
+                  "Group");
+  });
+}
+
+/// The cells of elements to split, each once, and how; of those that are marked for both, in two.
+template <class M>
+std::vector<CellSplit> split_cells(M const& mesh, RefinementTree<M> const& old,
+                                   MarkedElements const& marked) {
+  check_splits(mesh, marked.split);
+  check_splits(mesh, marked.split_in_two);
+  auto const in_two = each_once(cells_of(mesh, old.cells, "split", marked.split_in_two));
+  auto cells = cells_of(mesh, old.cells, "split", marked.split);
+  cells.insert(cells.end(), in_two.begin(), in_two.end());
+  std::vector<CellSplit> splits;
+  for (Index const c : each_once(std::move(cells))) {
+    auto division = Division::six_pyramids;
+    if constexpr (M::dim == 2)
+      division = std::ranges::binary_search(in_two, c) ? shorter_diagonal(*old.tree, c)
+                                                       : Division::four_triangles;
+    splits.push_back({c, division});
+  }
+  return splits;
+}
+
+/// Cells of which all are marked into which one was split: that one.
+template <class M>
+std::vector<Index> merged_cells(M const& mesh, RefinementTree<M> const& old,
+                                std::vector<std::vector<Index>> const& marked) {
+  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+    constexpr bool is_part = std::same_as<E, Tri3> || std::same_as<E, Pyramid5>;
+    if (!is_part && !marked.empty() && !marked[type].empty())
+      throw Error("merge: no element is split into ", E::name(),
+                  " elements; mark Tri3 or Pyramid5 elements");
+  });
+  return old.tree->split_cells(cells_of(mesh, old.cells, "merge", marked));
+}
+
 /// What is to become of the cells of a topology by marks on its elements. A family that is merged is not lowered.
 template <class M>
 CellChanges changes_of(M const& mesh, RefinementTree<M> const& old, MarkedElements const& marked) {
@@ -124,7 +189,10 @@ CellChanges changes_of(M const& mesh, RefinementTree<M> const& old, MarkedElemen
       .families = old.tree->families(cells_of(mesh, old.cells, "coarsen", marked.coarsen)),
       .refine = cells_of(mesh, old.cells, "refine", marked.refine),
       .lower = lowered_cells(mesh, old, marked.lower),
-      .raise = raised_cells(mesh, old, marked.raise, marked.raised_rings)};
+      .raise = raised_cells(mesh, old, marked.raise, marked.raised_rings),
+      .split = split_cells(mesh, old, marked)};
+  std::ranges::move(merged_cells(mesh, old, marked.merge), std::back_inserter(changes.families));
+  std::ranges::sort(changes.families);
   std::erase_if(changes.lower, [&](Index c) {
     return std::ranges::binary_search(changes.families, old.tree->cell(c).parent);
   });

@@ -21,16 +21,19 @@ template <class M>
 struct TopologyPlan {
   std::shared_ptr<Topology<M> const> before, after;
   Transfer<M::dim> transfer;
-  std::size_t refined = 0;  // elements split, those included that keep neighbours within one level
-  std::size_t merged = 0;   // elements that took the place of their children
-  std::size_t raised = 0, lowered = 0;  // elements of another degree
+  // Elements that are divided into smaller ones, those included that keep neighbours within one level; that took the
+  // place of such children; of another degree; split into others; and that took the place of those.
+  struct Counts {
+    std::size_t refined = 0, coarsened = 0, raised = 0, lowered = 0, split = 0, merged = 0;
+  };
+  Counts counts;
 };
 
-/// Plans a change of a topology: marked elements are divided, families of which all are marked merged, and degrees raised
-/// and lowered. Neighbours differ by one level at most: what is coarser beside an element to divide is divided too,
+/// Plans a change of a topology: marked elements are refined or split, families of which all are marked merged, and degrees
+/// raised and lowered. Neighbours differ by one level at most: what is coarser beside an element to divide is divided too,
 /// and a family stays where it would become too coarse, or where `kept` says so, as do the nodes between corners that it
 /// names. What is divided or merged keeps its degree. Empty where nothing changes. Throws Error where an element is
-/// unknown, cannot be raised or lowered, or a limit would be exceeded.
+/// unknown, cannot be raised, lowered, split or merged, or a limit would be exceeded.
 template <class M>
 auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElements const& marked,
                  RefinementLimits const& limits, KeptParts<M::dim> const& kept,
@@ -43,6 +46,9 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   check("coarsen", marked.coarsen);
   check("raise", marked.raise);
   check("lower", marked.lower);
+  check("split", marked.split);
+  check("split", marked.split_in_two);
+  check("merge", marked.merge);
   if (marked.none()) return std::nullopt;
   auto const old = detail::tree_of(*before);
   auto changes = detail::changes_of(before->mesh, old, marked);
@@ -50,11 +56,12 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto changed = detail::change_cells(*old.tree, changes, limits);
   while (detail::take_back(*old.tree, changes, changed, kept))
     changed = detail::change_cells(*old.tree, changes, limits);
-  if (changes.families.empty() && changed.refinement.parents.empty() && changed.converted.empty())
+  if (changes.families.empty() && changed.refinement.parents.empty() && changed.converted.empty() &&
+      changed.split.empty())
     return std::nullopt;
 
   auto new_nodes = std::move(changed.refinement.new_nodes);
-  std::ranges::move(changed.raising.new_nodes, std::back_inserter(new_nodes));
+  std::ranges::move(changed.added, std::back_inserter(new_nodes));
   auto converted = changed.converted;
   for (Index& c : converted) c = changed.renumbered(c);
   std::ranges::move(changed.tree->whole_facets(converted),
@@ -71,10 +78,9 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto topology = std::make_shared<Topology<M>>();
   M& mesh = topology->mesh;
   mesh.nodes = changed.tree->points();
-  detail::ElementChanges<dim> const element_changes(old.cells, *old.tree, changes.families,
-                                                    changed);
+  detail::ElementChanges<M> element_changes(mesh, old.cells, *old.tree, changes.families, changed);
   detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    auto changed_elements = element_changes.template of<E>(type, parts.families);
+    auto changed_elements = element_changes.template of<E>(type);
     auto& elements = mesh.template elements<E>();
     elements.reserve(changed_elements.cells.size());
     for (std::size_t e = 0; e < changed_elements.cells.size(); ++e) {
@@ -92,6 +98,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
     parts.origins.push_back(std::move(changed_elements.origins));
     topology->cells.push_back(std::move(changed_elements.cells));
   });
+  parts.families = std::move(element_changes).families();
   detail::share_volumes(before->mesh, parts.families);
   Transfer<dim> transfer(std::move(parts));
   for (auto const& [name, facets] : before->mesh.boundaries)
@@ -101,13 +108,18 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
     topology->element_values.push_back(detail::carried_values(*before, transfer, values, type));
   topology->interpolation = Interpolation(mesh.slaves);
   topology->tree = changed.tree;
+  auto const split_before = [&](Index c) { return old.tree->cell(c).is_split(); };
+  auto const merged =
+      static_cast<std::size_t>(std::ranges::count_if(changes.families, split_before));
   return TopologyPlan<M>{before,
                          std::move(topology),
                          std::move(transfer),
-                         changed.refinement.parents.size(),
-                         changes.families.size(),
-                         changed.raised,
-                         changes.lower.size()};
+                         {.refined = changed.refinement.parents.size(),
+                          .coarsened = changes.families.size() - merged,
+                          .raised = changed.raised,
+                          .lowered = changes.lower.size(),
+                          .split = changed.split.size(),
+                          .merged = merged}};
 }
 
 }  // namespace pliant

@@ -54,9 +54,11 @@ inline std::vector<std::pair<Index, double>> shape_weights(CellKind kind, CellNo
     case CellKind::hexahedron:
       return choose(std::type_identity<std::tuple<Hex8, Hex20, Hex27>>{});
     case CellKind::wedge:
+      return shape_weights<Wedge6>(nodes, place);
+    case CellKind::pyramid:
       break;
   }
-  return shape_weights<Wedge6>(nodes, place);
+  return shape_weights<Pyramid5>(nodes, place);
 }
 
 }  // namespace detail

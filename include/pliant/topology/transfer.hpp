@@ -10,6 +10,7 @@
 
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/mesh/sides.hpp>
+#include <pliant/topology/refinement_pattern.hpp>
 
 namespace pliant {
 
@@ -42,18 +43,22 @@ class Transfer {
     Index element;
     int child;          ///< 0 and up, or one of these
     Index family = -1;  ///< of a child, or merged elements: its place among the families
-    Index type = -1;    ///< of the old element, its place among the mesh's; −1: the same type
+    Index type = -1;    ///< of that old element, its place among the mesh's; −1: the same type
     static constexpr int same = -1;       ///< it is that element
     static constexpr int merged = -2;     ///< it was that element's family
     static constexpr int converted = -3;  ///< it is that element of another type on the same cell
   };
+  /// An element: its type, by the place among the mesh's, and its number.
+  struct Member {
+    std::size_t type;
+    Index element;
+  };
   /// Elements that take the place of others, children in their order.
   struct Family {
-    std::size_t type = 0;  ///< of those after, its place among the mesh's
-    std::vector<Index> before, after;
-    std::vector<double> shares;  ///< of those before in their volume
-    bool mirrored = false;       ///< whether the undivided cell is (see RefinementPattern)
-    std::size_t old_type = 0;    ///< of those before
+    std::vector<Member> before, after;
+    std::vector<double> shares;                  ///< of those before in their volume
+    RefinementPattern const* pattern = nullptr;  ///< by which the whole is divided; null: it is not
+    bool mirrored = false;                       ///< whether the whole is (see RefinementPattern)
   };
   struct Parts {
     Index old_nodes = 0;
@@ -150,8 +155,12 @@ class Transfer {
   }
   /// Whether elements of a type come from another one.
   bool comes_from(std::size_t type, std::size_t old_type) const {
+    auto const is_of = [](std::size_t wanted) {
+      return [wanted](Member const& member) { return member.type == wanted; };
+    };
     return std::ranges::any_of(p_.families, [&](Family const& family) {
-      return family.type == type && family.old_type == old_type;
+      return std::ranges::any_of(family.after, is_of(type)) &&
+             std::ranges::any_of(family.before, is_of(old_type));
     });
   }
   /// Facets of the boundary on the new mesh: a facet that was divided gives way to its parts, and parts that were
@@ -231,29 +240,33 @@ class Transfer {
     using Values = std::remove_cvref_t<decltype(values_of(type))>;
     Values carried;
     carried.reserve(origins(type).size() * width);
-    Index last_type = -1;
-    Values const* values = nullptr;
-    for (Origin const& origin : origins(type)) {
-      Index const old_type = origin.type < 0 ? static_cast<Index>(type) : origin.type;
-      if (old_type != last_type) {
-        auto const which = static_cast<std::size_t>(old_type);
-        values = &values_of(which);
-        check(values->size(), p_.old_elements[which] * width, "elements");
-        last_type = old_type;
+    std::vector<Values const*> lists(p_.old_elements.size(), nullptr);
+    auto const values_of_type = [&](std::size_t old_type) -> Values const& {
+      if (lists[old_type] == nullptr) {
+        lists[old_type] = &values_of(old_type);
+        check(lists[old_type]->size(), p_.old_elements[old_type] * width, "elements");
       }
+      return *lists[old_type];
+    };
+    for (Origin const& origin : origins(type)) {
+      auto const& values =
+          values_of_type(origin.type < 0 ? type : static_cast<std::size_t>(origin.type));
       auto const first = width * static_cast<std::size_t>(origin.element);
       for (std::size_t k = 0; k < width; ++k)
-        carried.push_back(origin.child == Origin::merged ? merged_value(*values, origin, width, k)
-                                                         : (*values)[first + k]);
+        carried.push_back(
+            origin.child == Origin::merged
+                ? merged_value<typename Values::value_type>(values_of_type, origin, width, k)
+                : values[first + k]);
     }
     return carried;
   }
-  template <class V>
-  V merged_value(std::vector<V> const& values, Origin const& origin, std::size_t width,
+  template <class V, class ValuesOf>
+  V merged_value(ValuesOf const& values_of, Origin const& origin, std::size_t width,
                  std::size_t k) const {
     Family const& family = p_.families[static_cast<std::size_t>(origin.family)];
-    auto const value_of = [&](std::size_t child) -> V const& {
-      return values[width * static_cast<std::size_t>(family.before[child]) + k];
+    auto const value_of = [&](std::size_t child) -> decltype(auto) {
+      auto const& [type, element] = family.before[child];
+      return values_of(type)[width * static_cast<std::size_t>(element) + k];
     };
     if constexpr (std::is_integral_v<V> || std::is_enum_v<V>) {
       std::size_t best = 0;
@@ -274,7 +287,7 @@ class Transfer {
         same = same && value_of(i) == value_of(0);
         add(sum, family.shares[i], value_of(i));
       }
-      return same ? value_of(0) : sum;
+      return same ? V(value_of(0)) : sum;
     }
   }
 

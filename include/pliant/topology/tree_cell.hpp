@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pliant/config.hpp>
-#include <pliant/topology/refinement_pattern.hpp>
+#include <pliant/topology/patterns.hpp>
 
 // What a CellTree is made of.
 namespace pliant {
@@ -15,13 +15,14 @@ namespace pliant {
 /// with four corners and in the middle too.
 enum class CellNodes : std::uint8_t { corners, edges, all };
 
-/// A cell of a CellTree. A refined cell has its children at first_child, first_child + 1, ...
+/// A cell of a CellTree. A divided cell has its children at first_child, first_child + 1, ...
 struct TreeCell {
   CellKind kind = CellKind::triangle;
-  CellNodes has = CellNodes::corners;  ///< of a refined cell: when it was refined
-  CellNodes had = CellNodes::corners;  ///< of the initial mesh: what it had there
-  bool mirrored = false;               ///< its element has the last two corners in the other order
-  int level = 0;                       ///< 0 for the cells of the initial mesh
+  CellNodes has = CellNodes::corners;     ///< of a divided cell: when it was divided
+  CellNodes had = CellNodes::corners;     ///< of the initial mesh: what it had there
+  Division division = Division::refined;  ///< of a divided cell
+  bool mirrored = false;  ///< its element has the last two corners in the other order
+  int level = 0;          ///< how many of its ancestors are refined
   Index parent = -1;
   Index first_child = -1;                                      ///< -1 for a leaf
   Index centre = -1;                                           ///< the node in the middle
@@ -29,7 +30,12 @@ struct TreeCell {
   std::array<Index, 12> edges{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
   std::array<Index, 6> sides{-1, -1, -1, -1, -1, -1};  ///< in 3D
 
+  /// Of its edges and sides, and of refinement.
   [[nodiscard]] RefinementPattern const& pattern() const { return pattern_of(kind); }
+  /// Of its children.
+  [[nodiscard]] RefinementPattern const& divided() const { return pattern_of(kind, division); }
+  /// Whether it is divided between its corners: then its children have its edges and sides in its place.
+  [[nodiscard]] bool is_split() const { return first_child >= 0 && division != Division::refined; }
   [[nodiscard]] std::size_t corners() const { return static_cast<std::size_t>(pattern().corners); }
 
   template <class Visit, class... R>
@@ -37,6 +43,7 @@ struct TreeCell {
     visit("kind", r.kind...);
     visit("nodes it has", r.has...);
     visit("nodes it had", r.had...);
+    visit("division", r.division...);
     visit("mirrored", r.mirrored...);
     visit("level", r.level...);
     visit("parent", r.parent...);
@@ -55,7 +62,7 @@ struct TreeEdge {
   Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
   int leaves = 0;         ///< of how many leaves it is a whole edge
   int linear = 0;         ///< of how many of these that have corners only
-  int refined = 0;        ///< of how many refined cells
+  int refined = 0;        ///< of how many refined cells; split ones count by their children
   int level = 0;          ///< of the cells of which it is a whole edge
 
   template <class Visit, class... R>
@@ -120,6 +127,12 @@ struct PlacedNode {
   Index cell = -1;
   CellNodes had = CellNodes::corners;
   std::array<double, 3> place{};
+};
+
+/// Cells of another shape in the place of a leaf.
+struct CellSplit {
+  Index cell = -1;
+  Division division = Division::refined;
 };
 
 /// Another degree for a leaf.

@@ -69,7 +69,7 @@ class TreeQueries {
     return found;
   }
 
-  /// How many nodes it takes to split all of these leaves.
+  /// How many nodes it takes to refine all of these leaves.
   [[nodiscard]] std::size_t count_new_nodes(std::vector<Index> const& leaves) const {
     std::size_t nodes = 0;
     std::unordered_set<Index> without_middle, bisected, without_centre, divided;
@@ -126,21 +126,30 @@ class TreeQueries {
     return nodes + edges.size() + sides.size();
   }
 
-  /// How many cells it takes to split all of these leaves.
-  [[nodiscard]] std::size_t count_new_cells(std::vector<Index> const& leaves) const {
-    std::size_t cells = 0;
-    for (Index const c : leaves) cells += at(cells_[at(c)].pattern().children);
-    return cells;
-  }
-
-  /// The most edges that splits of these leaves can make.
-  [[nodiscard]] std::size_t most_new_edges(std::vector<Index> const& leaves) const {
-    std::size_t edges = 0;
+  /// What it takes to divide leaves: new nodes, new cells, and so many new edges at the most.
+  struct Needed {
+    std::size_t nodes = 0, cells = 0, edges = 0;
+  };
+  /// To refine all of them.
+  [[nodiscard]] Needed needed(std::vector<Index> const& leaves) const {
+    Needed sum{.nodes = count_new_nodes(leaves)};
     for (Index const c : leaves) {
       auto const& p = cells_[at(c)].pattern();
-      edges += at(2 * p.edges + 4 * p.sides + p.inner_edges);
+      sum.cells += at(p.children);
+      sum.edges += at(2 * p.edges + 4 * p.sides + p.inner_edges);
     }
-    return edges;
+    return sum;
+  }
+  [[nodiscard]] Needed needed(std::vector<CellSplit> const& splits) const {
+    Needed sum;
+    for (auto const& [c, division] : splits) {
+      auto const& cell = cells_[at(c)];
+      auto const& p = pattern_of(cell.kind, division);
+      sum.nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
+      sum.cells += at(p.children);
+      sum.edges += at(p.inner_edges);
+    }
+    return sum;
   }
 
  private:

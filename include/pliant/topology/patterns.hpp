@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+#include <pliant/element/cell.hpp>
+#include <pliant/topology/pattern_maker.hpp>
+#include <pliant/topology/refinement_pattern.hpp>
+
+// The patterns by which cells are divided.
+namespace pliant {
+
+namespace detail {
+
+template <class Cell, Division How = Division::refined>
+inline constexpr RefinementPattern pattern = PatternMaker<Cell>::make(How);
+
+inline constexpr std::array refinements{&pattern<Triangle>,    &pattern<Quadrilateral>,
+                                        &pattern<Tetrahedron>, &pattern<Hexahedron>,
+                                        &pattern<Wedge>,       &pattern<Pyramid>};
+inline constexpr std::array splits{&pattern<Quadrilateral, Division::diagonal_0>,
+                                   &pattern<Quadrilateral, Division::diagonal_1>,
+                                   &pattern<Quadrilateral, Division::four_triangles>,
+                                   &pattern<Hexahedron, Division::six_pyramids>};
+
+}  // namespace detail
+
+/// By which a cell is divided. Splits are of the kind of cell that they are for.
+constexpr RefinementPattern const& pattern_of(CellKind kind,
+                                              Division division = Division::refined) {
+  return division == Division::refined ? *detail::refinements[static_cast<std::size_t>(kind)]
+                                       : *detail::splits[static_cast<std::size_t>(division) - 1];
+}
+
+/// Where a point of a child's element, on a `Child`, lies on its parent's. `mirrored`: whether the parent is.
+template <class Child>
+constexpr Vector<double, Child::dim> on_parent(Vector<double, Child::dim> const& xi,
+                                               RefinementPattern const& parent, int child,
+                                               bool mirrored = false) {
+  auto const own = static_cast<std::size_t>(child);
+  auto weight = Child::linear(xi);
+  auto const swap = [](auto& v, int i, int j) {
+    double const kept = v[i];
+    v[i] = v[j];
+    v[j] = kept;
+  };
+  // Mirrored elements have their last two corners in the other order, and so two coordinates.
+  if constexpr (std::same_as<Child, Tetrahedron>)
+    if (mirrored != parent.mirrored[own]) swap(weight, 2, 3);
+  auto place = Vector<double, Child::dim>::zero();
+  for (int a = 0; a < Child::corners; ++a) {
+    auto const& corner =
+        parent.place[static_cast<std::size_t>(parent.child[own][static_cast<std::size_t>(a)])];
+    for (int k = 0; k < Child::dim; ++k)
+      place[k] += weight[a] * corner[static_cast<std::size_t>(k)];
+  }
+  if constexpr (std::same_as<Child, Tetrahedron>)
+    if (mirrored) swap(place, 1, 2);
+  return place;
+}
+
+}  // namespace pliant
