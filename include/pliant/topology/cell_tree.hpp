@@ -381,6 +381,7 @@ class CellTree {
     // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
     for (std::size_t k = 0; k < n; ++k)
       edges_.push_back({.nodes = {middle[k], quad ? side.centre : middle[(k + n - 1) % n]},
+                        .side = s,
                         .level = side.level + 1});
     TreeSide child{.parent = s, .level = side.level + 1};
     for (std::size_t k = 0; k < n; ++k) {
@@ -550,6 +551,7 @@ class CellTree {
       auto& e = edges_.edit(at(n));
       move_within_edge(e);
       move(e.parent, edge);
+      move(e.side, side);
       for (Index& p : e.nodes) move(p, node);
     }
     for (Index n = i.sides; n < size(sides_); ++n) {

@@ -60,6 +60,7 @@ struct TreeEdge {
   Index middle = -1;      ///< the node in its middle, or -1
   Index parent = -1;      ///< the edge of which it is a half
   Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
+  Index side = -1;        ///< the divided side between whose parts it lies, if it is no half
   int leaves = 0;         ///< of how many leaves it is a whole edge
   int linear = 0;         ///< of how many of these that have corners only
   int refined = 0;        ///< of how many refined cells; split ones count by their children
@@ -71,6 +72,7 @@ struct TreeEdge {
     visit("middle", r.middle...);
     visit("parent", r.parent...);
     visit("first half", r.first_half...);
+    visit("side", r.side...);
     visit("leaves", r.leaves...);
     visit("linear leaves", r.linear...);
     visit("refined cells", r.refined...);

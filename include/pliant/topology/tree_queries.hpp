@@ -18,8 +18,7 @@ class TreeQueries {
       : tree_(tree), cells_(tree.cells()), edges_(tree.edges()), sides_(tree.sides()) {}
 
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
-  /// one at most across edges and sides: coarser ones first, then ascending. (Children of those can meet cells two levels
-  /// finer at an edge, until these are refined again: of what is made anew, nothing is refined in one go.)
+  /// one at most across edges and sides: coarser ones first, then ascending.
   [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
     std::unordered_set<Index> seen(leaves.begin(), leaves.end());
     std::optional<std::vector<std::pair<Index, Index>>> on_edge;
@@ -29,9 +28,17 @@ class TreeQueries {
     for (std::size_t i = 0; i < leaves.size(); ++i) {
       auto const cell = cells_[at(leaves[i])];
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-        Index coarse = edges_[at(cell.edges[e])].parent;
-        while (coarse >= 0 && edges_[at(coarse)].leaves == 0) coarse = edges_[at(coarse)].parent;
-        if (coarse < 0) continue;
+        Index coarse = cell.edges[e], whole = coarse;
+        do {
+          whole = coarse;
+          coarse = edges_[at(coarse)].parent;
+        } while (coarse >= 0 && edges_[at(coarse)].leaves == 0);
+        if (coarse <
+            0) {  // a leaf on the other side of a divided side may have none of it for an edge
+          if (Index const side = edges_[at(whole)].side; side >= 0)
+            for (Index const neighbour : sides_[at(side)].cells) want(neighbour);
+          continue;
+        }
         if (!on_edge) on_edge = leaves_on_bisected_edges();
         auto const first = std::ranges::lower_bound(*on_edge, std::pair(coarse, Index{-1}));
         for (auto entry = first; entry != on_edge->end() && entry->first == coarse; ++entry)
