@@ -6,7 +6,7 @@
 //   --seed N      of the random numbers; 1 when not said
 //   --cells N     along the edges of meshes; few when not said, too few for several threads
 //   --ledger      leave out what the energy ledger does not know, and check that it closes
-//   --scene NAME  plane, degrees, tetrahedra or hexahedra alone
+//   --scene NAME  plane, types, tetrahedra or hexahedra alone
 
 #include <cstdio>
 #include <cstdlib>
@@ -52,10 +52,9 @@ void run_on(B const& backend, std::string const& scene, storm::Options options) 
   if (scene.empty() || scene == "plane")
     run(called("plane").c_str(),
         storm::Plane<B>{backend, options.seed, options.cells ? options.cells : 5}, options);
-  if (scene.empty() || scene == "degrees")
-    run(called("degrees").c_str(),
-        storm::Degrees<B, Quad4, Quad9>{backend, options.seed, options.cells ? options.cells : 4},
-        options);
+  if (scene.empty() || scene == "types")
+    run(called("types").c_str(),
+        storm::Types<B>{backend, options.seed, options.cells ? options.cells : 6}, options);
   if (scene.empty() || scene == "tetrahedra")
     run(called("tetrahedra").c_str(),
         storm::Solid<B, Tet4, NeoHookean>{

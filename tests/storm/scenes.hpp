@@ -87,24 +87,27 @@ struct Plane {
   }
 };
 
-/// Linear and quadratic elements of two laws, whose degrees go up and down beside refinement.
-template <Backend B, Element E, Element Quadratic>
-struct Degrees {
-  using Low = Formulation<E, Gauss<E::cell::corners == E::dim + 1 ? 1 : 2>, SaintVenantKirchhoff>;
-  using High =
-      Formulation<Quadratic, Gauss<E::cell::corners == E::dim + 1 ? 2 : 3>, SaintVenantKirchhoff>;
-  using HighRubber = Formulation<Quadratic, typename High::quadrature, NeoHookean>;
-  using body_type = Body<B, Mesh<E, Quadratic>, Low, High, HighRubber>;
+/// Plane elements whose degree goes up and down, and which are split into triangles and merged, beside refinement.
+template <Backend B>
+struct Types {
+  using Low = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
+  using Triangles = Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>;
+  using High = Formulation<Quad9, Gauss<3>, SaintVenantKirchhoff>;
+  using HighRubber = Formulation<Quad9, Gauss<3>, NeoHookean>;
+  using body_type = Body<B, Mesh<Quad4, Tri3, Quad9>, Low, Triangles, High, HighRubber>;
 
   B backend{};
   unsigned seed = 1;
   int cells = 4;  // along an edge
 
   body_type body() const {
-    body_type made{
-        backend,       mesh::with_types<E, Quadratic>(test::distorted_mesh<E>(cells, seed)),
-        soft,          Group<Low>{},
-        Group<High>{}, Group<HighRubber>{}};
+    body_type made{backend,
+                   mesh::with_types<Quad4, Tri3, Quad9>(test::distorted_mesh<Quad4>(cells, seed)),
+                   soft,
+                   Group<Low>{},
+                   Group<Triangles>{},
+                   Group<High>{},
+                   Group<HighRubber>{}};
     set_mesh_limits(made, {.nodes = static_cast<std::size_t>(30 * cells * cells)});
     return made;
   }
@@ -116,34 +119,45 @@ struct Degrees {
     rules(body);
   }
   void make_finer(body_type& body) const {
-    static Adaptation degrees =
+    static Adaptation types =
         Adaptation{when<Low>(StrainNorm{}).top_share(0.05).raise({.ring = 1}),
+                   when<Low>(StrainNorm{}).below(0.002).split({.triangles = 2}),
+                   when<Triangles>(StrainNorm{}).above(0.01).merge(),
                    when<High>(StrainNorm{}).below(0.001).lower()}
             .every(40);
-    if (body.nodes() < static_cast<Index>(15 * cells * cells)) degrees(body);
+    if (body.nodes() < static_cast<Index>(15 * cells * cells)) types(body);
   }
   void refine(body_type& body, unsigned seed_of_marks) const {
     test::Random random(seed_of_marks);
-    switch (random.below(4)) {
+    switch (random.below(6)) {
       case 0:
-        pliant::coarsen(body, {most_of<E>(body, random), most_of<Quadratic>(body, random)});
+        pliant::coarsen(body, {most_of<Quad4>(body, random), most_of<Tri3>(body, random),
+                               most_of<Quad9>(body, random)});
         break;
       case 1:
-        pliant::raise(body, {some_of<E>(body, 10, random), {}},
+        pliant::raise(body, {some_of<Quad4>(body, 5, random), {}, {}},
                       {.ring = static_cast<int>(random.below(2))});
         break;
       case 2:
-        pliant::lower(body, {{}, some_of<Quadratic>(body, 3, random)});
+        pliant::lower(body, {{}, {}, some_of<Quad9>(body, 3, random)});
+        break;
+      case 3:
+        pliant::split(body, {some_of<Quad4>(body, 4, random), {}, {}},
+                      {.triangles = random.below(2) == 0 ? 2 : 4});
+        break;
+      case 4:
+        pliant::merge(body, {{}, most_of<Tri3>(body, random), {}});
         break;
       default: {
-        auto linear = some_of<E>(body, 20, random);
-        pliant::refine(body, {linear, some_of<Quadratic>(body, 20, random)}, 2);
+        auto linear = some_of<Quad4>(body, 8, random);
+        auto triangles = some_of<Tri3>(body, 12, random);
+        pliant::refine(body, {linear, triangles, some_of<Quad9>(body, 10, random)}, 2);
       }
     }
   }
   void assign(body_type& body, unsigned seed_of_marks) const {
     test::Random random(seed_of_marks);
-    body.template assign<HighRubber>(some_of<Quadratic>(body, 10, random));
+    body.template assign<HighRubber>(some_of<Quad9>(body, 10, random));
   }
 };
 

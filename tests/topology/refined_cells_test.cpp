@@ -7,6 +7,7 @@
 
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
+#include "topology/level_jumps.hpp"
 
 namespace pliant::test::refined_cells_test {
 
@@ -151,29 +152,6 @@ void check_mesh(Hierarchy<E::dim> const& mesh, double total, Random& random) {
   CHECK(inside >= static_cast<int>(leaves.size()) * E::nodes);
 }
 
-/// How many edges and sides of leaves touch leaves that are two levels finer.
-template <int Dim>
-int count_jumps(Hierarchy<Dim> const& mesh) {
-  auto const& edges = mesh.tree().edges();
-  auto const& sides = mesh.tree().sides();
-  auto const is_bisected = [&](Index e) { return edges[at(e)].first_half >= 0; };
-  int jumps = 0;
-  for (Index const c : mesh.leaves()) {
-    auto const& cell = mesh.cell(c);
-    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-      if (Index const half = edges[at(cell.edges[e])].first_half; half >= 0)
-        jumps += is_bisected(half) || is_bisected(half + 1);
-    for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
-      auto const& side = sides[at(cell.sides[s])];
-      if (side.first_child < 0) continue;
-      for (Index k = 0; k < 4; ++k) jumps += sides[at(side.first_child + k)].first_child >= 0;
-      for (Index k = 0; k < static_cast<Index>(side.corners()); ++k)
-        jumps += is_bisected(side.first_inner_edge + k);
-    }
-  }
-  return jumps;
-}
-
 /// Random leaves, most of them near the first.
 std::vector<Index> some_of(std::vector<Index> const& leaves, Random& random, std::size_t count) {
   std::vector<Index> marked;
@@ -226,7 +204,7 @@ TEMPLATE_TEST_CASE("every element's mesh stays sound under refinement and coarse
     for (auto const& cell : mesh.cells()) deepest = std::max(deepest, cell.level);
     most_hanging = std::max(most_hanging, mesh.slaves().size());
     for (auto const& slave : mesh.slaves()) composed += slave.masters.size() > 9;
-    CHECK(count_jumps(mesh) == 0);
+    CHECK(count_level_jumps(mesh) == 0);
     if (round % 3 > 0) check_mesh<E>(mesh, total, random);
   }
   // The trial reached what it is meant to try.

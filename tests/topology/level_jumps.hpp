@@ -1,0 +1,31 @@
+#pragma once
+
+#include <pliant/topology/hierarchy.hpp>
+
+namespace pliant::test {
+
+/// How many edges and sides of leaves touch leaves that are two levels finer.
+template <int Dim>
+int count_level_jumps(Hierarchy<Dim> const& mesh) {
+  auto const& edges = mesh.tree().edges();
+  auto const& sides = mesh.tree().sides();
+  auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+  auto const is_bisected = [&](Index e) { return edges[at(e)].first_half >= 0; };
+  int jumps = 0;
+  for (Index const c : mesh.leaves()) {
+    auto const& cell = mesh.cell(c);
+    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
+      if (Index const half = edges[at(cell.edges[e])].first_half; half >= 0)
+        jumps += is_bisected(half) || is_bisected(half + 1);
+    for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
+      auto const& side = sides[at(cell.sides[s])];
+      if (side.first_child < 0) continue;
+      for (Index k = 0; k < 4; ++k) jumps += sides[at(side.first_child + k)].first_child >= 0;
+      for (Index k = 0; k < static_cast<Index>(side.corners()); ++k)
+        jumps += is_bisected(side.first_inner_edge + k);
+    }
+  }
+  return jumps;
+}
+
+}  // namespace pliant::test
