@@ -61,8 +61,8 @@ constexpr auto can_be_raised() {
 constexpr auto can_be_split() {
   return []<Element E>(E) { return !std::is_void_v<SplitInto<E>>; };
 }
-constexpr auto is_part() {
-  return []<Element E>(E) { return std::same_as<E, Tri3> || std::same_as<E, Pyramid5>; };
+constexpr auto can_be_merged() {
+  return []<Element E>(E) { return is_part<E>; };
 }
 
 template <class P, class TheBody>
@@ -84,7 +84,7 @@ void change(TheBody& body, Random& random) {
             {.triangles = random.below(2) == 0 ? 2 : 4});
       break;
     case 5:
-      merge(body, some_where(body, 1 + random.below(2), random, is_part()));
+      merge(body, some_where(body, 1 + random.below(2), random, can_be_merged()));
       break;
     case 6:
       coarsen(body, some(body, 1 + random.below(2), random, -1));
@@ -107,7 +107,7 @@ void undo(TheBody& body) {
   Random random(1);
   for (std::size_t changed = 1; changed > 0;) {
     changed = lower(body, some_where(body, 1, random, of_degree(2))).lowered;
-    changed += merge(body, some_where(body, 1, random, is_part())).merged;
+    changed += merge(body, some_where(body, 1, random, can_be_merged())).merged;
     changed += coarsen(body, all(body, -1)).merged;
   }
 }

@@ -60,6 +60,16 @@ void on_cases(Visit const& visit) {
   });
 }
 
+/// All elements into which others are split.
+template <class TheBody>
+std::vector<std::vector<Index>> all_parts(TheBody const& body) {
+  auto lists = all(body, -1);
+  detail::for_each_type_of(body.mesh(), [&]<Element E>(E, std::size_t type) {
+    if (!is_part<E>) lists[type].clear();
+  });
+  return lists;
+}
+
 /// Splits, refines, merges and coarsens at random.
 template <class P, class TheBody>
 void change(TheBody& body, Random& random) {
@@ -67,7 +77,9 @@ void change(TheBody& body, Random& random) {
   split(body, some(body, 3, random, P::whole));
   refine(body, some(body, solid ? 12 : 5, random, -1), 3);
   split(body, some(body, 4, random, P::whole), {.triangles = 2});
+  if (solid) split(body, some(body, 3, random, P::part));
   refine(body, some(body, solid ? 40 : 6, random, -1), 3);
+  if (solid) split(body, some(body, 6, random, P::part));
   merge(body, some(body, 1, random, P::part));
   coarsen(body, some(body, 1 + random.below(2), random, -1));
   split(body, some(body, 3, random, P::whole));
@@ -77,13 +89,14 @@ void change(TheBody& body, Random& random) {
 template <class P, class TheBody>
 void undo(TheBody& body) {
   do coarsen(body, all(body, -1));
-  while (merge(body, all(body, P::part)).merged > 0 || coarsen(body, all(body, -1)).merged > 0);
+  while (merge(body, all_parts(body)).merged > 0 || coarsen(body, all(body, -1)).merged > 0);
 }
 
 template <class P, class TheBody>
 void to_one_law(TheBody& body) {
   assign_all<typename P::Whole>(body);
   assign_all<typename P::Part>(body);
+  if constexpr (P::dim == 3) assign_all<typename P::Tets>(body);
 }
 
 TEST_CASE("a quadrilateral is split into triangles, and a hexahedron into pyramids", "[topology]") {
@@ -179,6 +192,71 @@ TEST_CASE("a pyramid is refined into pyramids and tetrahedra", "[topology]") {
     CHECK(merge(body, all(body, 1)).merged == 0);
     undo<Solid>(body);
     CHECK(body.mesh().tables == Solid::mesh().tables);
+  });
+}
+
+TEST_CASE("two pyramids that share a base are split into tetrahedra, both or none", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Mesh<Hex8, Pyramid5, Tet4> mesh = mesh::with_types<Hex8, Pyramid5, Tet4>(
+        mesh::box<Hex8>({.size = {2, 1, 1}, .cells = {2, 1, 1}}));
+    for (auto& x : mesh.nodes)
+      x[2] += 0.25 * x[1];  // the side between them has diagonals of two lengths
+    using Whole = Formulation<Hex8, Gauss<2>, NeoHookean>;
+    using Part = Formulation<Pyramid5, Gauss<2>, NeoHookean>;
+    using Tets = Formulation<Tet4, Gauss<1>, NeoHookean>;
+    Body body(backend, mesh, soft, Group<Whole>{}, Group<Part>{}, Group<Tets>{});
+    split(body, {{0, 1}, {}, {}});
+    auto const pyramids = body.mesh();
+    double const mass = total_mass(body);
+    std::vector<Index> at_base;  // those whose base lies between the two
+    for (Index e = 0; e < 12; ++e) {
+      auto const& nodes = elements<1>(body)[static_cast<std::size_t>(e)];
+      if (std::ranges::all_of(std::span(nodes).first(4), [&](Index node) {
+            return body.mesh().nodes[static_cast<std::size_t>(node)][0] == 1;
+          }))
+        at_base.push_back(e);
+    }
+    REQUIRE(at_base.size() == 2);
+    std::vector<Index> others = first_numbers(12);
+    std::erase_if(others, [&](Index e) { return e == at_base[0] || e == at_base[1]; });
+    CHECK(split(body, {{}, others, {}}).split == 0);  // nothing lies behind their bases
+
+    CHECK(split(body, {{}, {at_base[1]}, {}}).split == 2);
+    CHECK(elements<1>(body).size() == 10);
+    REQUIRE(elements<2>(body).size() == 4);
+    CHECK(body.mesh().slaves.empty());
+    CHECK(body.mesh().boundaries == pyramids.boundaries);
+    CHECK(total_mass(body) == Approx(mass).epsilon(1e-14));
+    // All of them have the shorter diagonal for an edge.
+    std::vector<Index> diagonal;
+    for (Index node = 0; node < body.nodes(); ++node)
+      if (std::ranges::all_of(elements<2>(body), [&](auto const& nodes) {
+            return std::ranges::count(nodes, node) == 1;
+          }))
+        diagonal.push_back(node);
+    REQUIRE(diagonal.size() == 2);
+    Point<3> apart{};
+    for (std::size_t k = 0; k < 3; ++k)
+      apart[k] = body.mesh().nodes[static_cast<std::size_t>(diagonal[1])][k] -
+                 body.mesh().nodes[static_cast<std::size_t>(diagonal[0])][k];
+    CHECK(std::abs(apart[1] * apart[2]) == Approx(0.75));
+
+    CHECK(merge(body, {{}, {}, {0, 1, 2}}).merged == 0);
+    CHECK(coarsen(body, all(body, 2)).merged == 0);
+    refine(body, {{}, {}, {0}});
+    CHECK(merge(body, all(body, 2)).merged == 0);
+    coarsen(body, all(body, -1));
+    // Where one of them would be refined again, both stay.
+    refine(body, {{}, {others[0], others[1], others[2], others[3], others[4]}, {}});
+    auto plan = plan_change(body.parts(), {.refine = all(body, 1), .merge = all(body, 2)});
+    REQUIRE(plan);
+    CHECK(plan->counts.merged == 0);
+    CHECK(plan->counts.refined > 10);
+    coarsen(body, all(body, -1));
+    CHECK(merge(body, all(body, 2)).merged == 2);
+    CHECK(body.mesh().tables == pyramids.tables);
+    CHECK(merge(body, all(body, 1)).merged == 2);
+    CHECK(body.mesh().tables == mesh.tables);
   });
 }
 

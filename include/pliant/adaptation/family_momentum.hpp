@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <pliant/constraint/condition.hpp>
@@ -32,6 +33,30 @@ void visit_member(M const& mesh, typename Transfer<M::dim>::Member const& member
   });
 }
 
+/// A velocity at a node of a family. Of two pyramids that are split or merged together it is the same: where their base is
+/// not plane, volume goes over from one to the other.
+template <class M>
+Point<M::dim> velocity_in(TopologyPlan<M> const& plan,
+                          typename Transfer<M::dim>::Family const& family,
+                          std::vector<Point<M::dim>> const& v_before,
+                          std::vector<Point<M::dim>> const& v) {
+  bool const shares_base = family.pattern != nullptr && family.pattern->halved_side >= 0;
+  bool const is_merged = family.before.size() > 1;
+  Point<M::dim> velocity{};
+  auto const look_at = [&](M const& mesh, auto const& member, auto const& velocities) {
+    visit_member(mesh, member, [&](auto, auto const& nodes) {
+      Index const node =
+          shares_base ? *std::min_element(nodes.begin(), nodes.begin() + 4) : nodes[0];
+      velocity = velocities[static_cast<std::size_t>(node)];
+    });
+  };
+  if (shares_base && is_merged)
+    look_at(plan.after->mesh, family.after[0], v);
+  else
+    look_at(plan.before->mesh, family.before[0], v_before);
+  return velocity;
+}
+
 /// What each node must be given so that a family keeps its momentum: the difference that lumping made, shared in
 /// proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of the mesh before and
 /// after.
@@ -43,10 +68,8 @@ void add_family_impulse(TopologyPlan<M> const& plan,
   constexpr std::size_t dim = M::dim;
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
-  Point<dim> base{}, lost{};
-  visit_member(old, family.before[0], [&](auto, auto const& nodes) {
-    base = v_before[static_cast<std::size_t>(nodes[0])];
-  });
+  Point<dim> const base = velocity_in(plan, family, v_before, v);
+  Point<dim> lost{};
   for (auto const& member : family.before)
     visit_member(old, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
       auto const p =

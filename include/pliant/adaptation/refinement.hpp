@@ -232,9 +232,11 @@ LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marke
 }
 
 /// Puts elements of another shape in the place of linear ones, of which no edge or side is divided: a Quad4 becomes four
-/// triangles (Tri3) around a new node in its middle, or two (`triangles` = 2) along its shorter diagonal, and a Hex8 six
-/// pyramids (Pyramid5) around a new node; the mesh names that type, with no elements or some, and the body has a Group
-/// of it. `marked` as for refine. They can be refined further (pyramids into pyramids and Tet4, which the mesh names too).
+/// triangles (Tri3) around a new node in its middle, or two (`triangles` = 2) along its shorter diagonal, a Hex8 six
+/// pyramids (Pyramid5) around a new node, and two pyramids that share a base, of which one is marked, two Tet4 each along
+/// the shorter diagonal of that; other pyramids stay. The mesh names the types that elements become, with no elements or
+/// some, and the body has a Group of each. `marked` as for refine. All can be refined further (pyramids into pyramids
+/// and Tet4, which a mesh with pyramids names too).
 /// A new node takes the displacement and velocity of the middle; each element keeps its momentum. Groups as of raise.
 /// Throws Error, with the body as it was, as refine, for elements of other types, where the mesh has not the type that
 /// they become, and for another number of triangles.
@@ -256,7 +258,7 @@ SplittingReport split(TheBody& body, std::vector<std::vector<Index>> const& mark
 }
 
 /// Undoes splitting: where all elements that one was split into are marked, and none is refined itself or of degree two, it
-/// takes their place. The node in its middle goes, unless a condition on nodes names it; then it stays split. Groups,
+/// takes their place; of two pyramids that share a base both or none. The node in its middle goes, unless a condition on nodes names it; then it stays split. Groups,
 /// values of elements, internal variables, momentum and loads as of coarsen. Throws Error as refine, and for elements
 /// of types that nothing is split into.
 template <DeformableBody TheBody>

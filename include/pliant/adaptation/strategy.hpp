@@ -97,7 +97,7 @@ class Marked {
   /// See split. Elements that another rule refines or raises in the same look are not split.
   auto split(SplitOptions options = {}) const {
     static_assert(!std::is_void_v<SplitInto<typename From::element>>,
-                  "split: for Quad4 and Hex8 elements");
+                  "split: for Quad4, Hex8 and Pyramid5 elements");
     check_no_stay("split");
     if (options.triangles != 2 && options.triangles != 4)
       throw Error("strategy: a split into ", options.triangles, " triangles; give 2 or 4");
@@ -105,9 +105,8 @@ class Marked {
   }
   /// See merge. Elements that another rule refines, raises or splits in the same look are not merged.
   auto merge() const {
-    static_assert(std::same_as<typename From::element, Tri3> ||
-                      std::same_as<typename From::element, Pyramid5>,
-                  "merge: for Tri3 and Pyramid5 elements, into which others are split");
+    static_assert(is_part<typename From::element>,
+                  "merge: for Tri3, Pyramid5 and Tet4 elements, into which others are split");
     check_no_stay("merge");
     return MergeRule<From, C>{criterion_, marking_};
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/topology/hierarchy.hpp>
+#include <pliant/topology/tree_queries.hpp>
 
 // Changes of the cells of a tree, and what must stay as it is.
 namespace pliant {
@@ -73,9 +74,15 @@ ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& 
   changed.raised = raise.size();
   std::ranges::sort(changed.converted);
   std::vector<CellSplit> split;
+  auto const can_be_split = [&](Index c) {
+    return c >= 0 && tree.is_leaf(c) && tree.cell(c).has == CellNodes::corners;
+  };
   for (auto const& [old, division] : changes.split) {
     Index const c = changed.renumbered(old);
-    if (c < 0 || !tree.is_leaf(c) || tree.cell(c).has != CellNodes::corners) continue;
+    if (!can_be_split(c)) continue;
+    if (tree.cell(c).kind == CellKind::pyramid &&
+        !can_be_split(TreeQueries(tree.tree()).across_base(c)))
+      continue;
     split.push_back({c, division});
     changed.split.push_back(c);
   }
@@ -127,6 +134,11 @@ std::vector<Index> families_to_keep(Hierarchy<Dim> const& before,
   };
   std::vector<Index> keep;
   std::ranges::copy_if(families, std::back_inserter(keep), has_to_stay);
+  // Two pyramids that share a base are split alike.
+  for (std::size_t i = 0, count = keep.size(); i < count; ++i)
+    if (auto const& cell = before.cell(keep[i]); cell.is_split() && cell.kind == CellKind::pyramid)
+      keep.push_back(TreeQueries(before.tree()).across_base(keep[i]));
+  std::ranges::sort(keep);
   return keep;
 }
 

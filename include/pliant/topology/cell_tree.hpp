@@ -129,6 +129,7 @@ class CellTree {
       }
       divide_side(parent.sides[s]);
     }
+    if (p.halved_side >= 0) halve_side(parent.sides[at(p.halved_side)], point[at(p.child[0][0])]);
     if (p.centre >= 0) {
       make_node(cells_.edit(at(c)).centre, p.place[at(p.centre)]);
       point[at(p.centre)] = cells_[at(c)].centre;
@@ -156,7 +157,8 @@ class CellTree {
         auto const [home, number] = p.child_side[i][s];
         if (home == RefinementPattern::Home::side) {
           Index const whole = parent.sides[at(number)];
-          child.sides[s] = p.halves ? part_of_side(whole, side_of(child, s)) : whole;
+          child.sides[s] =
+              p.halves || number == p.halved_side ? part_of_side(whole, side_of(child, s)) : whole;
           continue;
         }
         if (inner_side[at(number)] < 0) {
@@ -331,7 +333,10 @@ class CellTree {
   void detach(Index c) { count_uses(c, -1); }
   void count_uses(Index c, int by) {
     auto const& cell = cells_[at(c)];
-    if (cell.is_split()) return;  // its children have its edges and sides
+    if (cell.is_split()) {  // its children have its edges and sides, but for one that is divided
+      if (int const s = cell.divided().halved_side; s >= 0) count_use(cell.sides[at(s)], c, by);
+      return;
+    }
     auto const& p = cell.pattern();
     for (std::size_t e = 0; e < at(p.edges); ++e) {
       auto& edge = edges_.edit(at(cell.edges[e]));
@@ -340,14 +345,15 @@ class CellTree {
     }
     if (cell.first_child < 0)
       (cell.has == CellNodes::corners ? linear_leaves_ : quadratic_leaves_) += by;
-    for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto& cells = sides_.edit(at(cell.sides[s])).cells;
-      if (by > 0) {
-        cells[cells[0] < 0 ? 0 : 1] = c;
-      } else {
-        if (cells[0] == c) cells[0] = cells[1];
-        cells[1] = -1;
-      }
+    for (std::size_t s = 0; s < at(p.sides); ++s) count_use(cell.sides[s], c, by);
+  }
+  void count_use(Index side, Index c, int by) {
+    auto& cells = sides_.edit(at(side)).cells;
+    if (by > 0) {
+      cells[cells[0] < 0 ? 0 : 1] = c;
+    } else {
+      if (cells[0] == c) cells[0] = cells[1];
+      cells[1] = -1;
     }
   }
 
@@ -402,6 +408,23 @@ class CellTree {
     child.nodes = {middle[1], middle[2], middle[0], -1};
     child.edges = {inner + 2, inner, inner + 1, -1};
     sides_.push_back(child);
+  }
+
+  /// Divides a side with four corners in two triangles, along the diagonal from one of them.
+  void halve_side(Index s, Index corner) {
+    auto const side = sides_[at(s)];
+    if (side.first_child >= 0) return;
+    std::size_t const k = side.nodes[0] == corner || side.nodes[2] == corner ? 0 : 1;
+    auto const diagonal = static_cast<Index>(edges_.size());
+    edges_.push_back({.nodes = {side.nodes[k], side.nodes[k + 2]}, .level = side.level});
+    sides_.edit(at(s)).first_child = static_cast<Index>(sides_.size());
+    sides_.edit(at(s)).first_inner_edge = diagonal;
+    for (std::size_t a = k; a < k + 3; a += 2)
+      sides_.push_back(
+          {.nodes = {side.nodes[a], side.nodes[(a + 1) % 4], side.nodes[(a + 2) % 4], -1},
+           .edges = {side.edges[a], side.edges[(a + 1) % 4], diagonal, -1},
+           .parent = s,
+           .level = side.level});
   }
 
   [[nodiscard]] Index edge_of_child(TreeCell const& parent, TreeCell const& child, std::size_t e,

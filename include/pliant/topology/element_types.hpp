@@ -34,19 +34,23 @@ struct ConvertedType<E, Mesh<Es...>> {
 
 }  // namespace detail
 
-/// Elements that take the place of a linear one which is split: triangles of a quadrilateral, pyramids of a hexahedron.
+/// Elements that take the place of a linear one which is split: triangles of a quadrilateral, pyramids of a hexahedron,
+/// tetrahedra of a pyramid.
 template <class E>
-using SplitInto = std::conditional_t<std::same_as<E, Quad4>, Tri3,
-                                     std::conditional_t<std::same_as<E, Hex8>, Pyramid5, void>>;
+using SplitInto = std::conditional_t<
+    std::same_as<E, Quad4>, Tri3,
+    std::conditional_t<std::same_as<E, Hex8>, Pyramid5,
+                       std::conditional_t<std::same_as<E, Pyramid5>, Tet4, void>>>;
+/// Whether some element is split into such ones.
+template <class E>
+inline constexpr bool is_part =
+    std::same_as<E, Tri3> || std::same_as<E, Pyramid5> || std::same_as<E, Tet4>;
 
-/// Whether elements of one type can take the place of others of another type, or those of these: by degree, by shape, or as
-/// tetrahedra do where pyramids are refined.
+/// Whether elements of one type can take the place of others of another type, or those of these: by degree or by shape.
 template <class One, class Other>
 inline constexpr bool interchange =
     (std::same_as<typename One::cell, typename Other::cell> && One::degree != Other::degree) ||
-    std::same_as<SplitInto<One>, Other> || std::same_as<SplitInto<Other>, One> ||
-    (std::same_as<One, Pyramid5> && std::same_as<Other, Tet4>) ||
-    (std::same_as<One, Tet4> && std::same_as<Other, Pyramid5>);
+    std::same_as<SplitInto<One>, Other> || std::same_as<SplitInto<Other>, One>;
 
 /// The place among a mesh's types of the first on the same cell as E that is of another degree; no_type where there is none.
 template <class E, class M>

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include <pliant/topology/cell_changes.hpp>
@@ -122,17 +124,33 @@ std::vector<CellConversion> raised_cells(M const& mesh, RefinementTree<M> const&
   return raised;
 }
 
-/// The shorter diagonal of a quadrilateral, of equal ones that from corner 0.
+/// Of four corners that run round, the one from 0 or 1 at which the shorter diagonal begins; of equal ones 0.
 template <int Dim>
-Division shorter_diagonal(Hierarchy<Dim> const& tree, Index c) {
+std::size_t shorter_diagonal(Hierarchy<Dim> const& tree, std::span<Index const, 4> corners) {
   auto const length = [&](std::size_t a) {
-    auto const& cell = tree.cell(c);
-    auto const &from = tree.points()[static_cast<std::size_t>(cell.nodes[a])],
-               &to = tree.points()[static_cast<std::size_t>(cell.nodes[a + 2])];
-    return std::hypot(to[0] - from[0], to[1] - from[1]);
+    auto const &from = tree.points()[static_cast<std::size_t>(corners[a])],
+               &to = tree.points()[static_cast<std::size_t>(corners[a + 2])];
+    double square = 0;
+    for (std::size_t k = 0; k < Dim; ++k) square += (to[k] - from[k]) * (to[k] - from[k]);
+    return std::sqrt(square);
   };
   // What rounding tells apart is as long.
-  return length(1) < (1 - 1e-12) * length(0) ? Division::diagonal_1 : Division::diagonal_0;
+  return length(1) < (1 - 1e-12) * length(0) ? 1 : 0;
+}
+
+/// Of two pyramids that share a base, along a diagonal of that; nothing where there is no other one.
+template <int Dim>
+void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit>& splits) {
+  Index const other = TreeQueries(tree.tree()).across_base(pyramid);
+  if (other < 0 || tree.cell(other).kind != CellKind::pyramid) return;
+  auto const& corners =
+      tree.tree().sides()[static_cast<std::size_t>(tree.cell(pyramid).sides[0])].nodes;
+  Index const first = corners[shorter_diagonal(tree, corners)];
+  for (Index const c : {pyramid, other}) {
+    auto const& nodes = tree.cell(c).nodes;
+    splits.push_back(
+        {c, nodes[0] == first || nodes[2] == first ? Division::diagonal_0 : Division::diagonal_1});
+  }
 }
 
 /// Throws Error where elements are marked that cannot be split.
@@ -141,7 +159,8 @@ void check_splits(M const& mesh, std::vector<std::vector<Index>> const& marked) 
   for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if constexpr (std::is_void_v<SplitInto<E>>)
-      throw Error("split: ", E::name(), " elements cannot be split; mark Quad4 or Hex8 elements");
+      throw Error("split: ", E::name(),
+                  " elements cannot be split; mark Quad4, Hex8 or Pyramid5 elements");
     else if constexpr (!has_type<SplitInto<E>, M>)
       throw Error("split: the mesh has no ", SplitInto<E>::name(), ", into which ", E::name(),
                   " elements are split; add it to the types of the mesh, with no elements, and a "
@@ -160,26 +179,41 @@ std::vector<CellSplit> split_cells(M const& mesh, RefinementTree<M> const& old,
   cells.insert(cells.end(), in_two.begin(), in_two.end());
   std::vector<CellSplit> splits;
   for (Index const c : each_once(std::move(cells))) {
-    auto division = Division::six_pyramids;
-    if constexpr (M::dim == 2)
-      division = std::ranges::binary_search(in_two, c) ? shorter_diagonal(*old.tree, c)
-                                                       : Division::four_triangles;
-    splits.push_back({c, division});
+    auto const& cell = old.tree->cell(c);
+    if (cell.kind == CellKind::pyramid)
+      split_pair(*old.tree, c, splits);
+    else if (cell.kind == CellKind::hexahedron)
+      splits.push_back({c, Division::six_pyramids});
+    else if (!std::ranges::binary_search(in_two, c))
+      splits.push_back({c, Division::four_triangles});
+    else
+      splits.push_back(
+          {c, shorter_diagonal(*old.tree, std::span(cell.nodes).template first<4>()) == 0
+                  ? Division::diagonal_0
+                  : Division::diagonal_1});
   }
+  std::ranges::sort(splits, {}, &CellSplit::cell);  // of pairs that were both marked, each once
+  auto const same = std::ranges::unique(splits, {}, &CellSplit::cell);
+  splits.erase(same.begin(), same.end());
   return splits;
 }
 
-/// Cells of which all are marked into which one was split: that one.
+/// The cells that were split into marked ones, all of which are; of two pyramids that share a base both or none.
 template <class M>
 std::vector<Index> merged_cells(M const& mesh, RefinementTree<M> const& old,
                                 std::vector<std::vector<Index>> const& marked) {
   for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    constexpr bool is_part = std::same_as<E, Tri3> || std::same_as<E, Pyramid5>;
-    if (!is_part && !marked.empty() && !marked[type].empty())
+    if (!is_part<E> && !marked.empty() && !marked[type].empty())
       throw Error("merge: no element is split into ", E::name(),
-                  " elements; mark Tri3 or Pyramid5 elements");
+                  " elements; mark Tri3, Pyramid5 or Tet4 elements");
   });
-  return old.tree->split_cells(cells_of(mesh, old.cells, "merge", marked));
+  auto merged = old.tree->split_cells(cells_of(mesh, old.cells, "merge", marked));
+  auto const all = merged;
+  std::erase_if(merged, [&](Index c) {
+    return old.tree->cell(c).kind == CellKind::pyramid &&
+           !std::ranges::binary_search(all, TreeQueries(old.tree->tree()).across_base(c));
+  });
+  return merged;
 }
 
 /// What is to become of the cells of a topology by marks on its elements. A family that is merged is not lowered.

@@ -145,8 +145,10 @@ class PatternMaker {
       case Division::diagonal_0:
       case Division::diagonal_1:
         p_.centre = -1;
+        if (std::same_as<Cell, Pyramid>) p_.halved_side = 0;
         for (int k = first; k < first + 3; k += 2)
-          add_child(CellKind::triangle, {k % 4, (k + 1) % 4, (k + 2) % 4});
+          add_child(std::same_as<Cell, Pyramid> ? CellKind::tetrahedron : CellKind::triangle,
+                    {k % 4, (k + 1) % 4, (k + 2) % 4, std::same_as<Cell, Pyramid> ? 4 : 0});
         break;
       case Division::four_triangles:
         for (int e = 0; e < p_.edges; ++e)

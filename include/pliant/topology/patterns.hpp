@@ -23,14 +23,17 @@ inline constexpr std::array splits{&pattern<Quadrilateral, Division::diagonal_0>
                                    &pattern<Quadrilateral, Division::diagonal_1>,
                                    &pattern<Quadrilateral, Division::four_triangles>,
                                    &pattern<Hexahedron, Division::six_pyramids>};
+inline constexpr std::array splits_of_pyramids{&pattern<Pyramid, Division::diagonal_0>,
+                                               &pattern<Pyramid, Division::diagonal_1>};
 
 }  // namespace detail
 
-/// By which a cell is divided. Splits are of the kind of cell that they are for.
+/// By which a cell is divided, in a way that its kind can be.
 constexpr RefinementPattern const& pattern_of(CellKind kind,
                                               Division division = Division::refined) {
-  return division == Division::refined ? *detail::refinements[static_cast<std::size_t>(kind)]
-                                       : *detail::splits[static_cast<std::size_t>(division) - 1];
+  if (division == Division::refined) return *detail::refinements[static_cast<std::size_t>(kind)];
+  auto const split = static_cast<std::size_t>(division) - 1;
+  return kind == CellKind::pyramid ? *detail::splits_of_pyramids[split] : *detail::splits[split];
 }
 
 /// Where a point of a child's element, on a `Child`, lies on its parent's. `mirrored`: whether the parent is.

@@ -31,7 +31,7 @@ inline constexpr CellKind kind_of = std::same_as<Cell, Triangle>        ? CellKi
 
 /// How a cell is divided: refined, into cells half its size, or split into cells of another shape, between its corners: a
 /// quadrilateral along the diagonal from corner 0 or 1 or into four triangles around its centre, a hexahedron into
-/// six pyramids around its centre, one on each side.
+/// six pyramids around its centre, one on each side, a pyramid into two tetrahedra along a diagonal of its base.
 enum class Division : std::uint8_t {
   refined,
   diagonal_0,
@@ -65,7 +65,8 @@ struct RefinementPattern {
   int inner_edges = 0, inner_sides = 0;
   int centre =
       -1;  ///< the point in the middle of the cell, or −1 where it has none, or a split needs none
-  bool halves = true;  ///< whether edges and sides are divided, and children half as large
+  bool halves = true;    ///< whether edges and sides are divided, and children half as large
+  int halved_side = -1;  ///< the side that a split divides in two triangles, or −1
   std::array<std::array<double, 3>, most_points> place{};  ///< of points, on the cell
   std::array<std::array<int, 2>, most_edges> edge{};       ///< their corners
   std::array<std::array<int, 4>, most_sides>

@@ -87,8 +87,9 @@ struct TreeSide {
   std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side
   Index centre = -1;                           ///< the node in its middle, or -1
   Index parent = -1;                           ///< the side of which it is a part
-  Index first_child = -1;                      ///< of four
-  Index first_inner_edge = -1;                 ///< of three in a triangle, four in a quadrilateral
+  Index first_child = -1;  ///< of four, or of two triangles between two pyramids that are split
+  Index first_inner_edge =
+      -1;  ///< of three in a triangle, four in a quadrilateral, or the diagonal
   int level = 0;
 
   [[nodiscard]] std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }

@@ -154,9 +154,15 @@ class TreeQueries {
       auto const& p = pattern_of(cell.kind, division);
       sum.nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
       sum.cells += at(p.children);
-      sum.edges += at(p.inner_edges);
+      sum.edges += at(p.inner_edges) + (p.halved_side >= 0 ? 1 : 0);
     }
     return sum;
+  }
+
+  /// The cell on the other side of a pyramid's base; −1 where there is none.
+  [[nodiscard]] Index across_base(Index pyramid) const {
+    auto const& cells = sides_[at(cells_[at(pyramid)].sides[0])].cells;
+    return cells[0] == pyramid ? cells[1] : cells[0];
   }
 
  private:
