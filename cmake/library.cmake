@@ -1,5 +1,5 @@
 # The targets, header-only all of them:
-#   pliant::pliant   the library and its serial Reference backend; needs Eigen
+#   pliant::pliant   the library and its serial Reference backend; needs Eigen and the system's threads
 #   pliant::openmp   with the OpenMP backend
 #   pliant::cuda     with the CUDA backend
 #   pliant::solvers  beside one of these, for programs that take long to compile: the solvers of matrices that solve.hpp
@@ -23,7 +23,8 @@ endfunction()
 pliant_add_headers(pliant include backends/reference)
 add_library(pliant::pliant ALIAS pliant)
 target_compile_features(pliant INTERFACE cxx_std_20)
-target_link_libraries(pliant INTERFACE Eigen3::Eigen)
+find_package(Threads REQUIRED)
+target_link_libraries(pliant INTERFACE Eigen3::Eigen Threads::Threads)
 
 add_library(pliant_solvers INTERFACE)
 add_library(pliant::solvers ALIAS pliant_solvers)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pliant/backend/array_bytes.hpp>
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
 
@@ -20,7 +21,9 @@ class HostArray {
   HostArray() = default;
   /// Zeroed. Throws Error when memory runs out.
   explicit HostArray(std::size_t count) : data_(allocate(count)), size_(count) {
-    std::fill_n(data_, count, U{});
+    detail::HostParts{count, few_bytes / sizeof(U)}([&](std::size_t first, std::size_t last, int) {
+      std::fill(data_ + first, data_ + last, U{});
+    });
   }
   ~HostArray() { ::operator delete(data_, line); }
   HostArray(HostArray&& other) noexcept
@@ -37,7 +40,10 @@ class HostArray {
   /// Overwrites the first values.
   void upload(std::span<U const> values) {
     check(values.size());
-    std::copy_n(values.data(), values.size(), data_);
+    detail::HostParts{values.size(),
+                      few_bytes / sizeof(U)}([&](std::size_t first, std::size_t last, int) {
+      std::copy(values.data() + first, values.data() + last, data_ + first);
+    });
   }
   /// Reads the first values.
   void download(std::span<U> values) const {
@@ -47,6 +53,7 @@ class HostArray {
 
  private:
   static constexpr std::align_val_t line{64};
+  static constexpr std::size_t few_bytes = 1 << 20;  // written by one thread
 
   static U* allocate(std::size_t count) {
     std::size_t const bytes = detail::array_bytes<U>(count);

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
-#include <pliant/config.hpp>
+#include <pliant/backend/host_threads.hpp>
 
 namespace pliant::detail {
 
@@ -13,8 +16,80 @@ struct GroupedByKey {
   std::vector<Index> first, order;
 };
 
+/// Calls put(place, i) for each i < n with the place of i among all by their keys, those of one key in their order: where each
+/// key's places begin. Keys are few: each thread counts them on its own.
+template <class KeyOf, class Put>
+std::vector<Index> distribute(Index n, Index keys, KeyOf const& key_of, Put const& put) {
+  HostParts const parts(n);
+  auto const width = static_cast<std::size_t>(keys);
+  std::vector<Index> next(static_cast<std::size_t>(parts.count()) * width);  // (parts, keys)
+  auto const row = [&](int part) { return next.data() + static_cast<std::size_t>(part) * width; };
+  parts([&](Index from, Index to, int part) {
+    Index* const counts = row(part);
+    for (Index i = from; i < to; ++i) ++counts[key_of(i)];
+  });
+  std::vector<Index> first(width + 1, n);
+  Index before = 0;
+  for (std::size_t k = 0; k < width; ++k) {
+    first[k] = before;
+    for (int part = 0; part < parts.count(); ++part) before += std::exchange(row(part)[k], before);
+  }
+  parts([&](Index from, Index to, int part) {
+    Index* const places = row(part);
+    for (Index i = from; i < to; ++i) put(places[key_of(i)]++, i);
+  });
+  return first;
+}
+
+/// By how many bits to shift keys below `count` to have a thousand at most, for `distribute`.
+inline int shift_to_few(Index count) {
+  return std::max(0, static_cast<int>(std::bit_width(static_cast<unsigned>(count))) - 10);
+}
+
+/// On several threads: entries go to ranges of keys first, then each range is counted and filled by one thread.
+inline GroupedByKey group_by_ranges(std::vector<Index> const& keys, Index count) {
+  struct Entry {
+    Index key, position;
+  };
+  int const shift = shift_to_few(count);
+  Index const ranges = (count >> shift) + 1, n = static_cast<Index>(keys.size());
+  auto const entries = std::make_unique_for_overwrite<Entry[]>(keys.size());
+  auto const begin = distribute(
+      n, ranges, [&](Index i) { return keys[static_cast<std::size_t>(i)] >> shift; },
+      [&](Index place, Index i) {
+        entries[static_cast<std::size_t>(place)] = {keys[static_cast<std::size_t>(i)], i};
+      });
+  GroupedByKey grouped;
+  grouped.first.resize(static_cast<std::size_t>(count) + 1);
+  grouped.order.resize(keys.size());
+  for_each_on_host(ranges, 1, [&](Index range) {
+    auto const r = static_cast<std::size_t>(range);
+    std::vector<Index> next(std::size_t{1} << shift);
+    Index const lowest = range << shift;
+    auto const each_entry = [&](auto const& visit) {
+      for (Index k = begin[r]; k < begin[r + 1]; ++k) {
+        Entry const& entry = entries[static_cast<std::size_t>(k)];
+        visit(next[static_cast<std::size_t>(entry.key - lowest)], entry);
+      }
+    };
+    each_entry([](Index& number, Entry const&) { ++number; });
+    Index before = begin[r];
+    for (std::size_t k = 0; k < next.size() && lowest + static_cast<Index>(k) < count; ++k) {
+      grouped.first[static_cast<std::size_t>(lowest) + k] = before;
+      before += std::exchange(next[k], before);
+    }
+    each_entry([&](Index& place, Entry const& entry) {
+      grouped.order[static_cast<std::size_t>(place++)] = entry.position;
+    });
+  });
+  grouped.first.back() = n;
+  return grouped;
+}
+
 /// Keys lie in [0, count); one pass counts, another fills.
 inline GroupedByKey group_by_key(std::vector<Index> const& keys, Index count) {
+  constexpr std::size_t few = 65536;
+  if (keys.size() >= few && has_many_host_threads()) return group_by_ranges(keys, count);
   GroupedByKey grouped;
   grouped.first.resize(static_cast<std::size_t>(count) + 1);
   grouped.order.resize(keys.size());

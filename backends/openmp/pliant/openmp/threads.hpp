@@ -3,42 +3,10 @@
 #include <omp.h>
 
 #include <cstdint>
-#include <exception>
 
-#include <pliant/config.hpp>
+#include <pliant/backend/first_exception.hpp>
 
 namespace pliant::detail {
-
-/// Carries an exception out of a parallel region, which none may leave by itself: the one that a
-/// serial loop would have met first, whatever thread meets its own first.
-class FirstException {
- public:
-  /// Calls work(), which has place `at` in the serial order; keeps what it throws.
-  template <class F>
-  PLIANT_INLINE void guard(Index at, F const& work) {
-    try {
-      work();
-    } catch (...) {
-      keep(at);
-    }
-  }
-  /// Behind the parallel region.
-  void rethrow() const {
-    if (thrown_) std::rethrow_exception(thrown_);
-  }
-
- private:
-  [[gnu::cold, gnu::noinline]] void keep(Index at) {
-#pragma omp critical(pliant_first_exception)
-    if (!thrown_ || at < at_) {
-      thrown_ = std::current_exception();
-      at_ = at;
-    }
-  }
-
-  std::exception_ptr thrown_;
-  Index at_ = 0;
-};
 
 /// What a loop does in a range, of whatever type: loops are compiled once, and not for each of these.
 class LoopBody {
