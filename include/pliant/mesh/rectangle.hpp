@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <pliant/element/linear.hpp>
-#include <pliant/mesh/sides.hpp>
+#include <pliant/mesh/raised.hpp>
 
 namespace pliant::mesh {
 

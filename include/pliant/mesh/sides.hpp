@@ -1,8 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <limits>
-#include <map>
+#include <utility>
 
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
@@ -70,7 +71,7 @@ inline std::uint64_t scattered(Index node) {
 
 /// Calls visit(the smallest corner, the sum of the scattered corners) for each side of an element.
 template <Element E, class Visit>
-void for_each_side_sum(Connectivity<E> const& element, Visit const& visit) {
+inline PLIANT_INLINE void for_each_side_sum(Connectivity<E> const& element, Visit const& visit) {
   static constexpr auto sides = E::cell::sides();
   std::array<std::uint64_t, E::cell::corners> scatter;
   for (std::size_t a = 0; a < scatter.size(); ++a) scatter[a] = scattered(element[a]);
@@ -88,45 +89,99 @@ void for_each_side_sum(Connectivity<E> const& element, Visit const& visit) {
 
 }  // namespace detail
 
+namespace detail {
+
+/// Sides of elements, and what tells them from others.
+template <int Dim>
+struct SideList {
+  std::vector<Facet<Dim>> sides;
+  std::vector<std::array<Index, 4>> keys;
+  std::vector<Index> smallest;  // corner
+
+  void append(SideList const& other) {
+    sides.insert(sides.end(), other.sides.begin(), other.sides.end());
+    keys.insert(keys.end(), other.keys.begin(), other.keys.end());
+    smallest.insert(smallest.end(), other.smallest.begin(), other.smallest.end());
+  }
+};
+
+/// The sides of elements but those whose smallest corner has none but sides that are there twice: they cancel in the
+/// exclusive or over the sides of one smallest corner, so that most corners are done with; 64 bits make an accidental
+/// zero as good as impossible. Throws Error for an element of nodes that the mesh has not.
+template <Element... Es>
+SideList<Mesh<Es...>::dim> sides_that_may_be_outer(Mesh<Es...> const& mesh) {
+  auto const count = static_cast<Index>(mesh.nodes.size());
+  std::vector<std::uint64_t> left(mesh.nodes.size());
+  auto const parts_of = [&]<Element E>(E) {
+    return pliant::detail::HostParts(static_cast<Index>(mesh.template elements<E>().size()),
+                                     pliant::detail::few_elements(E::nodes));
+  };
+  auto const flip_sides = [&]<Element E>(E) {
+    auto const parts = parts_of(E{});
+    auto const flip_in = [&](Index first, Index last, auto const& flip) {
+      auto* const bits = left.data();
+      auto const* const elements = mesh.template elements<E>().data();
+      for (Index e = first; e < last; ++e) {
+        auto const element = elements[e];
+        for (Index node : element)
+          if (node < 0 || node >= count)
+            throw Error("mesh: an element refers to node ", node, ", but the mesh has ",
+                        mesh.nodes.size(), " nodes; correct the connectivity");
+        for_each_side_sum<E>(element, [&](std::size_t, Index corner, std::uint64_t sum) {
+          flip(bits[corner], sum);
+        });
+      }
+    };
+    if (parts.count() == 1 || !pliant::detail::has_many_host_threads())
+      return flip_in(0, static_cast<Index>(mesh.template elements<E>().size()),
+                     [](std::uint64_t& bits, std::uint64_t by) { bits ^= by; });
+    parts([&](Index first, Index last, int) {
+      flip_in(first, last, [](std::uint64_t& bits, std::uint64_t by) {
+        std::atomic_ref(bits).fetch_xor(by, std::memory_order_relaxed);
+      });
+    });
+  };
+  (flip_sides(Es{}), ...);
+  SideList<Mesh<Es...>::dim> all;
+  auto const collect = [&]<Element E>(E) {
+    auto const parts = parts_of(E{});
+    std::vector<SideList<Mesh<Es...>::dim>> of_parts(static_cast<std::size_t>(parts.count()));
+    parts([&](Index first, Index last, int part) {
+      auto& found = of_parts[static_cast<std::size_t>(part)];
+      for (Index e = first; e < last; ++e) {
+        auto const& element = mesh.template elements<E>()[static_cast<std::size_t>(e)];
+        std::uint64_t any = 0;  // of all nodes, without a branch for each
+        for (Index node : element) any |= left[static_cast<std::size_t>(node)];
+        if (any == 0) continue;
+        for_each_side_sum<E>(element, [&](std::size_t s, Index corner, std::uint64_t) {
+          if (left[static_cast<std::size_t>(corner)] == 0) return;
+          found.sides.push_back(side_of<E>(element, static_cast<int>(s)));
+          found.keys.push_back(key_of(found.sides.back()));
+          found.smallest.push_back(corner);
+        });
+      }
+    });
+    for (auto const& found : of_parts) all.append(found);
+  };
+  (collect(Es{}), ...);
+  return all;
+}
+
+}  // namespace detail
+
 /// The sides of elements that have no element behind them: the boundary of a mesh, in the order of their
 /// smallest corner. Throws Error for an element of nodes that the mesh has not.
 template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
-  auto const count = static_cast<Index>(mesh.nodes.size());
-  // Sides that are there twice cancel in the exclusive or over the sides of one smallest corner, so that most
-  // corners are done with; 64 bits make an accidental zero as good as impossible.
-  std::vector<std::uint64_t> left(mesh.nodes.size(), 0);
-  auto const add = [&]<Element E>(E) {
-    for (auto const& element : mesh.template elements<E>()) {
-      for (Index node : element)
-        if (node < 0 || node >= count)
-          throw Error("mesh: an element refers to node ", node, ", but the mesh has ",
-                      mesh.nodes.size(), " nodes; correct the connectivity");
-      detail::for_each_side_sum<E>(element, [&](std::size_t, Index corner, std::uint64_t sum) {
-        left[static_cast<std::size_t>(corner)] ^= sum;
-      });
-    }
-  };
-  (add(Es{}), ...);
-  std::vector<Facet<Mesh<Es...>::dim>> sides, outer;
-  std::vector<std::array<Index, 4>> keys;
-  std::vector<Index> smallest;
-  auto const collect = [&]<Element E>(E) {
-    for (auto const& element : mesh.template elements<E>()) {
-      std::uint64_t any = 0;  // of all nodes, without a branch for each
-      for (Index node : element) any |= left[static_cast<std::size_t>(node)];
-      if (any == 0) continue;
-      detail::for_each_side_sum<E>(element, [&](std::size_t s, Index corner, std::uint64_t) {
-        if (left[static_cast<std::size_t>(corner)] == 0) return;
-        sides.push_back(side_of<E>(element, static_cast<int>(s)));
-        keys.push_back(key_of(sides.back()));
-        smallest.push_back(corner);
-      });
-    }
-  };
-  (collect(Es{}), ...);
+  HostThreads const threads;
+  auto const found = detail::sides_that_may_be_outer(mesh);
   // Two elements that share a side see the same corners: look for them among those of one corner.
-  auto const at_corner = pliant::detail::group_by_key(smallest, count);
+  auto const at_corner =
+      pliant::detail::group_by_key(found.smallest, static_cast<Index>(mesh.nodes.size()));
+  std::vector<Facet<Mesh<Es...>::dim>> outer;
+  auto const is_same = [](auto const& a, auto const& b) {  // without a call of memcmp
+    return a[3] == b[3] && a[2] == b[2] && a[1] == b[1] && a[0] == b[0];
+  };
   for (std::size_t corner = 0; corner < mesh.nodes.size(); ++corner)
     for (Index i = at_corner.first[corner]; i < at_corner.first[corner + 1]; ++i) {
       auto const side = [&](Index k) {
@@ -134,11 +189,72 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
       };
       int times = 0;
       for (Index k = at_corner.first[corner]; k < at_corner.first[corner + 1]; ++k)
-        times += keys[side(k)] == keys[side(i)];
-      if (times == 1) outer.push_back(sides[side(i)]);
+        times += is_same(found.keys[side(k)], found.keys[side(i)]);
+      if (times == 1) outer.push_back(found.sides[side(i)]);
     }
   return outer;
 }
+
+/// Calls visit(k, side) for each side of an element that has the corners of keys[k], see key_of, in the order of elements.
+/// Keys ascend.
+template <Element... Es, class Visit>
+void for_each_side_with(Mesh<Es...> const& mesh, std::vector<std::array<Index, 4>> const& keys,
+                        Visit const& visit) {
+  constexpr int Dim = Mesh<Es...>::dim;
+  std::vector<char> named(mesh.nodes.size(), 0);
+  for (auto const& key : keys)
+    for (Index node : key)
+      if (node >= 0 && node < static_cast<Index>(named.size()))
+        named[static_cast<std::size_t>(node)] = 1;
+  auto const look_at = [&]<Element E>(E) {
+    auto const& elements = mesh.template elements<E>();
+    pliant::detail::HostParts const parts(static_cast<Index>(elements.size()),
+                                          pliant::detail::few_elements(E::nodes));
+    std::vector<std::vector<std::pair<std::size_t, Facet<Dim>>>> found(
+        static_cast<std::size_t>(parts.count()));
+    parts([&](Index first, Index last, int part) {
+      for (auto e = static_cast<std::size_t>(first); e < static_cast<std::size_t>(last); ++e) {
+        int corners = 0;
+        for (std::size_t a = 0; a < E::cell::corners; ++a)
+          corners += named[static_cast<std::size_t>(elements[e][a])];
+        if (corners < Dim) continue;
+        for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
+          auto const side = side_of<E>(elements[e], static_cast<int>(s));
+          auto const key = std::ranges::lower_bound(keys, key_of(side));
+          if (key != keys.end() && *key == key_of(side))
+            found[static_cast<std::size_t>(part)].emplace_back(key - keys.begin(), side);
+        }
+      }
+    });
+    for (auto const& of_part : found)
+      for (auto const& [k, side] : of_part) visit(k, side);
+  };
+  (look_at(Es{}), ...);
+}
+
+/// Facets, ascending by key_of, each of which stands for those with the same corners.
+template <int Dim>
+class FacetsByCorners {
+ public:
+  void add(Facet<Dim> const& facet) { keys_.push_back(key_of(facet)); }
+  /// Behind the last one that is added.
+  void sort() {
+    std::ranges::sort(keys_);
+    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    facets_.resize(keys_.size());
+  }
+  std::vector<std::array<Index, 4>> const& keys() const { return keys_; }
+  Facet<Dim>& operator[](std::size_t k) { return facets_[k]; }
+  /// For one that was added: empty, or what was assigned.
+  Facet<Dim> const& at(Facet<Dim> const& facet) const {
+    return facets_[static_cast<std::size_t>(std::ranges::lower_bound(keys_, key_of(facet)) -
+                                            keys_.begin())];
+  }
+
+ private:
+  std::vector<std::array<Index, 4>> keys_;
+  std::vector<Facet<Dim>> facets_;
+};
 
 /// Facets told by their corners as the mesh has them: with all nodes of a side of an element, outer sides as they
 /// are seen from outside. Throws Error for a facet that is no side of an element.
@@ -146,8 +262,8 @@ template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> sides_of(Mesh<Es...> const& mesh,
                                               std::vector<Facet<Mesh<Es...>::dim>> facets) {
   constexpr int Dim = Mesh<Es...>::dim;
-  std::map<std::array<Index, 4>, Facet<Dim>> found;
-  std::vector<bool> named(mesh.nodes.size(), false);
+  HostThreads const threads;
+  FacetsByCorners<Dim> found;
   auto const refuse = [](Facet<Dim> const& facet, char const* why) {
     std::string nodes;
     for (Index node : facet) nodes += pliant::detail::message({" ", node});
@@ -159,25 +275,14 @@ std::vector<Facet<Mesh<Es...>::dim>> sides_of(Mesh<Es...> const& mesh,
         throw Error("mesh: a facet names node ", node, ", but nodes are numbered 0 to ",
                     mesh.nodes.size() - 1);
     if (facet.size() < facet.corners()) refuse(facet, " has too few of them; give its corners");
-    found.emplace(key_of(facet), Facet<Dim>{});
-    for (Index node : facet) named[static_cast<std::size_t>(node)] = true;
+    found.add(facet);
   }
-  auto const look_at = [&]<Element E>(E) {
-    for (auto const& element : mesh.template elements<E>()) {
-      int corners = 0;
-      for (int a = 0; a < E::cell::corners; ++a)
-        corners += named[static_cast<std::size_t>(element[static_cast<std::size_t>(a)])];
-      if (corners < Dim) continue;
-      for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
-        auto const side = side_of<E>(element, static_cast<int>(s));
-        auto const entry = found.find(key_of(side));
-        if (entry != found.end() && entry->second.size() < side.size()) entry->second = side;
-      }
-    }
-  };
-  (look_at(Es{}), ...);
+  found.sort();
+  for_each_side_with(mesh, found.keys(), [&](std::size_t k, Facet<Dim> const& side) {
+    if (found[k].size() < side.size()) found[k] = side;
+  });
   for (auto& facet : facets) {
-    auto const& side = found.at(key_of(facet));
+    auto const& side = found.at(facet);
     if (side.size() == 0)
       refuse(facet,
              " is no side of an element; give facets of the present mesh, which after a refinement "
@@ -197,56 +302,6 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides_where(Mesh<Es...> const& mesh,
         facet, [&](Index node) { return belongs(mesh.nodes[static_cast<std::size_t>(node)]); });
   });
   return facets;
-}
-
-/// The same cells with elements of a higher degree: nodes are added in the middle of edges, sides and
-/// cells, on straight lines. Facets of the boundaries gain their nodes. (Move nodes afterwards for
-/// curved cells.)
-template <Element E, Element Linear>
-  requires std::same_as<typename E::cell, typename Linear::cell> && (Linear::degree == 1)
-Mesh<E> raised(Mesh<Linear> const& from) {
-  constexpr int corners = E::cell::corners;
-  Mesh<E> to;
-  to.nodes = from.nodes;
-  std::map<std::array<Index, corners>, Index> between;  // by the corners around the new node
-  for (auto const& element : from.template elements<Linear>()) {
-    Connectivity<E> raised;
-    std::copy_n(element.begin(), corners, raised.begin());
-    for (int a = corners; a < E::nodes; ++a) {
-      auto const share = E::cell::linear(E::place(a));
-      std::array<Index, corners> around;
-      around.fill(-1);
-      Point<E::dim> middle{};
-      for (int b = 0; b < corners; ++b) {
-        if (!(share[b] > 1e-9)) continue;
-        Index const node = element[static_cast<std::size_t>(b)];
-        around[static_cast<std::size_t>(b)] = node;
-        for (std::size_t k = 0; k < E::dim; ++k)
-          middle[k] += share[b] * from.nodes[static_cast<std::size_t>(node)][k];
-      }
-      std::ranges::sort(around);
-      auto const [entry, is_new] = between.try_emplace(around, static_cast<Index>(to.nodes.size()));
-      if (is_new) to.nodes.push_back(middle);
-      raised[static_cast<std::size_t>(a)] = entry->second;
-    }
-    to.template elements<E>().push_back(raised);
-  }
-  if (from.boundaries.empty()) return to;
-  std::map<std::array<Index, 4>, Facet<E::dim>> facets;
-  for (auto const& element : to.template elements<E>())
-    for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
-      auto const facet = side_of<E>(element, static_cast<int>(s));
-      facets[key_of(facet)] = facet;
-    }
-  for (auto const& [name, list] : from.boundaries)
-    for (auto const& facet : list) {
-      auto const found = facets.find(key_of(facet));
-      if (found == facets.end())
-        throw Error("mesh::raised: a facet of the boundary \"", name,
-                    "\" is no side of an element; name the boundaries of the present elements");
-      to.boundaries[name].push_back(found->second);
-    }
-  return to;
 }
 
 }  // namespace pliant::mesh
