@@ -81,56 +81,123 @@ class MiddleCheck<PartsOfCell, Mesh<Es...>> {
   explicit MiddleCheck(M const& mesh) : mesh_(mesh) {}
 
   void operator()() {
-    int type = 0;
-    (collect<Es>(type++), ...);
-    auto const by_corner = group_by_key(smallest_, static_cast<Index>(mesh_.nodes.size()));
-    std::vector<Entry> around;
-    for (std::size_t corner = 0; corner < mesh_.nodes.size(); ++corner) {
-      around.clear();
-      for (Index k = by_corner.first[corner]; k < by_corner.first[corner + 1]; ++k)
-        around.push_back(
-            entries_[static_cast<std::size_t>(by_corner.order[static_cast<std::size_t>(k)])]);
-      std::sort(around.begin(), around.end());
-      auto const* first = around.data();
-      for (auto const& entry : around) {
-        if (entry.corners != first->corners) first = &entry;
-        if (entry.node == first->node) continue;
-        if (first->node < 0)
-          demand_slave(*first, entry);
-        else
-          demand_one_place(*first, entry);
-      }
+    if constexpr ((has_middles<Es>() || ...)) {
+      auto const nodes = static_cast<Index>(mesh_.nodes.size());
+      auto const by_corner = group_by_key(smallest_corners(), nodes);
+      HostParts const parts(nodes, 2048);
+      std::vector<std::vector<Index>> differing(static_cast<std::size_t>(parts.count()));
+      parts([&](Index first, Index last, int part) {
+        std::vector<Entry> seen;
+        for (Index corner = first; corner < last; ++corner)
+          if (differ(entries_at(by_corner, corner), seen))
+            differing[static_cast<std::size_t>(part)].push_back(corner);
+      });
+      for (auto const& of_part : differing)
+        for (Index corner : of_part) compare(entries_at(by_corner, corner));
     }
   }
 
  private:
   template <Element E>
-  void collect(int type) {
-    static constexpr auto parts = PartsOfCell::template of<typename E::cell>();
-    auto const& elements = mesh_.template elements<E>();
-    for (std::size_t e = 0; e < elements.size(); ++e)
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        Entry entry{{}, -1, type, static_cast<int>(p), static_cast<Index>(e)};
-        entry.corners.fill(-1);
-        Index smallest = static_cast<Index>(mesh_.nodes.size());
-        for (std::size_t c = 0; c < parts[p].size(); ++c)
-          if (int const corner = parts[p][c]; corner >= 0) {
-            entry.corners[c] = elements[e][static_cast<std::size_t>(corner)];
-            smallest = std::min(smallest, entry.corners[c]);
-          }
-        std::sort(entry.corners.begin(), entry.corners.end());
+  static constexpr auto parts_of = PartsOfCell::template of<typename E::cell>();
+  template <Element E>
+  static constexpr bool has_middles() {
+    for (auto const& part : parts_of<E>)
+      if (PlaceOfMiddle<E>::of(part).node >= 0) return true;
+    return false;
+  }
+
+  /// Of all parts of all elements, type by type.
+  std::vector<Index> smallest_corners() const {
+    std::vector<Index> smallest(
+        ((mesh_.template elements<Es>().size() * parts_of<Es>.size()) + ...));
+    std::size_t begin = 0;
+    auto const add = [&]<Element E>(E) {
+      auto const& elements = mesh_.template elements<E>();
+      for_each_on_host(static_cast<Index>(elements.size()), few_elements(E::nodes), [&](Index i) {
+        auto const e = static_cast<std::size_t>(i);
+        for (std::size_t p = 0; p < parts_of<E>.size(); ++p) {
+          Index least = static_cast<Index>(mesh_.nodes.size());
+          for (int corner : parts_of<E>[p])
+            if (corner >= 0) least = std::min(least, elements[e][static_cast<std::size_t>(corner)]);
+          smallest[begin + e * parts_of<E>.size() + p] = least;
+        }
+      });
+      begin += elements.size() * parts_of<E>.size();
+    };
+    (add(Es{}), ...);
+    return smallest;
+  }
+  /// visit(entry) for the entries of a corner, in the order of elements.
+  auto entries_at(GroupedByKey const& by_corner, Index corner) const {
+    return [this, &by_corner, corner](auto const& visit) {
+      auto const at = static_cast<std::size_t>(corner);
+      for (Index k = by_corner.first[at]; k < by_corner.first[at + 1]; ++k)
+        visit(entry(static_cast<std::size_t>(by_corner.order[static_cast<std::size_t>(k)])));
+    };
+  }
+  /// Of number `place` among all.
+  Entry entry(std::size_t place) const {
+    Entry found{{}, -1, -1, 0, 0};
+    int type = 0;
+    auto const look_at = [&]<Element E>(E) {
+      auto const& elements = mesh_.template elements<E>();
+      std::size_t const count = elements.size() * parts_of<E>.size();
+      if (found.type < 0 && place < count) {
+        std::size_t const p = place % parts_of<E>.size(), e = place / parts_of<E>.size();
+        found.corners.fill(-1);
+        for (std::size_t c = 0; c < parts_of<E>[p].size(); ++c)
+          if (int const corner = parts_of<E>[p][c]; corner >= 0)
+            found.corners[c] = elements[e][static_cast<std::size_t>(corner)];
+        std::sort(found.corners.begin(), found.corners.end());
         if (int const node = middle_of<E>(p).node; node >= 0)
-          entry.node = elements[e][static_cast<std::size_t>(node)];
-        entries_.push_back(entry);
-        smallest_.push_back(smallest);
+          found.node = elements[e][static_cast<std::size_t>(node)];
+        found.type = type;
+        found.part = static_cast<int>(p);
+        found.element = static_cast<Index>(e);
       }
+      place -= count;
+      ++type;
+    };
+    (look_at(Es{}), ...);
+    return found;
+  }
+
+  /// Whether entries of the same corners have different nodes. `seen` is memory to work in.
+  template <class EachEntry>
+  static bool differ(EachEntry const& each_entry, std::vector<Entry>& seen) {
+    seen.clear();
+    bool found = false;
+    each_entry([&](Entry const& entry) {
+      for (Entry const& other : seen)
+        if (other.corners == entry.corners) {
+          found = found || other.node != entry.node;
+          return;
+        }
+      seen.push_back(entry);
+    });
+    return found;
+  }
+  template <class EachEntry>
+  void compare(EachEntry const& each_entry) {
+    std::vector<Entry> around;
+    each_entry([&](Entry const& entry) { around.push_back(entry); });
+    std::sort(around.begin(), around.end());
+    auto const* first = around.data();
+    for (auto const& entry : around) {
+      if (entry.corners != first->corners) first = &entry;
+      if (entry.node == first->node) continue;
+      if (first->node < 0)
+        demand_slave(*first, entry);
+      else
+        demand_one_place(*first, entry);
+    }
   }
   template <Element E>
   static PlaceOfMiddle<E> const& middle_of(std::size_t part) {
-    static constexpr auto parts = PartsOfCell::template of<typename E::cell>();
     static constexpr auto middles = [] {
-      std::array<PlaceOfMiddle<E>, parts.size()> all;
-      for (std::size_t p = 0; p < parts.size(); ++p) all[p] = PlaceOfMiddle<E>::of(parts[p]);
+      std::array<PlaceOfMiddle<E>, parts_of<E>.size()> all;
+      for (std::size_t p = 0; p < all.size(); ++p) all[p] = PlaceOfMiddle<E>::of(parts_of<E>[p]);
       return all;
     }();
     return middles[part];
@@ -196,9 +263,7 @@ class MiddleCheck<PartsOfCell, Mesh<Es...>> {
   }
 
   M const& mesh_;
-  std::vector<Entry> entries_;
-  std::vector<Index> smallest_;  // corner of each entry
-  Interpolation rows_;           // of the mesh's slaves
+  Interpolation rows_;  // of the mesh's slaves
 };
 
 /// Throws Error where elements share the corners of an edge or a face, one has a node in the middle of it that
