@@ -36,14 +36,19 @@ TEST_CASE("codes are ordered whatever bits they share", "[mesh]") {
   // Leading bits that all differ, that a few share, that many share; and codes that are there twice.
   for (int different : {63, 20, 40}) {
     std::vector<std::uint64_t> codes;
-    for (int i = 0; i < 3000; ++i)
+    for (int i = 0; i < 40000; ++i)
       codes.push_back(different > 30 ? bits(different) : bits(different) << 43 | bits(3));
     codes.insert(codes.end(), codes.begin(), codes.begin() + 500);
     std::vector<Index> expected(codes.size());
     std::iota(expected.begin(), expected.end(), 0);
     std::ranges::stable_sort(expected, {},
                              [&](Index i) { return codes[static_cast<std::size_t>(i)]; });
-    CHECK(pliant::detail::ascending(codes, width) == expected);
+    auto const code = [&](Index i) { return codes[static_cast<std::size_t>(i)]; };
+    auto const leading = [&](Index i) { return code(i) >> (width - 33); };
+    auto const n = static_cast<Index>(codes.size());
+    CHECK(pliant::detail::ascending(n, leading, code) == expected);
+    HostThreads const threads(4);
+    CHECK(pliant::detail::ascending(n, leading, code) == expected);
   }
 }
 

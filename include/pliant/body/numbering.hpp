@@ -1,11 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/hilbert.hpp>
+#include <pliant/mesh/mesh.hpp>
 
 namespace pliant {
 
@@ -22,45 +26,99 @@ struct Numbering {
   std::array<std::vector<Index>, sizeof...(Es)> user_element;  // by the internal number
 
   explicit Numbering(Mesh<Es...> const& mesh)
-      : internal_node(mesh.nodes.size(), -1), user_node(mesh.nodes.size()) {
-    along_curve_.resize(mesh.nodes.size());
-    Index place = 0;
-    for (Index node : hilbert_order(std::span<Point<Mesh<Es...>::dim> const>(mesh.nodes)))
-      along_curve_[static_cast<std::size_t>(node)] = place++;
+      : internal_node(mesh.nodes.size(), -1),
+        user_node(mesh.nodes.size()),
+        along_curve_(mesh.nodes.size()) {
+    auto const order = hilbert_order(std::span<Point<Mesh<Es...>::dim> const>(mesh.nodes));
+    auto const nodes = static_cast<Index>(mesh.nodes.size());
+    detail::for_each_on_host(nodes, 16384, [&](Index i) {
+      along_curve_[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = i;
+    });
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (number<I, Es>(mesh), ...);
+      (sort_elements<I, Es>(mesh), ...);
+      (number_nodes(std::get<I>(tables)), ...);
     }(std::index_sequence_for<Es...>());
-    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)  // nodes of no element come last
-      if (internal_node[i] < 0) take(static_cast<Index>(i));
+    for (std::size_t i = 0; next_ < nodes; ++i)  // nodes of no element come last
+      if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);
   }
 
  private:
-  Index take(Index user) {
-    auto& number = internal_node[static_cast<std::size_t>(user)];
-    if (number < 0) {
-      number = next_++;
-      user_node[static_cast<std::size_t>(number)] = user;
-    }
-    return number;
+  void take(Index user, Index number) {
+    internal_node[static_cast<std::size_t>(user)] = number;
+    user_node[static_cast<std::size_t>(number)] = user;
   }
 
   template <std::size_t I, Element E>
-  void number(Mesh<Es...> const& mesh) {
+  void sort_elements(Mesh<Es...> const& mesh) {
     auto const& elements = mesh.template elements<E>();
+    auto const count = static_cast<Index>(elements.size());
     std::vector<Index> first(elements.size());
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      Index least = along_curve_[static_cast<std::size_t>(elements[e][0])];
-      for (Index node : elements[e])
+    detail::for_each_on_host(count, detail::few_elements(E::nodes), [&](Index e) {
+      auto const& element = elements[static_cast<std::size_t>(e)];
+      Index least = along_curve_[static_cast<std::size_t>(element[0])];
+      for (Index node : element)
         least = std::min(least, along_curve_[static_cast<std::size_t>(node)]);
-      first[e] = least;
-    }
+      first[static_cast<std::size_t>(e)] = least;
+    });
     user_element[I] = detail::group_by_key(first, static_cast<Index>(mesh.nodes.size())).order;
     auto& table = std::get<I>(tables);
     table.resize(elements.size());
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      table[i] = elements[static_cast<std::size_t>(user_element[I][i])];
-      for (Index& node : table[i]) node = take(node);
-    }
+    detail::for_each_on_host(count, detail::few_elements(E::nodes), [&](Index i) {
+      auto const at = static_cast<std::size_t>(i);
+      table[at] = elements[static_cast<std::size_t>(user_element[I][at])];
+    });
+  }
+
+  template <std::size_t Nodes>
+  void number_nodes(std::vector<std::array<Index, Nodes>>& table) {
+    detail::HostParts const parts(static_cast<Index>(table.size()), detail::few_elements(Nodes));
+    if (parts.count() > 1 && detail::has_many_host_threads()) return number_in_parts(table, parts);
+    for (auto& element : table)
+      for (Index& node : element) {
+        if (internal_node[static_cast<std::size_t>(node)] < 0) take(node, next_++);
+        node = internal_node[static_cast<std::size_t>(node)];
+      }
+  }
+  /// The same on several threads: a part numbers the nodes that no earlier one has, then all know where theirs begin.
+  template <std::size_t Nodes>
+  void number_in_parts(std::vector<std::array<Index, Nodes>>& table,
+                       detail::HostParts<Index> const& parts) {
+    // Of each new node, parts.count() less the first part that has it; 0: it is not new.
+    std::vector<std::atomic<std::uint16_t>> owner(internal_node.size());
+    auto const each_new = [&](Index from, Index to, int part, auto const& visit) {
+      auto const own = static_cast<std::uint16_t>(parts.count() - part);
+      for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)
+        for (Index node : table[i]) visit(node, owner[static_cast<std::size_t>(node)], own);
+    };
+    parts([&](Index from, Index to, int part) {
+      each_new(from, to, part, [&](Index node, auto& kept, std::uint16_t own) {
+        auto before = kept.load(std::memory_order_relaxed);
+        if (before >= own || internal_node[static_cast<std::size_t>(node)] >= 0) return;
+        while (before < own &&
+               !kept.compare_exchange_weak(before, own, std::memory_order_relaxed)) {
+        }
+      });
+    });
+    std::vector<Index> first(static_cast<std::size_t>(parts.count()));
+    parts([&](Index from, Index to, int part) {
+      Index count = 0;
+      each_new(from, to, part, [&](Index node, auto& kept, std::uint16_t own) {
+        if (kept.load(std::memory_order_relaxed) != own) return;
+        Index& number = internal_node[static_cast<std::size_t>(node)];
+        if (number < 0) number = count++;
+      });
+      first[static_cast<std::size_t>(part)] = count;
+    });
+    for (Index& before : first) next_ += std::exchange(before, next_);
+    detail::for_each_on_host(static_cast<Index>(owner.size()), 16384, [&](Index user) {
+      auto const i = static_cast<std::size_t>(user);
+      if (std::size_t const own = owner[i].load(std::memory_order_relaxed); own > 0)
+        take(user, internal_node[i] + first[static_cast<std::size_t>(parts.count()) - own]);
+    });
+    parts([&](Index from, Index to, int) {
+      for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)
+        for (Index& node : table[i]) node = internal_node[static_cast<std::size_t>(node)];
+    });
   }
 
   std::vector<Index> along_curve_;  // by the user's number

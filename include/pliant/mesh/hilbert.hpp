@@ -3,59 +3,64 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <pliant/mesh/mesh.hpp>
+#include <pliant/math/group_by_key.hpp>
+#include <pliant/mesh/bounding_box.hpp>
 
 namespace pliant {
 
 namespace detail {
-/// A code and its position in a list.
-struct CodeAt {
-  std::uint64_t code;
-  Index position;
-};
-
-/// Orders codes by their bits from `from` up to `to`, those with the same ones as they stand: a radix sort.
-inline void sort_by_bits(std::vector<CodeAt>& codes, int from, int to) {
+/// A list of numbers, in the order of their bits from 31 on, of those with the same ones as they stand: a radix sort.
+inline void sort_by_high_bits(std::unique_ptr<std::uint64_t[]>& list, Index n) {
   constexpr int digit = 11;  // bits
-  std::vector<CodeAt> sorted(codes.size());
-  for (int shift = from; shift < to; shift += digit) {
-    auto const key = [shift](CodeAt const& c) {
-      return static_cast<std::size_t>(c.code >> shift & ((1u << digit) - 1));
-    };
-    std::array<Index, std::size_t{1} << digit> next{};
-    for (CodeAt const& c : codes) ++next[key(c)];
-    for (Index before = 0; Index & first : next) before += std::exchange(first, before);
-    for (CodeAt const& c : codes) sorted[static_cast<std::size_t>(next[key(c)]++)] = c;
-    codes.swap(sorted);
+  auto sorted = std::make_unique_for_overwrite<std::uint64_t[]>(static_cast<std::size_t>(n));
+  for (int shift = 31; shift < 64; shift += digit) {
+    distribute(
+        n, Index{1} << digit,
+        [&](Index i) {
+          return list[static_cast<std::size_t>(i)] >> shift & ((std::uint64_t{1} << digit) - 1);
+        },
+        [&](Index place, Index i) {
+          sorted[static_cast<std::size_t>(place)] = list[static_cast<std::size_t>(i)];
+        });
+    list.swap(sorted);
   }
 }
 
-/// The positions of codes of `width` bits from the smallest to the largest, of equal ones in their order.
-inline std::vector<Index> ascending(std::vector<std::uint64_t> const& codes, int width) {
-  std::vector<CodeAt> list(codes.size());
-  for (std::size_t i = 0; i < codes.size(); ++i) list[i] = {codes[i], static_cast<Index>(i)};
-  // The leading bits tell nearly all apart; of the few that they do not, each goes before those that are larger.
-  constexpr int leading = 33;
-  int const low = std::max(0, width - leading);
-  sort_by_bits(list, low, width);
-  constexpr std::size_t few = 64;
-  std::size_t run = 0;  // where those with the same leading bits begin
-  for (std::size_t i = 1; i < list.size(); ++i) {
-    if (list[i].code >> low != list[run].code >> low) run = i;
-    if (i - run > few) {
-      sort_by_bits(list, 0, width);
-      break;
+/// The positions 0 to n − 1 from the smallest code(i) to the largest, of equal ones in their order. leading(i), of 33 bits
+/// at most, is the highest bits of the code, which tell nearly all apart.
+template <class Leading, class Code>
+std::vector<Index> ascending(Index n, Leading const& leading, Code const& code) {
+  auto list = std::make_unique_for_overwrite<std::uint64_t[]>(static_cast<std::size_t>(n));
+  for_each_on_host(n, 4096, [&](Index i) {
+    list[static_cast<std::size_t>(i)] = leading(i) << 31 | static_cast<std::uint64_t>(i);
+  });
+  sort_by_high_bits(list, n);
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  for_each_on_host(n, 16384, [&](Index k) {
+    order[static_cast<std::size_t>(k)] =
+        static_cast<Index>(list[static_cast<std::size_t>(k)] & 0x7fffffff);
+  });
+  auto const in_one_run = [&](Index k) {
+    return (list[static_cast<std::size_t>(k)] ^ list[static_cast<std::size_t>(k) - 1]) >> 31 == 0;
+  };
+  HostParts{n}([&](Index first, Index last, int) {
+    std::vector<std::pair<std::uint64_t, Index>> run;  // with the same leading bits
+    for (Index k = first; k < last; ++k) {
+      if (k + 1 == n || !in_one_run(k + 1) || (k > 0 && in_one_run(k))) continue;
+      run.clear();
+      for (Index j = k; j == k || (j < n && in_one_run(j)); ++j)
+        run.emplace_back(code(order[static_cast<std::size_t>(j)]),
+                         order[static_cast<std::size_t>(j)]);
+      std::sort(run.begin(), run.end());
+      for (std::size_t j = 0; j < run.size(); ++j)
+        order[static_cast<std::size_t>(k) + j] = run[j].second;
     }
-    for (std::size_t k = i; k > run && list[k].code < list[k - 1].code; --k)
-      std::swap(list[k], list[k - 1]);
-  }
-  std::vector<Index> order(list.size());
-  for (std::size_t i = 0; i < list.size(); ++i) order[i] = list[i].position;
+  });
   return order;
 }
 
@@ -145,29 +150,23 @@ std::uint64_t hilbert_code(std::array<std::uint32_t, Dim> const& cell, int bits)
 /// keep their order.
 template <std::size_t Dim>
 std::vector<Index> hilbert_order(std::span<std::array<double, Dim> const> points) {
-  constexpr int bits = 63 / Dim < 31 ? 63 / Dim : 31;
-  std::array<double, Dim> low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
-  for (auto const& p : points)
-    for (std::size_t k = 0; k < Dim; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
+  constexpr int bits = 63 / Dim < 31 ? 63 / Dim : 31, leading_bits = 33 / Dim;
+  BoundingBox<Dim> const box(points);
   double extent = 0;
-  for (std::size_t k = 0; k < Dim; ++k) extent = std::max(extent, high[k] - low[k]);
+  for (std::size_t k = 0; k < Dim; ++k) extent = std::max(extent, box.high[k] - box.low[k]);
   double const scale =
       extent > 0 ? static_cast<double>((std::uint32_t{1} << bits) - 1) / extent : 0.0;
-
-  std::vector<std::uint64_t> codes;
-  codes.reserve(points.size());
-  for (auto const& p : points) {
+  auto const code = [&](Index i, int of_bits) {
     std::array<std::uint32_t, Dim> cell;
     for (std::size_t k = 0; k < Dim; ++k)
-      cell[k] = static_cast<std::uint32_t>((p[k] - low[k]) * scale);
-    codes.push_back(detail::hilbert_code(cell, bits));
-  }
-  return detail::ascending(codes, bits * int{Dim});
+      cell[k] = static_cast<std::uint32_t>((points[static_cast<std::size_t>(i)][k] - box.low[k]) *
+                                           scale) >>
+                (bits - of_bits);
+    return detail::hilbert_code(cell, of_bits);
+  };
+  return detail::ascending(
+      static_cast<Index>(points.size()), [&](Index i) { return code(i, leading_bits); },
+      [&](Index i) { return code(i, bits); });
 }
 
 }  // namespace pliant
