@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/body/criteria_workspace.hpp>
 #include <pliant/body/group.hpp>
 #include <pliant/body/group_laws.hpp>
@@ -40,10 +41,13 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   std::vector<scalar> in_internal_order(std::vector<double> const& rows) const {
     std::vector<scalar> columns(rows.size());
     std::size_t const n = user_element.size(), width = n > 0 ? rows.size() / n : 0;
-    for (std::size_t e = 0; e < n; ++e)
-      for (std::size_t k = 0; k < width; ++k)
-        columns[k * n + e] =
-            static_cast<scalar>(rows[width * static_cast<std::size_t>(user_element[e]) + k]);
+    if (width > 0)
+      detail::for_each_on_host(static_cast<Index>(n), 16384, [&](Index i) {
+        auto const e = static_cast<std::size_t>(i);
+        for (std::size_t k = 0; k < width; ++k)
+          columns[k * n + e] =
+              static_cast<scalar>(rows[width * static_cast<std::size_t>(user_element[e]) + k]);
+      });
     return columns;
   }
   /// The inverse, of what an array holds.

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include <pliant/body/element_table.hpp>
+#include <pliant/body/lumped_volumes.hpp>
 #include <pliant/body/motion.hpp>
 #include <pliant/body/numbering.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
 #include <pliant/formulation/affine.hpp>
+#include <pliant/mesh/bounding_box.hpp>
 
 namespace pliant {
 
@@ -56,6 +58,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups) {
+    HostThreads const threads(backend);
     auto const& mesh = topology.mesh;
     Numbering<Es...> numbering(mesh);
     internal_node = std::move(numbering.internal_node);
@@ -80,19 +83,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     }
     interpolation = InterpolationOn<B>(backend, Interpolation(std::move(internal)));
     lump_mass(topology, material.density);
-    std::vector<T> masses(mass_list.size());
-    for (std::size_t i = 0; i < masses.size(); ++i)
-      masses[static_cast<std::size_t>(internal_node[i])] = static_cast<T>(mass_list[i]);
-    bool fits_T = std::isfinite(static_cast<T>(material.density));
-    for (std::size_t i = 0; i < masses.size(); ++i) {
-      T const m = masses[static_cast<std::size_t>(internal_node[i])];
-      fits_T = fits_T && std::isfinite(m) && (m > T(0) || !(mass_list[i] > 0));
-    }
-    if (!fits_T)
-      throw Error("body: ", 8 * sizeof(T),
-                  " bits cannot hold the mass of a node under the density ", material.density,
-                  " kg/m³; take double, or other units");
-    mass = upload(backend, masses);
+    mass = upload(backend, internal_masses(material.density));
   }
 
   Index internal_of(Index user) const { return internal_node[static_cast<std::size_t>(user)]; }
@@ -109,10 +100,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// A field given per node in the user's order, padded and in internal order.
   std::vector<T> padded(std::vector<Point<dim>> const& values) const {
     std::vector<T> field(static_cast<std::size_t>(node_stride) * values.size(), T(0));
-    for (std::size_t i = 0; i < values.size(); ++i)
+    detail::for_each_on_host(static_cast<Index>(values.size()), few_nodes, [&](Index node) {
+      auto const i = static_cast<std::size_t>(node);
       for (std::size_t k = 0; k < dim; ++k)
         field[node_stride * static_cast<std::size_t>(internal_node[i]) + k] =
             static_cast<T>(values[i][k]);
+    });
     return field;
   }
   /// The inverse of `padded`.
@@ -128,6 +121,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
 
  private:
+  static constexpr Index few_nodes = 16384;
+
   template <std::size_t I>
   void make_table(B const& backend, Numbering<Es...>& numbering,
                   Topology<Mesh<Es...>> const& topology, Elastic const& material,
@@ -155,18 +150,11 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     double reach = 0;
   };
   static Extent extent(Mesh<Es...> const& mesh) {
-    Point<dim> low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (auto const& p : mesh.nodes)
-      for (std::size_t k = 0; k < dim; ++k) {
-        low[k] = std::min(low[k], p[k]);
-        high[k] = std::max(high[k], p[k]);
-      }
+    BoundingBox<dim> const bounds{std::span<Point<dim> const>(mesh.nodes)};
     Extent box;
     for (std::size_t k = 0; k < dim; ++k) {
-      box.middle[k] = (low[k] + high[k]) / 2;
-      box.reach = std::max(box.reach, (high[k] - low[k]) / 2);
+      box.middle[k] = (bounds.low[k] + bounds.high[k]) / 2;
+      box.reach = std::max(box.reach, (bounds.high[k] - bounds.low[k]) / 2);
     }
     return box;
   }
@@ -175,15 +163,17 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   template <Element E>
   static bool is_straight(Mesh<Es...> const& mesh) {
     if constexpr (CurvedSimplex<E>) {
-      double furthest = 0;
-      constexpr auto edges = E::edges();
-      for (auto const& element : mesh.template elements<E>()) {
-        auto const x = nodal(mesh, element);
-        for (std::size_t e = 0; e < edges.size(); ++e)
-          for (int k = 0; k < dim; ++k)
-            furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
-                                                   (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
-      }
+      auto const& elements = mesh.template elements<E>();
+      detail::HostParts const parts(static_cast<Index>(elements.size()),
+                                    detail::few_elements(E::nodes));
+      std::vector<double> of_parts(static_cast<std::size_t>(parts.count()), 0.0);
+      parts([&](Index first, Index last, int part) {
+        double most = 0;
+        for (Index e = first; e < last; ++e)
+          most = std::max(most, bend<E>(nodal(mesh, elements[static_cast<std::size_t>(e)])));
+        of_parts[static_cast<std::size_t>(part)] = most;
+      });
+      double const furthest = *std::ranges::max_element(of_parts);
       auto const box = extent(mesh);
       double distance = 0;  // of the body from the origin: its mesh is rounded there
       for (double x : box.middle) distance = std::max(distance, std::abs(x));
@@ -193,18 +183,33 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     return false;
   }
 
+  /// How far, along an axis, a node between corners is from the middle of its edge, at most.
+  template <Element E>
+  static double bend(Nodal<E, double> const& x) {
+    constexpr auto edges = E::edges();
+    double furthest = 0;
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      for (int k = 0; k < dim; ++k)
+        furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
+                                               (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
+    return furthest;
+  }
+
   /// Positions relative to the middle of the body: single precision keeps its digits.
   void upload_rest(B const& backend, Mesh<Es...> const& mesh) {
     auto const box = extent(mesh);
     middle = box.middle;
     std::vector<Point<dim>> relative = mesh.nodes;
-    for (auto& p : relative)
-      for (std::size_t k = 0; k < dim; ++k) p[k] -= box.middle[k];
+    detail::for_each_on_host(nodes, few_nodes, [&](Index i) {
+      for (std::size_t k = 0; k < dim; ++k)
+        relative[static_cast<std::size_t>(i)][k] -= box.middle[k];
+    });
     auto const places = padded(relative);
-    for (T x : places)
-      if (!std::isfinite(x))
+    detail::for_each_on_host(static_cast<Index>(places.size()), few_nodes, [&](Index i) {
+      if (!std::isfinite(places[static_cast<std::size_t>(i)]))
         throw Error("body: the mesh reaches over ", 2 * box.reach, " m, which ", 8 * sizeof(T),
                     " bits cannot hold; take other units");
+    });
     rest = upload(backend, places);
   }
 
@@ -217,12 +222,33 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
   template <Element E>
   void add_mass(Mesh<Es...> const& mesh, double density) {
-    for (auto const& nodes_of_element : mesh.template elements<E>()) {
-      auto const share = host_nodal_volumes<E>(nodal(mesh, nodes_of_element));
-      for (int a = 0; a < E::nodes; ++a)
-        mass_list[static_cast<std::size_t>(nodes_of_element[static_cast<std::size_t>(a)])] +=
-            density * share[a];
+    auto const& elements = mesh.template elements<E>();
+    auto const add = [&](std::size_t node, double volume) { mass_list[node] += density * volume; };
+    detail::HostParts const parts(static_cast<Index>(elements.size()),
+                                  detail::few_elements(E::nodes));
+    if (parts.count() > 1 && detail::has_many_host_threads() &&
+        elements.size() <= std::numeric_limits<Index>::max() / E::nodes)
+      return detail::add_in_order<E>(mesh, add);
+    for (auto const& element : elements) {
+      auto const share = host_nodal_volumes<E>(nodal(mesh, element));
+      for (std::size_t a = 0; a < E::nodes; ++a)
+        add(static_cast<std::size_t>(element[a]), share[static_cast<int>(a)]);
     }
+  }
+  /// In internal order. Throws Error where T cannot hold one.
+  std::vector<T> internal_masses(double density) const {
+    std::vector<T> masses(mass_list.size());
+    detail::for_each_on_host(nodes, few_nodes, [&](Index node) {
+      auto const i = static_cast<std::size_t>(node);
+      T const m = static_cast<T>(mass_list[i]);
+      if (!(std::isfinite(m) && (m > T(0) || !(mass_list[i] > 0)) &&
+            std::isfinite(static_cast<T>(density))))
+        throw Error("body: ", 8 * sizeof(T),
+                    " bits cannot hold the mass of a node under the density ", density,
+                    " kg/m³; take double, or other units");
+      masses[static_cast<std::size_t>(internal_node[i])] = m;
+    });
+    return masses;
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <span>
 #include <vector>
 
@@ -36,12 +37,14 @@ class Patches {
     check_nodes(connectivity, nodes);
     tags_.upload(tags);
     tag_data_ = tags_.data();
-    for (std::size_t e = 0; e < connectivity.size(); ++e)
-      std::ranges::copy(connectivity[e], connectivity_.data() + e * Nodes);
+    for_each_on_host(count(), few_elements(Nodes), [&](Index e) {
+      std::ranges::copy(connectivity[static_cast<std::size_t>(e)],
+                        connectivity_.data() + std::ptrdiff_t{Nodes} * e);
+    });
     assign_targets(nodes);
     bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
     std::ranges::copy(tags, ordered_tags_.data());
-    for (Index p = 0; p < patch_count(); ++p) order(p);
+    for_each_on_host(patch_count(), few_patches, [&](Index p) { order(p); });
   }
 
   Index count() const { return static_cast<Index>(order_.size()); }
@@ -112,30 +115,83 @@ class Patches {
     *bound = static_cast<Index>(next - order_.data());
   }
 
-  void assign_targets(Index nodes) {
+  /// visit(k) for each place of a patch in the connectivity.
+  template <class Visit>
+  void for_each_place(Index patch, Visit const& visit) const {
+    Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
+    for (auto k = std::ptrdiff_t{Nodes} * first; k < std::ptrdiff_t{Nodes} * last; ++k) visit(k);
+  }
+  /// The first patch that has each node; −1: none.
+  std::vector<Index> owners(Index nodes) const {
     std::vector<Index> owner(static_cast<std::size_t>(nodes), -1);
-    std::vector<Index> row(static_cast<std::size_t>(nodes), -1);  // in the current patch
-    std::vector<Index> foreign;                                   // nodes, by scratch row
-    Index next = nodes;
-    for (Index p = 0; p < patch_count(); ++p) {
-      scratch_first_.push_back(next);
-      std::size_t const seen = foreign.size();
-      Index const first = p * patch_size(), last = std::min(count(), first + patch_size());
-      for (std::ptrdiff_t k = std::ptrdiff_t{Nodes} * first; k < std::ptrdiff_t{Nodes} * last;
-           ++k) {
-        auto const node = static_cast<std::size_t>(connectivity_.data()[k]);
-        if (owner[node] < 0) owner[node] = p;
-        if (owner[node] != p && row[node] < 0) {
-          row[node] = next++;
-          foreign.push_back(static_cast<Index>(node));
+    HostParts const parts(patch_count(), few_patches);
+    auto const own = [&](Index first, Index last, auto const& lower) {
+      for (Index p = first; p < last; ++p)
+        for_each_place(p, [&](std::ptrdiff_t k) {
+          lower(owner[static_cast<std::size_t>(connectivity_.data()[k])], p);
+        });
+    };
+    parts([&](Index first, Index last, int) {
+      if (parts.count() == 1)
+        return own(first, last, [](Index& kept, Index p) { kept = kept < 0 ? p : kept; });
+      own(first, last, [](Index& kept, Index p) {
+        std::atomic_ref shared(kept);
+        Index before = shared.load(std::memory_order_relaxed);
+        while ((before < 0 || p < before) &&
+               !shared.compare_exchange_weak(before, p, std::memory_order_relaxed)) {
         }
-        target_.data()[k] = owner[node] == p ? static_cast<Index>(node) : row[node];
+      });
+    });
+    return owner;
+  }
+  /// Numbers the scratch rows of a patch from `begin` on, in the order in which its elements first have their nodes, which
+  /// go to `foreign`. `row` is −1 for all nodes, before and after.
+  void number_rows(Index patch, Index begin, std::vector<Index> const& owner,
+                   std::vector<Index>& row, std::vector<Index>& foreign) {
+    Index const *const nodes = connectivity_.data(), *const owners = owner.data();
+    Index *const target = target_.data(), *const rows = row.data();
+    for_each_place(patch, [&](std::ptrdiff_t k) {
+      Index const node = nodes[k];
+      bool const is_own = owners[node] == patch;
+      if (!is_own && rows[node] < 0) {
+        rows[node] = begin + static_cast<Index>(foreign.size());
+        foreign.push_back(node);
       }
-      for (std::size_t k = seen; k < foreign.size(); ++k)
-        row[static_cast<std::size_t>(foreign[k])] = -1;
+      target[k] = is_own ? node : rows[node];
+    });
+    for (Index node : foreign) rows[node] = -1;
+  }
+
+  void assign_targets(Index nodes) {
+    auto const owner = owners(nodes);
+    std::vector<std::vector<Index>> foreign_of(static_cast<std::size_t>(patch_count()));
+    Index const of_thread = patch_count() / HostThreads::now();
+    HostParts const parts(patch_count(), std::max(few_patches, of_thread));
+    bool const in_order =
+        parts.count() == 1;  // else each patch begins at `nodes`, until all are counted
+    parts([&](Index first, Index last, int) {
+      std::vector<Index> row(owner.size(), -1);
+      Index begin = nodes;
+      for (Index p = first; p < last; ++p) {
+        auto& foreign = foreign_of[static_cast<std::size_t>(p)];
+        number_rows(p, begin, owner, row, foreign);
+        if (in_order) begin += static_cast<Index>(foreign.size());
+      }
+    });
+    std::vector<Index> foreign;  // nodes, by scratch row
+    for (auto const& of_patch : foreign_of) {
+      scratch_first_.push_back(nodes + static_cast<Index>(foreign.size()));
+      foreign.insert(foreign.end(), of_patch.begin(), of_patch.end());
     }
-    scratch_first_.push_back(next);
-    scratch_nodes_ = next - nodes;
+    scratch_nodes_ = static_cast<Index>(foreign.size());
+    scratch_first_.push_back(nodes + scratch_nodes_);
+    if (!in_order)
+      for_each_on_host(patch_count(), few_patches, [&](Index p) {
+        Index const before = scratch_of(p).first - nodes;
+        for_each_place(p, [&](std::ptrdiff_t k) {
+          if (target_.data()[k] >= nodes) target_.data()[k] += before;
+        });
+      });
     // Rows ascend with the patch, so inside a node too.
     auto const by_node = group_by_key(foreign, nodes);
     for (Index node = 0; node < nodes; ++node) {
@@ -156,6 +212,8 @@ class Patches {
       for (auto [r, last] = scratch_of(p); r < last; ++r)
         row_patches_[static_cast<std::size_t>(r - nodes)] = p;
   }
+
+  static constexpr Index few_patches = 4;  // worth a thread
 
   int groups_ = 1;
   HostArray<Index> connectivity_, target_;  // (elements, Nodes)
