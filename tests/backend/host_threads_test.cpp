@@ -1,6 +1,9 @@
+#include <array>
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include <pliant/math/group_by_key.hpp>
 
@@ -83,6 +86,21 @@ TEST_CASE("a backend with threads on the host limits them", "[backend]") {
 TEST_CASE("other backends leave all threads to the host", "[backend]") {
   HostThreads const all{SerialBackend{}};
   CHECK(HostThreads::now() == HostThreads::available());
+}
+
+TEST_CASE("small meshes are not worth a start of threads", "[backend]") {
+  struct {
+    std::tuple<std::vector<std::array<Index, 3>>, std::vector<std::array<Index, 4>>> tables;
+  } mesh;
+  std::get<0>(mesh.tables).resize(20000);
+  std::get<1>(mesh.tables).resize(30000);
+  {
+    HostThreads const threads(mesh, 4);
+    CHECK(HostThreads::now() == 1);
+  }
+  std::get<1>(mesh.tables).resize(40000);
+  HostThreads const threads(mesh, 4);
+  CHECK(HostThreads::now() == 4);
 }
 
 TEST_CASE("groups by a key are the same on several threads", "[backend]") {

@@ -148,8 +148,8 @@ void tell_listeners(Parts const& parts, TopologyPlan<typename Parts::mesh_type> 
   for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
 }
 
-/// Divides elements of a body: triangles and quadrilaterals into four, tetrahedra, hexahedra and wedges into eight
-/// (see RefinementPattern). `marked` has, for each element type in the order of the
+/// Divides elements of a body: triangles and quadrilaterals into four, tetrahedra, hexahedra and wedges into eight, pyramids
+/// into ten (see RefinementPattern). `marked` has, for each element type in the order of the
 /// mesh, the elements to split by the user's number. Neighbours differ by one level at most, across edges and sides;
 /// hanging nodes become slaves. New nodes take displacement and velocity from the parent's shape functions,
 /// nodes that stay keep theirs and their number; each family then gets back the momentum that

@@ -1,15 +1,18 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <concepts>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -36,6 +39,14 @@ class HostThreads {
   template <class B>
     requires requires { typename B::scalar; }
   explicit HostThreads(B const& backend) : HostThreads(threads_of(backend)) {}
+  /// For work on a mesh: 1 for a small one, which is done before threads have started.
+  template <class M>
+    requires requires(M const& mesh) { mesh.tables; }
+  explicit HostThreads(M const& mesh, int most = available())
+      : HostThreads(worth(connectivity_size(mesh), most)) {}
+  template <class B, class M>
+    requires requires { typename B::scalar; }
+  HostThreads(B const& backend, M const& mesh) : HostThreads(mesh, threads_of(backend)) {}
   ~HostThreads() {
     if (!is_outermost_) return;
     current() = nullptr;
@@ -58,6 +69,10 @@ class HostThreads {
     if (char const* const wanted = std::getenv("OMP_NUM_THREADS"))
       if (int const threads = std::atoi(wanted); threads > 0) cores = std::min(cores, threads);
     return std::clamp(cores, 1, 64);  // more do not load memory faster
+  }
+  /// How many threads work on elements is worth that have so many nodes in all, each counted by each of them.
+  static int worth(std::size_t connectivity_size, int most = available()) {
+    return connectivity_size < 200'000 ? 1 : most;
   }
   /// Those of the caller's loops: 1 inside of such a loop.
   static int now() {
@@ -90,6 +105,16 @@ class HostThreads {
   static int threads_of(B const& backend) {
     if constexpr (requires { backend.threads(); }) return backend.threads();
     return available();
+  }
+
+  template <class M>
+  static std::size_t connectivity_size(M const& mesh) {
+    std::size_t size = 0;
+    auto const add = [&]<class T, std::size_t N>(std::vector<std::array<T, N>> const& elements) {
+      size += N * elements.size();
+    };
+    std::apply([&](auto const&... elements) { (add(elements), ...); }, mesh.tables);
+    return size;
   }
 
   void share(int count, std::function<void(int)> const& task) {

@@ -191,7 +191,7 @@ class Body {
   static constexpr double unset = detail::unset_step;
   static std::unique_ptr<parts_type> first_parts(B backend, M mesh, Elastic const& material,
                                                  std::tuple<Group<Fs>...> groups) {
-    HostThreads const threads(backend);
+    HostThreads const threads(backend, mesh);
     check(mesh);
     auto topology = std::make_shared<Topology<M>>();
     topology->interpolation = Interpolation(compose(mesh.slaves));

@@ -58,8 +58,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups) {
-    HostThreads const threads(backend);
     auto const& mesh = topology.mesh;
+    HostThreads const threads(backend, mesh);
     Numbering<Es...> numbering(mesh);
     internal_node = std::move(numbering.internal_node);
     user_node = std::move(numbering.user_node);

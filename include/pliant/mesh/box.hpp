@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <cstddef>
 
 #include <pliant/element/linear.hpp>
 #include <pliant/mesh/raised.hpp>
@@ -154,7 +157,11 @@ Mesh<E> box(BoxOptions const& o) {
   using Cell = typename E::cell;
   using Linear = std::conditional_t<std::same_as<Cell, Tetrahedron>, Tet4,
                                     std::conditional_t<std::same_as<Cell, Hexahedron>, Hex8, E>>;
-  HostThreads const threads;
+  std::size_t nodes_of_elements = E::nodes * (TensorCell<Cell>            ? 1
+                                              : std::same_as<Cell, Wedge> ? 2
+                                                                          : 6);
+  for (int const cells : o.cells) nodes_of_elements *= static_cast<std::size_t>(std::max(cells, 0));
+  HostThreads const threads(HostThreads::worth(nodes_of_elements));
   if constexpr (E::degree > 1) {
     return raised<E>(box<Linear>(o));
   } else {

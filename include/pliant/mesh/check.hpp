@@ -170,7 +170,7 @@ void check_slaves(M const& mesh) {
 /// names the first culprit.
 template <Element... Es>
 void check(Mesh<Es...> const& mesh) {
-  HostThreads const threads;
+  HostThreads const threads(mesh);
   if ((mesh.template elements<Es>().empty() && ...))
     throw Error("mesh: there are no elements; fill mesh.elements<E>() before making a body");
   detail::check_finite(mesh);

@@ -148,9 +148,9 @@ class AddedNumbers {
 template <Element E, Element Linear>
   requires std::same_as<typename E::cell, typename Linear::cell> && (Linear::degree == 1)
 Mesh<E> raised(Mesh<Linear> const& from) {
-  HostThreads const threads;
   using Added = detail::AddedNodes<E>;
   auto const& linear = from.template elements<Linear>();
+  HostThreads const threads(HostThreads::worth(E::nodes * linear.size()));
   detail::AddedNumbers<E> const numbers(linear, static_cast<Index>(from.nodes.size()));
   Mesh<E> to;
   to.nodes.reserve(static_cast<std::size_t>(numbers.end()));

@@ -173,7 +173,7 @@ SideList<Mesh<Es...>::dim> sides_that_may_be_outer(Mesh<Es...> const& mesh) {
 /// smallest corner. Throws Error for an element of nodes that the mesh has not.
 template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
-  HostThreads const threads;
+  HostThreads const threads(mesh);
   auto const found = detail::sides_that_may_be_outer(mesh);
   // Two elements that share a side see the same corners: look for them among those of one corner.
   auto const at_corner =
@@ -262,7 +262,7 @@ template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> sides_of(Mesh<Es...> const& mesh,
                                               std::vector<Facet<Mesh<Es...>::dim>> facets) {
   constexpr int Dim = Mesh<Es...>::dim;
-  HostThreads const threads;
+  HostThreads const threads(mesh);
   FacetsByCorners<Dim> found;
   auto const refuse = [](Facet<Dim> const& facet, char const* why) {
     std::string nodes;

@@ -9,7 +9,7 @@
 namespace pliant::mesh {
 
 /// The same mesh with the element types To, of which it has no elements where it had none: for elements of types that
-/// raise or lower makes while a body moves. To has all types of the mesh.
+/// raise, lower, split or merge makes while a body moves. To has all types of the mesh.
 ///
 ///   auto const mesh = mesh::with_types<Tri3, Tri6>(mesh::rectangle<Tri3>(...));
 template <Element... To, Element... From>

@@ -192,9 +192,12 @@ std::vector<CellSplit> split_cells(M const& mesh, RefinementTree<M> const& old,
                   ? Division::diagonal_0
                   : Division::diagonal_1});
   }
-  std::ranges::sort(splits, {}, &CellSplit::cell);  // of pairs that were both marked, each once
-  auto const same = std::ranges::unique(splits, {}, &CellSplit::cell);
-  splits.erase(same.begin(), same.end());
+  // Of pairs that were both marked, each once.
+  std::ranges::sort(splits, {}, &CellSplit::cell);
+  auto const same = [](CellSplit const& one, CellSplit const& other) {
+    return one.cell == other.cell;
+  };
+  splits.erase(std::unique(splits.begin(), splits.end(), same), splits.end());
   return splits;
 }
 
