@@ -78,6 +78,7 @@ void add_family_impulse(TopologyPlan<M> const& plan,
     });
   double volume = 0;
   std::vector<std::pair<Index, double>> shares;  // of nodes, in this volume
+  shares.reserve(8 * family.after.size());
   for (auto const& member : family.after)
     visit_member(now, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
       auto const own = host_nodal_volumes<E>(nodal(now, nodes));

@@ -48,6 +48,8 @@ class ElementChanges {
     for_each_type_of(mesh, [&]<Element E>(E, std::size_t) {
       types_.emplace_back(kind_of<typename E::cell>, nodes_on_cell<E>);
     });
+    families_.reserve(merged.size() + changed.converted.size() + changed.refinement.parents.size() +
+                      changed.split.size());
     for (Index const old : merged) add_merged(old);
     for (Index const old : changed.converted) add_converted(old);
     first_divided_ = families_.size();
@@ -124,6 +126,7 @@ class ElementChanges {
     auto const& cell = before_.cell(old);
     auto& family = add_family(cell);
     family.pattern = &cell.divided();
+    family.before.reserve(at(family.pattern->children));
     for (Index child = 0; child < family.pattern->children; ++child)
       family.before.push_back(old_element(cell.first_child + child));
     family.after.resize(1);
