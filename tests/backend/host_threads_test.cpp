@@ -93,12 +93,12 @@ TEST_CASE("small meshes are not worth a start of threads", "[backend]") {
     std::tuple<std::vector<std::array<Index, 3>>, std::vector<std::array<Index, 4>>> tables;
   } mesh;
   std::get<0>(mesh.tables).resize(20000);
-  std::get<1>(mesh.tables).resize(30000);
+  std::get<1>(mesh.tables).resize(8000);
   {
     HostThreads const threads(mesh, 4);
     CHECK(HostThreads::now() == 1);
   }
-  std::get<1>(mesh.tables).resize(40000);
+  std::get<1>(mesh.tables).resize(12000);
   HostThreads const threads(mesh, 4);
   CHECK(HostThreads::now() == 4);
 }

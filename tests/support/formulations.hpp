@@ -115,7 +115,9 @@ std::string law_name() {
 }
 template <class B>
 std::string backend_name() {
-  return std::string(B::name()) + (sizeof(typename B::scalar) == 4 ? "<float>" : "<double>");
+  std::string name = B::name();
+  name += sizeof(typename B::scalar) == 4 ? "<float>" : "<double>";
+  return name;
 }
 template <class F>
 std::string formulation_name() {

@@ -72,7 +72,7 @@ class HostThreads {
   }
   /// How many threads work on elements is worth that have so many nodes in all, each counted by each of them.
   static int worth(std::size_t connectivity_size, int most = available()) {
-    return connectivity_size < 200'000 ? 1 : most;
+    return connectivity_size < 100'000 ? 1 : most;
   }
   /// Those of the caller's loops: 1 inside of such a loop.
   static int now() {
