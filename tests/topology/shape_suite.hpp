@@ -221,6 +221,12 @@ TEST_CASE("two pyramids that share a base are split into tetrahedra, both or non
     std::erase_if(others, [&](Index e) { return e == at_base[0] || e == at_base[1]; });
     CHECK(split(body, {{}, others, {}}).split == 0);  // nothing lies behind their bases
 
+    auto const merging = plan_change(
+        body.parts(), {.split = {{}, {at_base[1]}, {}}, .merge = {{}, first_numbers(6), {}}});
+    REQUIRE(merging);  // of the first hexahedron, and one pyramid with it
+    CHECK(merging->counts.merged == 1);
+    CHECK(merging->counts.split == 0);
+
     CHECK(split(body, {{}, {at_base[1]}, {}}).split == 2);
     CHECK(elements<1>(body).size() == 10);
     REQUIRE(elements<2>(body).size() == 4);

@@ -80,9 +80,10 @@ ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& 
   for (auto const& [old, division] : changes.split) {
     Index const c = changed.renumbered(old);
     if (!can_be_split(c)) continue;
-    if (tree.cell(c).kind == CellKind::pyramid &&
-        !can_be_split(TreeQueries(tree.tree()).across_base(c)))
-      continue;
+    if (tree.cell(c).kind == CellKind::pyramid) {  // with the one on the other side of its base
+      Index const other = TreeQueries(tree.tree()).across_base(c);
+      if (!can_be_split(other) || tree.cell(other).kind != CellKind::pyramid) continue;
+    }
     split.push_back({c, division});
     changed.split.push_back(c);
   }
