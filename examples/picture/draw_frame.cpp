@@ -33,19 +33,24 @@ double measure_thickness(std::vector<Point> const& corners) {
   return longest > 0 ? std::abs(area) / longest : 0;
 }
 
-void draw_polygons(Canvas& canvas, std::vector<Polygon> const& polygons, View const& view) {
-  std::vector<std::vector<Point>> mapped(polygons.size());
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    for (auto const& p : polygons[i].corners) mapped[i].push_back(view(p));
-    canvas.fill(mapped[i], polygons[i].fill);
+void draw_edges(Canvas& canvas, std::vector<Point> const& corners) {
+  double const thickness = measure_thickness(corners);
+  double const width = edge_part * thickness * std::min(thickness / fading_element, 1.0);
+  if (width > thinnest_edge) canvas.stroke(corners, ink, std::min(width, thickest_edge));
+}
+
+void draw_polygons(Canvas& canvas, Frame const& frame, View const& view) {
+  std::vector<std::vector<Point>> mapped(frame.polygons.size());
+  for (std::size_t i = 0; i < mapped.size(); ++i) {
+    auto const& [corners, colour] = frame.polygons[i];
+    for (auto const& p : corners) mapped[i].push_back(view(p));
+    canvas.fill(mapped[i], colour);
     // Two antialiased neighbours let the white between them through: overlap them.
-    canvas.stroke(mapped[i], polygons[i].fill, 0.5);
+    canvas.stroke(mapped[i], colour, 0.5);
+    if (frame.layers == Layers::stacked) draw_edges(canvas, mapped[i]);
   }
-  for (auto const& corners : mapped) {
-    double const thickness = measure_thickness(corners);
-    double const width = edge_part * thickness * std::min(thickness / fading_element, 1.0);
-    if (width > thinnest_edge) canvas.stroke(corners, ink, std::min(width, thickest_edge));
-  }
+  if (frame.layers == Layers::flat)
+    for (auto const& corners : mapped) draw_edges(canvas, corners);
 }
 
 // Where the element behind a facet lies: the ground is on the other side.
@@ -105,7 +110,7 @@ void draw_frame(Canvas& canvas, Frame const& frame, View const& view) {
   for (auto const& [from, to] : frame.outline) {
     canvas.line(view(from), view(to), grey, outline_width);
   }
-  draw_polygons(canvas, frame.polygons, view);
+  draw_polygons(canvas, frame, view);
   draw_clamps(canvas, frame, view);
 }
 

@@ -17,12 +17,16 @@ struct Polygon {
   Colour fill;
 };
 
+/// Flat: no polygon hides an edge of another. Stacked: each hides what lies behind it, drawn before it.
+enum class Layers { flat, stacked };
+
 /// One picture of a strip. Lengths are the mesh's own, with y pointing up.
 struct Frame {
   std::vector<Polygon> polygons{};
   std::string caption{};           ///< below the frame; wraps, and breaks at '\n'
   std::vector<Segment> clamps{};   ///< clamped facets: hatched ground on the side without elements
   std::vector<Segment> outline{};  ///< the body at rest: thin and grey, behind the elements
+  Layers layers = Layers::flat;
 };
 
 }  // namespace pliant::picture

@@ -15,6 +15,7 @@ inline constexpr double largest_caption = 24;
 inline constexpr double smallest_caption = 20;  // below this, captions wrap instead
 
 inline constexpr double picture_width = 1800;   // where the caller leaves the frame width open
+inline constexpr int film_width = 720;          // of a frame, where the caller leaves it open
 inline constexpr double tallest_frame = 1000;   // where the caller leaves the frame height open
 inline constexpr double narrowest_frame = 260;  // room for a caption
 inline constexpr double narrowest_picture = 720;
@@ -32,6 +33,7 @@ inline constexpr double edge_part = 0.075;     // width of an element's edges ov
 inline constexpr double fading_element = 3.5;  // thinner elements have still fainter edges
 inline constexpr double thinnest_edge = 0.03;  // what would be thinner is left out
 inline constexpr double thickest_edge = 1.2;
+inline constexpr double least_light = 0.65;  // of a facet of a solid that is seen edge on
 inline constexpr double outline_width = 1.3;
 inline constexpr double clamp_width = 2.6;
 inline constexpr double hatch_width = 1.2;

@@ -6,6 +6,7 @@
 #include <pliant/pliant.hpp>
 #include <pliant/solve.hpp>
 
+#include "picture/strip.hpp"
 #include "scene/options.hpp"
 #include "scene/solid_drawing.hpp"
 
@@ -131,11 +132,10 @@ void run(TheBackend const& backend, scene::Options const& options) {
                   "(%c) %zu elements, error %.1f %%, %.2f s\nuniform: %zu, %.1f %%, %.2f s",
                   static_cast<char>('a' + frames.size()), own.elements, percent(own), own.seconds,
                   other.elements, percent(other), other.seconds);
-    frames.push_back(
-        {.polygons = scene::draw_solid<Hex8>(
-             adaptive, adaptive.mesh().boundary("skin"), 2e3,
-             [&](std::size_t e) { return picture::green_to_red(double(levels[e]) / max_level); }),
-         .caption = caption});
+    frames.push_back(scene::draw_solid<Hex8>(
+        adaptive, adaptive.mesh().boundary("skin"), 2e3,
+        [&](std::size_t e) { return picture::green_to_red(double(levels[e]) / max_level); }));
+    frames.back().caption = caption;
   }
   std::printf("all places: %.2f s adaptive, %.2f s on the uniform mesh\n", seconds[0], seconds[1]);
 
