@@ -1,4 +1,4 @@
-// expect: refinement is available for meshes of the catalogue's elements, pyramids aside
+// expect: meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5
 #include <pliant/pliant.hpp>
 #include <pliant/reference.hpp>
 

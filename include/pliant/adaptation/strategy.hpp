@@ -2,7 +2,7 @@
 
 #include <pliant/adaptation/criterion/condition.hpp>
 #include <pliant/adaptation/rule.hpp>
-#include <pliant/topology/hierarchy.hpp>
+#include <pliant/topology/element_types.hpp>
 
 // Strategies read as sentences:
 //   when<Linear>(largest(EdgeLengthRatio{}, Rotation{})).above(0.1).become<Nonlinear>()

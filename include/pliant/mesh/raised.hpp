@@ -20,8 +20,12 @@ struct AddedNodes {
     Corners around(Corners const& element) const {
       Corners nodes;
       nodes.fill(-1);
-      for (std::size_t b = 0; b < size; ++b) nodes[b] = element[corner[b]];
-      std::sort(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(size));
+      for (std::size_t b = 0; b < size; ++b) {
+        Index const node = element[corner[b]];
+        std::size_t at = b;
+        for (; at > 0 && nodes[at - 1] > node; --at) nodes[at] = nodes[at - 1];
+        nodes[at] = node;
+      }
       return nodes;
     }
     Index smallest(Corners const& element) const {
@@ -140,18 +144,12 @@ class AddedNumbers {
   Index end_ = 0;
 };
 
-}  // namespace detail
-
-/// The same cells with elements of a higher degree: nodes are added in the middle of edges, sides and
-/// cells, on straight lines. Facets of the boundaries gain their nodes. (Move nodes afterwards for
-/// curved cells.)
 template <Element E, Element Linear>
-  requires std::same_as<typename E::cell, typename Linear::cell> && (Linear::degree == 1)
-Mesh<E> raised(Mesh<Linear> const& from) {
-  using Added = detail::AddedNodes<E>;
+Mesh<E> with_added_nodes(Mesh<Linear> const& from) {
+  using Added = AddedNodes<E>;
   auto const& linear = from.template elements<Linear>();
   HostThreads const threads(HostThreads::worth(E::nodes * linear.size()));
-  detail::AddedNumbers<E> const numbers(linear, static_cast<Index>(from.nodes.size()));
+  AddedNumbers<E> const numbers(linear, static_cast<Index>(from.nodes.size()));
   Mesh<E> to;
   to.nodes.reserve(static_cast<std::size_t>(numbers.end()));
   to.nodes = from.nodes;
@@ -184,6 +182,21 @@ Mesh<E> raised(Mesh<Linear> const& from) {
       to.boundaries[name].push_back(side);
     }
   return to;
+}
+
+}  // namespace detail
+
+/// The same cells with elements of a higher degree: nodes are added in the middle of edges, sides and
+/// cells, on straight lines. Facets of the boundaries gain their nodes. (Move nodes afterwards for
+/// curved cells.)
+template <Element E, Element Linear>
+  requires std::same_as<typename E::cell, typename Linear::cell> && (Linear::degree == 1)
+Mesh<E> raised(Mesh<Linear> const& from) {
+  if constexpr (E::nodes == Linear::nodes) {  // nothing is added
+    return {from.nodes, {from.template elements<Linear>()}, from.boundaries, from.slaves};
+  } else {
+    return detail::with_added_nodes<E>(from);
+  }
 }
 
 }  // namespace pliant::mesh

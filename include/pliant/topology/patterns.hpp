@@ -16,24 +16,26 @@ namespace detail {
 template <class Cell, Division How = Division::refined>
 inline constexpr RefinementPattern pattern = PatternMaker<Cell>::make(How);
 
-inline constexpr std::array refinements{&pattern<Triangle>,    &pattern<Quadrilateral>,
-                                        &pattern<Tetrahedron>, &pattern<Hexahedron>,
-                                        &pattern<Wedge>,       &pattern<Pyramid>};
-inline constexpr std::array splits{&pattern<Quadrilateral, Division::diagonal_0>,
-                                   &pattern<Quadrilateral, Division::diagonal_1>,
-                                   &pattern<Quadrilateral, Division::four_triangles>,
-                                   &pattern<Hexahedron, Division::six_pyramids>};
-inline constexpr std::array splits_of_pyramids{&pattern<Pyramid, Division::diagonal_0>,
-                                               &pattern<Pyramid, Division::diagonal_1>};
+inline constexpr std::array refinement_patterns{&pattern<Triangle>,    &pattern<Quadrilateral>,
+                                                &pattern<Tetrahedron>, &pattern<Hexahedron>,
+                                                &pattern<Wedge>,       &pattern<Pyramid>};
+inline constexpr std::array split_patterns{&pattern<Quadrilateral, Division::diagonal_0>,
+                                           &pattern<Quadrilateral, Division::diagonal_1>,
+                                           &pattern<Quadrilateral, Division::four_triangles>,
+                                           &pattern<Hexahedron, Division::six_pyramids>};
+inline constexpr std::array split_patterns_of_pyramids{&pattern<Pyramid, Division::diagonal_0>,
+                                                       &pattern<Pyramid, Division::diagonal_1>};
 
 }  // namespace detail
 
 /// By which a cell is divided, in a way that its kind can be.
 constexpr RefinementPattern const& pattern_of(CellKind kind,
                                               Division division = Division::refined) {
-  if (division == Division::refined) return *detail::refinements[static_cast<std::size_t>(kind)];
+  if (division == Division::refined)
+    return *detail::refinement_patterns[static_cast<std::size_t>(kind)];
   auto const split = static_cast<std::size_t>(division) - 1;
-  return kind == CellKind::pyramid ? *detail::splits_of_pyramids[split] : *detail::splits[split];
+  return kind == CellKind::pyramid ? *detail::split_patterns_of_pyramids[split]
+                                   : *detail::split_patterns[split];
 }
 
 /// Where a point of a child's element, on a `Child`, lies on its parent's. `mirrored`: whether the parent is.
