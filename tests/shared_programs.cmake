@@ -33,6 +33,7 @@ share(shared/state
 share(shared/switching
       adaptation/all_or_nothing adaptation/candidates adaptation/estimators_of_laws
       adaptation/folded_elements adaptation/lost_ellipticity adaptation/recorded_looks
+      adaptation/screened_looks
       adaptation/refinement_internal_variables adaptation/stiffening adaptation/switching body/groups body/state)
 share(shared/groups
       adaptation/bounded_criteria adaptation/ledger adaptation/switching_agreement

@@ -51,6 +51,8 @@ TEST_CASE("elements have the gradient that a criterion's value asks at the least
     check_bound<E>(EdgeLengthRatio{}, random);
     check_bound<E>(AreaRatio{}, random);
     check_bound<E>(Rotation{}, random);
+    check_bound<E>(StrainNorm{}, random);
+    check_bound<E>(Compression{}, random);
     check_bound<E>(largest(EdgeLengthRatio{}, AreaRatio{}, Rotation{}), random);
   };
   all(Tri3{});

@@ -36,10 +36,12 @@ class Adaptation {
   /// are first called in the same order. Copies count as one.
   template <DeformableBody TheBody>
   void operator()(TheBody& body) {
-    if (steps_to_look(body, body.steps() - 1) > 1) return;
-    now(body);
-    // Another mesh puts another state in place of the one that was looked at.
-    last_look(body.parts(), body.steps()).step = body.steps();
+    call(body, Forces::as_they_are);
+  }
+  /// For integrators: the same, where the next step follows and takes the forces that the body then has.
+  template <DeformableBody TheBody>
+  void between_steps(TheBody& body) {
+    call(body, Forces::of_next_step);
   }
 
   /// Looks and acts at once, whatever the interval. When it throws (the mesh would exceed the mesh's
@@ -47,9 +49,49 @@ class Adaptation {
   /// as it was; but for what listeners throw, who are told when all is done.
   template <DeformableBody TheBody>
   void now(TheBody& body) {
+    look(body, Forces::as_they_are);
+  }
+
+  int interval() const { return interval_; }
+  /// How many calls it takes until one looks, 1 or more, when the last call was at the present step.
+  template <DeformableBody TheBody>
+  int steps_to_look(TheBody& body) {
+    return steps_to_look(body, body.steps());
+  }
+  /// For integrators: take(look) takes n steps in which each look is recorded together with the steps before
+  /// it (see take_stretches) and returns n; 0 where it took none.
+  template <DeformableBody TheBody, class Take>
+  int take_stretches(TheBody& body, Take const& take) {
+    if constexpr (List::changes_mesh) {
+      return 0;
+    } else {
+      auto& parts = body.parts();
+      int const taken = take(RecordedLook{*this});
+      if (taken > 0) last_look(parts, parts.state.steps).step = parts.state.steps;
+      return taken;
+    }
+  }
+
+ private:
+  using List = detail::RuleList<Rules...>;
+  /// Whether a look may evaluate forces, for the next step, that tell where to look.
+  enum class Forces { as_they_are, of_next_step };
+
+  template <DeformableBody TheBody>
+  void call(TheBody& body, Forces forces) {
+    if (steps_to_look(body, body.steps() - 1) > 1) return;
+    look(body, forces);
+    // Another mesh puts another state in place of the one that was looked at.
+    last_look(body.parts(), body.steps()).step = body.steps();
+  }
+  template <DeformableBody TheBody>
+  void look(TheBody& body, Forces forces) {
     static_assert(List::template act_on<TheBody>,
                   "a rule is for an element type that the body's mesh does not have");
-    auto& parts = body.parts();
+    look_at_elements(body.parts(), forces);
+  }
+  template <class Parts>
+  void look_at_elements(Parts& parts, Forces forces) const {
     look_at(parts).prepare();
     if (rules_.limits_milliseconds()) take_time(parts);
     auto const look = look_at(parts);  // with the budget of now
@@ -64,34 +106,14 @@ class Adaptation {
       }();
       if (plan) tell_listeners(parts, *plan);
     } else if constexpr (List::switches) {
-      look.switch_groups();
+      if (forces == Forces::of_next_step)
+        look.switch_by_forces();
+      else
+        look.switch_groups();
     }
-    if constexpr (List::sleeps) {
-      static_assert(!TheBody::has_internal_variables,
-                    "sleep takes no laws with internal variables, which go on relaxing at rest");
-      look_for_rest(parts, rules_.sleeping());
-    }
+    if constexpr (List::sleeps) look_for_rest(parts, rules_.sleeping());
     if (rules_.limits_milliseconds()) start_time(parts);
   }
-
-  int interval() const { return interval_; }
-  /// How many calls it takes until one looks, 1 or more, when the last call was at the present step.
-  template <DeformableBody TheBody>
-  int steps_to_look(TheBody& body) {
-    return steps_to_look(body, body.steps());
-  }
-  /// For integrators: take(look) takes n steps in which each look is recorded together with the steps before
-  /// it (see take_stretches) and returns n; 0 where it took none.
-  template <DeformableBody TheBody, class Take>
-  int take_stretches(TheBody& body, Take const& take) {
-    auto& parts = body.parts();
-    int const taken = take(RecordedLook{*this});
-    if (taken > 0) last_look(parts, parts.state.steps).step = parts.state.steps;
-    return taken;
-  }
-
- private:
-  using List = detail::RuleList<Rules...>;
 
   /// What an integrator records of a look; lives on in the recording.
   class RecordedLook {
@@ -115,11 +137,21 @@ class Adaptation {
       look.prepare();
       look.begin(0);  // the clock
     }
+    /// Whether the look evaluates the forces of the next step; see LookAt.
+    template <class Parts>
+    bool evaluates_forces(Parts& parts) const {
+      return adapt_.look_at(parts).screens();
+    }
     template <class Parts>
     void loop_over_look(Parts& parts) const {
       auto const look = adapt_.look_at(parts);
       look.begin(adapt_.interval_);
-      if constexpr (List::switches) look.switch_groups();
+      if constexpr (List::switches) {
+        if (look.screens())
+          look.loop_by_forces();
+        else
+          look.switch_groups();
+      }
     }
 
    private:

@@ -155,6 +155,11 @@ struct CriteriaVisitor {
   Around around;
   Take take;
 
+  PLIANT_HOST_DEVICE bool selects(Index e, Tag group) const
+    requires Selects<Take>
+  {
+    return take.selects(e, group);
+  }
   template <int G, class V, std::same_as<V>... More>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& rest, V const& u, More const&...) const
     requires(!reads_elements)

@@ -6,6 +6,9 @@
 
 namespace pliant::detail {
 
+/// Which patches are looked at: those awake, or those of them that a screen has noted and a list names.
+enum class LookedAt { awake, flagged };
+
 /// What checks of the elements of one type have in common, whatever decides: what they read, change and allocate.
 /// None waits for the backend.
 template <class Parts, class Table, class Elements>
@@ -14,15 +17,24 @@ class ElementCheck {
   using B = typename Parts::backend_type;
   using T = typename Parts::T;
 
-  ElementCheck(Parts& parts, Table& table, Elements& elements)
-      : parts_(parts), table_(table), elements_(elements) {}
+  ElementCheck(Parts& parts, Table& table, Elements& elements, LookedAt looked_at = LookedAt::awake)
+      : parts_(parts), table_(table), elements_(elements), looked_at_(looked_at) {}
 
   B const& backend() const { return parts_.backend; }
   CriteriaWorkspace<B>& workspace() const { return table_.criteria; }
   SwitchTarget<T> target() const {
     auto& statistics = elements_.statistics;
-    return {elements_.tags.data(), statistics.since.data(), statistics.switches.data(),
-            parts_.clock.data(), static_cast<T>(parts_.state.pending_half_kick)};
+    return {elements_.tags.data(),
+            statistics.since.data(),
+            statistics.switches.data(),
+            parts_.clock.data(),
+            static_cast<T>(parts_.state.pending_half_kick),
+            nullptr};
+  }
+  /// The elements that may move.
+  auto looked_at() const {
+    return looked_at_ == LookedAt::flagged ? over(table_.elements, workspace().flagged)
+                                           : parts_.awake_in(table_);
   }
   /// What moves elements by some rules.
   template <class... Rules>
@@ -36,18 +48,20 @@ class ElementCheck {
             table_.count(),
             target()};
   }
-  /// Moves the elements that are awake to their next groups, by the moves of some rules.
+  /// Moves elements to their next groups, by the moves of some rules.
   template <class... Rules>
   void move_by(TableRules<Table, Rules...> const& rules) const {
-    backend().template visit<Table::groups>(parts_.awake_in(table_), mover_by(rules),
+    backend().template visit<Table::groups>(looked_at(), mover_by(rules),
                                             elements_.statistics.counters, parts_.rest(),
                                             std::as_const(parts_).u(), std::as_const(parts_).v());
   }
 
   /// Before and after moves: how stiff the elements are that they concern.
-  void bound_those_that_move() const { bound_movers(parts_, table_, workspace().next.data()); }
+  void bound_those_that_move() const {
+    bound_movers(parts_, table_, looked_at(), workspace().next.data());
+  }
   void count_those_stiffened(StepAllowance const& allowance) const {
-    count_stiffened(parts_, table_, allowance, elements_.statistics.since.data(),
+    count_stiffened(parts_, table_, looked_at(), allowance, elements_.statistics.since.data(),
                     parts_.clock.data());
   }
 
@@ -93,6 +107,7 @@ class ElementCheck {
   Parts& parts_;
   Table& table_;
   Elements& elements_;
+  LookedAt looked_at_;
 };
 
 }  // namespace pliant::detail

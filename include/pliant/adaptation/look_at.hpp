@@ -28,8 +28,8 @@ template <class Parts, class Rules>
 class LookAt {
  public:
   /// `evaluations`: the budget of a choice now; see ChoiceCheck.
-  LookAt(Parts& parts, Rules const& rules, double evaluations)
-      : parts_(parts), rules_(rules), evaluations_(evaluations) {}
+  LookAt(Parts& parts, Rules const& rules, double evaluations, LookedAt looked_at = LookedAt::awake)
+      : parts_(parts), rules_(rules), evaluations_(evaluations), looked_at_(looked_at) {}
 
   /// Allocates what the rest needs.
   void prepare() const {
@@ -60,6 +60,39 @@ class LookAt {
     move_elements();
     if (asks) follow_moves();
   }
+  /// Whether the forces of the next step may tell which patches to look at: where that is told of all elements that rules
+  /// look at, and, in a recording, moves can put their forces right.
+  bool screens() const {
+    if constexpr (!can_screen) {
+      return false;
+    } else {
+      bool can = on_host || parts_.layout.interpolation.empty();
+      for_each_check([&](auto const& check) { can = can && check.screens(); });
+      return can;
+    }
+  }
+  /// Decides where the forces of the next step, which it evaluates, tell that elements may act, and moves these; forces
+  /// are forgotten then. On the host, where they are not known yet; elsewhere as switch_groups.
+  void switch_by_forces() const {
+    if constexpr (!can_screen || !on_host) {
+      switch_groups();
+    } else {
+      if (parts_.forces_current || !screens()) return switch_groups();
+      evaluate_forces(parts_, ScreenedKernels{*this});
+      bool some = false;
+      for_each_check([&](auto const& check) { some = check.list_noted() || some; });
+      if (some) LookAt(parts_, rules_, evaluations_, LookedAt::flagged).switch_groups();
+    }
+  }
+  /// The same in a recording, once forces are cleared and while a half-kick is pending: what moves puts them right.
+  void loop_by_forces() const {
+    if constexpr (can_screen && !on_host) {
+      accumulate_awake_forces(std::as_const(parts_), parts_.f(), ScreenedKernels{*this});
+      auto const allowance = step_allowance(parts_);
+      for_each_check([&](auto const& check) { check.act_where_noted(allowance); });
+    }
+  }
+
   /// Refines and coarsens; returns what it has done, of which listeners are still to be told.
   auto change_mesh() const {
     int max_level = 0;
@@ -117,14 +150,54 @@ class LookAt {
       } else {
         auto const rules = rules_on<Table>(rules_.rules);
         visit(TableCheck<Parts, Table, Elements, std::remove_cvref_t<decltype(rules)>>{
-            parts_, table, elements, rules});
+            parts_, table, elements, rules, looked_at_});
       }
     });
   }
 
   using B = typename Parts::backend_type;
-  static constexpr bool can_move_unasked =
-      !B::orders_by_group && !std::same_as<typename B::Recording, HostRecording>;
+  static constexpr bool on_host = std::same_as<typename B::Recording, HostRecording>;
+  static constexpr bool can_move_unasked = !B::orders_by_group && !on_host;
+
+  template <class Table>
+  static constexpr bool can_screen_table = [] {
+    using Checked = decltype(rules_on<Table>(std::declval<Rules const&>().rules));
+    return TableCheck<Parts, Table, char, Checked>::can_screen;
+  }();
+  static constexpr bool can_screen = [] {
+    if constexpr (!Rules::switches || Rules::chooses || Rules::changes_mesh || Rules::takes_means ||
+                  Parts::has_internal_variables)
+      return false;
+    else
+      return []<class... Tables>(std::type_identity<std::tuple<Tables...>>) {
+        return (can_screen_table<Tables> && ...);
+      }(std::type_identity<decltype(Parts::layout_type::tables)>{});
+  }();
+
+  /// The kernels of forces that screens see, of tables that rules look at.
+  struct ScreenedKernels {
+    LookAt const& look;
+    template <class Table, class Laws, Geometry How>
+    auto operator()(Table const&, ForceKernel<Laws, How> const& kernel) const {
+      using Checked = decltype(rules_on<Table>(look.rules_.rules));
+      if constexpr (std::tuple_size_v<Checked> == 0) {
+        return kernel;
+      } else {
+        using TheScreen = Screen<typename Parts::T, Table::groups>;
+        return ScreenedForceKernel<Laws, How, TheScreen>{kernel, look.template screen_of<Table>()};
+      }
+    }
+  };
+  template <class Table>
+  auto screen_of() const {
+    constexpr std::size_t type = Parts::layout_type::template type_of<typename Table::element>;
+    auto& elements = std::get<type>(parts_.state.elements);
+    auto const rules = rules_on<Table>(rules_.rules);
+    return TableCheck<Parts, Table, std::remove_reference_t<decltype(elements)>,
+                      std::remove_cvref_t<decltype(rules)>>{
+        parts_, std::get<type>(parts_.layout.tables), elements, rules}
+        .screen();
+  }
   /// Between the steps of leapfrog, and where no integrator has a step or accelerations, nothing follows from a
   /// switch at once but the elements' own: where the host would wait for the answer, and loops look at each
   /// tag as they go, it need not know, unless the integrator may have to follow before the next step.
@@ -172,6 +245,7 @@ class LookAt {
   Parts& parts_;
   Rules const& rules_;
   double evaluations_;
+  LookedAt looked_at_;
 };
 
 }  // namespace pliant::detail

@@ -21,6 +21,7 @@ struct SwitchTarget {
   std::int32_t* switches;    // changes of group so far
   std::int64_t const* step;  // (1): of this look
   T pending_half_kick;       // s; 0: velocities are those of the present time
+  T* forces;  // (nodes, 4), N: which follow moves while a half-kick is pending; may be null
 };
 
 /// Moves the elements whose next group is another: tags change, and statistics are updated.
@@ -102,6 +103,8 @@ struct ActVisitor {
     carry_internal_variables<From, To>(groups, e, rest, u);
     T const after = energy<New>(new_law, rest, u);
     if (pending) change = force<New>(new_law, rest, u) - change;
+    if constexpr (requires { again.add(NodeField<T, Dim>{}, change); })
+      if (pending && target.forces != nullptr) again.add(NodeField<T, Dim>{target.forces}, change);
     if constexpr (changes_mesh) {
       // What rules that change the mesh look at next.
       auto const now = rules.template evaluate<To>(new_law, rest, u, groups, around, own);

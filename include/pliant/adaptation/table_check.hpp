@@ -2,7 +2,7 @@
 
 #include <pliant/adaptation/decision.hpp>
 #include <pliant/adaptation/element_check.hpp>
-#include <pliant/adaptation/move_at_once.hpp>
+#include <pliant/adaptation/move_where_noted.hpp>
 #include <pliant/adaptation/ranking.hpp>
 #include <pliant/adaptation/refinement.hpp>
 
@@ -39,7 +39,7 @@ template <class Parts, class Table, class Elements, class... Rules>
 class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     : private ElementCheck<Parts, Table, Elements> {
   using Base = ElementCheck<Parts, Table, Elements>;
-  using Base::backend, Base::workspace, Base::target;
+  using Base::backend, Base::workspace, Base::target, Base::looked_at;
   using Base::parts_, Base::table_, Base::elements_;
   using typename Base::B;
   using typename Base::T;
@@ -57,8 +57,9 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
       "on that cell");
 
  public:
-  TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules)
-      : Base(parts, table, elements), rules_{rules} {}
+  TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules,
+             LookedAt looked_at = LookedAt::awake)
+      : Base(parts, table, elements, looked_at), rules_{rules} {}
 
   /// Allocates what `decide` and `act` need, in the first check of a mesh.
   void prepare() const {
@@ -92,6 +93,54 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
             elements_.statistics.counters, std::as_const(parts_).v());
     decide();
     act();
+  }
+
+  /// Whether a screen may tell which patches to look at: see Screen.
+  static constexpr bool can_screen =
+      count == 0 || (LinearSimplex<typename Table::element> && !changes_mesh &&
+                     (BoundedCriterion<decltype(Rules::criterion)> && ...));
+  bool screens() const { return !ranks(); }
+  Screen<T, Table::groups> screen() const {
+    Screen<T, Table::groups> made{
+        {}, {}, workspace().noted.data(), parts_.clock.data(), table_.elements.patch_size()};
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      ((made.above[G] = range<G>()[0], made.below[G] = range<G>()[1]), ...);
+    }(std::make_integer_sequence<int, Table::groups>());
+    return made;
+  }
+  /// Lists the patches that the screen has noted for the look that has begun; on the host. Whether there are some.
+  bool list_noted() const {
+    if constexpr (count == 0) {
+      return false;
+    } else {
+      auto const* noted = workspace().noted.data();
+      auto const awake = parts_.awake_in(table_);
+      std::vector<Index> list{0};
+      for (Index k = 0; k < awake.patch_count(); ++k)
+        if (noted[awake.patch(k)] == *parts_.clock.data()) list.push_back(awake.patch(k));
+      list[0] = static_cast<Index>(list.size()) - 1;
+      std::ranges::copy(list, workspace().flagged.data());
+      return list[0] > 0;
+    }
+  }
+  /// Decides and moves in one loop over the patches that are noted, whose forces follow.
+  void act_where_noted(std::optional<StepAllowance> const& allowance) const {
+    if constexpr (count > 0) {
+      auto mover = this->mover_by(rules_);
+      mover.target.forces = parts_.layout.f.data();
+      auto const limit = allowance.value_or(StepAllowance{});
+      evaluate_criteria(
+          std::as_const(parts_), std::as_const(table_), parts_.awake_in(table_), rules_,
+          workspace(),
+          MoveWhereNoted<Table, Parts::dim, Rules...>{
+              {decision(), mover},
+              screen(),
+              spectra_of(parts_, table_),
+              allowance ? parts_.state.work.data() + static_cast<int>(Work::stiffened) : nullptr,
+              static_cast<T>(limit.growth * limit.squared_frequency),
+              static_cast<T>(limit.growth)},
+          elements_.statistics.counters, std::as_const(parts_).v());
+    }
   }
 
   void bound_movers() const {
@@ -159,9 +208,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
  private:
   // What of the body is read and changed.
   /// Those that are looked at: of rules that compare elements with each other, and of those that refine, all.
-  auto elements() const {
-    return changes_mesh || ranks() ? active(table_.elements) : parts_.awake_in(table_);
-  }
+  auto elements() const { return changes_mesh || ranks() ? active(table_.elements) : looked_at(); }
   template <class Visit>
   void each_kept(Visit const& visit) const {
     if constexpr (switches) {
@@ -179,6 +226,11 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
   bool reserve() const {
     typename Base::Room room(*this);
     if constexpr (switches) room.hold_switching();
+    if constexpr (can_screen && count > 0) {
+      auto const patches = static_cast<std::size_t>(table_.elements.patch_count());
+      room.hold(workspace().noted, patches);
+      room.hold(workspace().flagged, patches + 1);
+    }
     if constexpr (changes_mesh) {
       auto& w = workspace();
       room.hold(w.mesh_marks, room.count());
@@ -241,27 +293,39 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     }(std::make_integer_sequence<int, Table::groups>());
     return d;
   }
-  /// In the order of the rules: what an earlier one takes is no candidate of a later one.
   /// See Decision::quiet.
   template <int G>
   T quiet() const {
-    if constexpr (!Decision<Table, Rules...>::template bounded<G>) {
+    if constexpr (!Decision<Table, Rules...>::template bounded<G>)
       return T(-1);
-    } else {
-      if (changes_mesh || ranks()) return T(-1);  // values are kept, and compared
-      double least = std::numeric_limits<double>::infinity();
-      auto const add = [&]<class R>(R const& rule) {
-        if constexpr (Table::template group_of<typename R::from> == G)
-          least = std::min(
-              least, rule.marking.below()
-                         ? -1
-                         : rule.criterion.least_gradient(
-                               static_cast<double>(rule.marking.template beyond<T>()), Parts::dim));
-      };
-      std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
-      constexpr double rounding = 0.999;
-      return least > 0 ? static_cast<T>(square(rounding * least)) : T(-1);
-    }
+    else if (changes_mesh || ranks())
+      return T(-1);  // values are kept, and compared
+    else
+      return range<G>()[0];
+  }
+  /// H:H between which elements of group G may act: see Screen.
+  template <int G>
+  std::array<T, 2> range() const {
+    constexpr double infinite = std::numeric_limits<double>::infinity(), rounding = 1e-3;
+    double least = infinite, most = -infinite;
+    auto const add = [&]<class R>(R const& rule) {
+      if constexpr (Table::template group_of<typename R::from> == G) {
+        auto const threshold = static_cast<double>(rule.marking.template beyond<T>());
+        if (!rule.marking.below()) {
+          least = std::min(least, rule.criterion.least_gradient(threshold, Parts::dim));
+          most = infinite;
+        } else if constexpr (BoundedBelowCriterion<decltype(R::criterion)>) {
+          least = -infinite;
+          most = std::max(most, rule.criterion.most_gradient(-threshold, Parts::dim));
+        } else {
+          least = -infinite;
+          most = infinite;
+        }
+      }
+    };
+    std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
+    return {least > 0 ? static_cast<T>(square((1 - rounding) * least)) : T(-1),
+            most > 0 ? static_cast<T>(square((1 + rounding) * most)) : T(-1)};
   }
   template <class TheDecision, class Chosen>
   void find_cuts(TheDecision const& decision, Chosen const& chosen) const {

@@ -86,6 +86,8 @@ struct CriteriaWorkspace {
   Array<int> levels;                // (elements): how often each was refined
   Array<std::int64_t> histogram;    // (histogram_bins), zero between searches
   Array<Ranking<T>> rankings;       // (rules)
+  Array<std::int64_t> noted;        // (patches): the last look that had to look at it; see Screen
+  Array<Index> flagged;             // on the host: a list of these, for over()
   /// Copies of what a check changes, to be put back when refinement throws.
   struct Kept {
     Array<Tag> tags;

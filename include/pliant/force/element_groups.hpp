@@ -6,6 +6,13 @@
 
 namespace pliant {
 
+struct TheirOwnKernels {
+  template <class Table, class Kernel>
+  Kernel const& operator()(Table const&, Kernel const& kernel) const {
+    return kernel;
+  }
+};
+
 /// The elements of a layout, each under the law of its group, as a force term.
 template <class Layout>
 class ElementGroups {
@@ -41,14 +48,16 @@ class ElementGroups {
     });
     return total;
   }
-  template <class B>
-  void add_force(B const& backend, At const& at, Field f) const {
+  /// By the kernels kernel_of(table, its ForceKernel).
+  template <class B, class KernelOf = TheirOwnKernels>
+  void add_force(B const& backend, At const& at, Field f, KernelOf const& kernel_of = {}) const {
     for_each_active([&](auto const& table, auto const& elements) {
       using Table = std::remove_cvref_t<decltype(table)>;
       table.with_geometry([&](auto geometry) {
         backend.template accumulate<Table::groups>(
-            elements, ForceKernel<typename Table::Laws, geometry.value>{table.laws}, f, at.rest,
-            at.u);
+            elements,
+            kernel_of(table, ForceKernel<typename Table::Laws, geometry.value>{table.laws}), f,
+            at.rest, at.u);
       });
     });
   }

@@ -50,20 +50,22 @@ void forget_forces(Parts& parts) {
   parts.forces_current = parts.forces_complete = false;
 }
 
-/// f += what pulls at nodes that may move, at the present displacements: sleeping patches are passed over.
-template <class Parts>
-void accumulate_awake_forces(Parts const& parts, typename Parts::Field f) {
-  parts.awake_elements().add_force(parts.backend, parts.here(), f);
+/// f += what pulls at nodes that may move, at the present displacements: sleeping patches are passed over. By the
+/// kernels that ElementGroups::add_force takes.
+template <class Parts, class KernelOf = TheirOwnKernels>
+void accumulate_awake_forces(Parts const& parts, typename Parts::Field f,
+                             KernelOf const& kernel_of = {}) {
+  parts.awake_elements().add_force(parts.backend, parts.here(), f, kernel_of);
   for_each_added_term(parts,
                       [&](auto const& term) { term.add_force(parts.backend, parts.here(), f); });
   parts.layout.interpolation.add_transpose(parts.backend, f);
 }
 
 /// Brings layout.f up to the present displacements, at nodes that may move.
-template <class Parts>
-void evaluate_forces(Parts& parts) {
+template <class Parts, class KernelOf = TheirOwnKernels>
+void evaluate_forces(Parts& parts, KernelOf const& kernel_of = {}) {
   if (parts.forces_current) return;
-  accumulate_awake_forces(std::as_const(parts), parts.f());
+  accumulate_awake_forces(std::as_const(parts), parts.f(), kernel_of);
   parts.forces_current = true;
   parts.forces_complete = !parts.awake;
 }

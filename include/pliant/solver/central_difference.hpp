@@ -95,7 +95,7 @@ class CentralDifference {
             taken > 0)
           return;
       take_steps(parts, dt, std::min(count, before));
-      adapt(body);
+      adapt.between_steps(body);
     });
   }
 

@@ -7,12 +7,16 @@ namespace pliant {
 
 namespace detail {
 
-/// Whether the next step is not like those that are recorded.
+/// Whether the next step is not like those that are recorded, whether or not its forces are known.
+template <class Parts>
+bool next_move_is_special(Parts const& parts, double dt) {
+  auto const& state = parts.state;
+  return state.pending_half_kick != dt / 2 || !parts.driven.empty() ||
+         (Parts::has_internal_variables && state.step_size != dt);
+}
 template <class Parts>
 bool next_step_is_special(Parts const& parts, double dt) {
-  auto const& state = parts.state;
-  return state.pending_half_kick != dt / 2 || !parts.driven.empty() || parts.forces_current ||
-         (Parts::has_internal_variables && state.step_size != dt);
+  return next_move_is_special(parts, dt) || parts.forces_current;
 }
 
 /// Steps that are not like the others: `steps` of them at the most. Returns how many are left.
@@ -39,12 +43,16 @@ bool all_asleep(Parts const& parts) {
   return parts.awake && parts.awake->awake == 0 && !has_added_terms(parts);
 }
 
-/// The loops of a step like the others.
+/// The loops of a step like the others, once its forces are known.
+template <class Parts>
+void loop_over_move(Parts& parts, double dt) {
+  commit_at(parts, std::as_const(parts).u());
+  advance(parts, dt / 2, dt / 2, dt);
+}
 template <class Parts>
 void loop_over_step(Parts& parts, double dt) {
   accumulate_awake_forces(std::as_const(parts), parts.f());
-  commit_at(parts, std::as_const(parts).u());
-  advance(parts, dt / 2, dt / 2, dt);
+  loop_over_move(parts, dt);
 }
 
 /// Replays `n` times what f() does in `steps` steps; records it where `kept` has something else.
@@ -97,15 +105,26 @@ void take_steps(Parts& parts, double dt, int steps) {
 template <class Parts, class Look>
 int take_stretches(Parts& parts, double dt, int steps, Look const& look) {
   int const interval = look.interval();
-  if (steps < interval || detail::next_step_is_special(parts, dt) || !look.can_record(parts))
+  if (steps < interval || detail::next_move_is_special(parts, dt) || !look.can_record(parts))
     return 0;
+  bool const forces_known = look.evaluates_forces(parts);  // before each stretch and behind it
+  if (parts.forces_current && !forces_known) return 0;
   look.prepare(parts);
+  if (forces_known) evaluate_forces(parts);
   int const n = steps / interval;
   detail::replay_steps(parts, parts.recorded_with_look, dt, interval, look.identity(), n,
-                       [&parts, dt, interval, look] {
-                         for (int k = 0; k < interval; ++k) detail::loop_over_step(parts, dt);
+                       [&parts, dt, interval, look, forces_known] {
+                         for (int k = 0; k < interval; ++k)
+                           if (k == 0 && forces_known)
+                             detail::loop_over_move(parts, dt);
+                           else
+                             detail::loop_over_step(parts, dt);
                          look.loop_over_look(parts);
                        });
+  if (forces_known) {
+    parts.forces_current = true;
+    parts.forces_complete = !parts.awake;
+  }
   return n * interval;
 }
 

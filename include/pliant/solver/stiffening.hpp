@@ -56,23 +56,25 @@ ElementSpectra<typename Parts::T, typename Table::Laws> spectra_of(Parts& parts,
   return {table.laws, static_cast<T>(parts.material.density), table.scratch.data()};
 }
 
-/// Leaves bounds of ω² of the elements that are awake and about to change groups in their table's scratch, which has
+/// Leaves bounds of ω² of those of some elements that are about to change groups in their table's scratch, which has
 /// room.
-template <class Parts, class Table>
-void bound_movers(Parts& parts, Table& table, Tag const* next) {
+template <class Parts, class Table, class Elements>
+void bound_movers(Parts& parts, Table& table, ActiveElements<Elements> const& elements,
+                  Tag const* next) {
   using Visitor = SpectraOfMovers<typename Parts::T, typename Table::Laws>;
-  parts.backend.template visit<Table::groups>(
-      parts.awake_in(table), Visitor{spectra_of(parts, table), next}, parts.no_counters,
-      parts.rest(), std::as_const(parts).u());
+  parts.backend.template visit<Table::groups>(elements, Visitor{spectra_of(parts, table), next},
+                                              parts.no_counters, parts.rest(),
+                                              std::as_const(parts).u());
 }
 /// Counts those that are stiffer than before and than the step allows, once they moved. `since`: (elements), the
 /// steps at which they last did; `step`: (1), the present one.
-template <class Parts, class Table>
-void count_stiffened(Parts& parts, Table& table, StepAllowance const& allowance,
-                     std::int64_t const* since, std::int64_t const* step) {
+template <class Parts, class Table, class Elements>
+void count_stiffened(Parts& parts, Table& table, ActiveElements<Elements> const& elements,
+                     StepAllowance const& allowance, std::int64_t const* since,
+                     std::int64_t const* step) {
   using T = typename Parts::T;
   parts.backend.template visit<Table::groups>(
-      parts.awake_in(table),
+      elements,
       CountStiffened<T, typename Table::Laws>{
           spectra_of(parts, table), since, step,
           static_cast<T>(allowance.growth * allowance.squared_frequency),

@@ -20,6 +20,20 @@ template <class Visitor, class Field, class...>
 inline constexpr int visit_blocks =
     FinishesFew<Visitor> ? 32 / static_cast<int>(sizeof(typename Field::value_type)) : 1;
 
+/// What gathers fields at the nodes of an element, and adds to them.
+template <int Nodes, class Gathers>
+struct AtNodes : Gathers {
+  Index const* row;
+  template <class T, int C>
+  __device__ void add(NodeField<T, C> const& out, Matrix<T, Nodes, C> const& shares) const {
+    for (int a = 0; a < Nodes; ++a) add_to_node(out, row[a], shares.entries[a]);
+  }
+};
+template <int Nodes, class Gathers>
+__device__ AtNodes<Nodes, Gathers> at_nodes(Gathers const& gathers, Index const* row) {
+  return {gathers, row};
+}
+
 /// Tallies are collected per block, so that few reach global memory.
 template <int Groups, int Nodes, class Visitor, class... Fields>
 __global__ void __launch_bounds__(visit_threads, visit_blocks<Visitor, Fields...>)
@@ -36,7 +50,8 @@ __global__ void __launch_bounds__(visit_threads, visit_blocks<Visitor, Fields...
     Index const* const row =
         elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
     dispatch<Groups>(tag, [&](auto group) {
-      auto const again = [&] { return std::tuple{gather_nodes<Nodes>(fields, row)...}; };
+      auto const again =
+          at_nodes<Nodes>([&] { return std::tuple{gather_nodes<Nodes>(fields, row)...}; }, row);
       auto const tally = [&](int k, double x) { atomicAdd(tallies + k, x); };
       auto const values =
           evaluate_at(visitor, group, OneElement{e}, gather_nodes<Nodes>(fields, row)...);
@@ -44,7 +59,9 @@ __global__ void __launch_bounds__(visit_threads, visit_blocks<Visitor, Fields...
     });
   };
   constexpr int each = visits_per_thread<Visitor>;
-  Index const first = static_cast<Index>(blockIdx.x) * visit_threads * each + thread;
+  Index const first = static_cast<Index>(blockIdx.x) * visit_threads + thread;
+  // Far from each other, since those that are selected may lie side by side.
+  Index const apart = static_cast<Index>(gridDim.x) * visit_threads;
   if constexpr (each == 1) {
     if (Index const e = elements.element(first); e >= 0) visit(e, elements.tags[e]);
   } else {
@@ -53,7 +70,7 @@ __global__ void __launch_bounds__(visit_threads, visit_blocks<Visitor, Fields...
     unsigned selected = 0;
 #pragma unroll
     for (int k = 0; k < each; ++k) {
-      numbers[k] = elements.element(first + k * visit_threads);
+      numbers[k] = elements.element(first + k * apart);
       tags[k] = numbers[k] >= 0 ? elements.tags[numbers[k]] : no_group;
     }
 #pragma unroll
@@ -61,8 +78,7 @@ __global__ void __launch_bounds__(visit_threads, visit_blocks<Visitor, Fields...
       if (numbers[k] >= 0 && visitor.selects(numbers[k], tags[k])) selected |= 1u << k;
 #pragma unroll 1
     for (; selected != 0; selected &= selected - 1) {
-      Index const e =
-          elements.element(first + (__ffs(static_cast<int>(selected)) - 1) * visit_threads);
+      Index const e = elements.element(first + (__ffs(static_cast<int>(selected)) - 1) * apart);
       visit(e, elements.tags[e]);
     }
   }

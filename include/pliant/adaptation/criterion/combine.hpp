@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include <pliant/adaptation/criterion/criterion.hpp>
@@ -24,6 +25,19 @@ struct ExtremeOf : SharedUnit<First, Rest...> {
           return std::min({criterion.least_gradient(threshold, dim)...});
         },
         criteria);
+  }
+  /// All are below, so the one that tells most counts.
+  double most_gradient(double threshold, int dim) const
+    requires(X == Extreme::largest && BoundedCriterion<First> && (BoundedCriterion<Rest> && ...) &&
+             (BoundedBelowCriterion<First> || ... || BoundedBelowCriterion<Rest>))
+  {
+    double most = std::numeric_limits<double>::infinity();
+    auto const add = [&]<class C>(C const& criterion) {
+      if constexpr (BoundedBelowCriterion<C>)
+        most = std::min(most, criterion.most_gradient(threshold, dim));
+    };
+    std::apply([&](auto const&... criterion) { (add(criterion), ...); }, criteria);
+    return most;
   }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {

@@ -44,6 +44,13 @@ concept BoundedCriterion = requires(C const& criterion, double threshold, int di
   { criterion.least_gradient(threshold, dim) } -> std::convertible_to<double>;
 };
 
+/// One that also knows a norm that elements have at the most where its value is below a threshold.
+template <class C>
+concept BoundedBelowCriterion =
+    BoundedCriterion<C> && requires(C const& criterion, double threshold, int dim) {
+      { criterion.most_gradient(threshold, dim) } -> std::convertible_to<double>;
+    };
+
 namespace detail {
 /// Criteria without data are equal when their types are.
 template <class C>

@@ -51,6 +51,16 @@ struct Inside : SharedUnit<C> {
   Region region;
 
   Inside(C criterion, Region r) : criteria(criterion), region(r) {}
+  double least_gradient(double threshold, int dim) const
+    requires BoundedCriterion<C>
+  {
+    return std::get<0>(criteria).least_gradient(threshold, dim);
+  }
+  double most_gradient(double threshold, int dim) const
+    requires BoundedBelowCriterion<C>
+  {
+    return std::get<0>(criteria).most_gradient(threshold, dim);
+  }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include <pliant/adaptation/criterion/criterion.hpp>
 #include <pliant/math/spectrum.hpp>
 
@@ -10,6 +13,10 @@ namespace pliant {
 struct StrainNorm {
   static constexpr Unit unit = Unit::one;
 
+  /// |E| ≤ |H| + |H|²/2.
+  static double least_gradient(double threshold, int) {
+    return std::sqrt(1 + 2 * std::max(threshold, 0.0)) - 1;
+  }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
@@ -22,6 +29,8 @@ struct StrainNorm {
 struct Compression {
   static constexpr Unit unit = Unit::one;
 
+  /// No line is shortened by more than |H| of its length.
+  static double least_gradient(double threshold, int) { return threshold; }
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;

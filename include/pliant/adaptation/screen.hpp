@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+
+#include <pliant/force/element_kernels.hpp>
+
+// Forces tell on their way which patches a look has to look at.
+namespace pliant::detail {
+
+/// Some element of those that a kernel computes together; they are of one patch.
+template <class Own>
+PLIANT_HOST_DEVICE Index some_element(Own const& own) {
+  if constexpr (requires { own.element[0]; })
+    return own.element[0];
+  else
+    return own.element;
+}
+
+/// Which patches of a table have elements that may act, by their squared displacement gradients H:H. What is noted is
+/// the step of the look, so that nothing has to be cleared.
+template <class T, int Groups>
+struct Screen {
+  T above[Groups], below[Groups];  // H:H between which elements of a group may act, if any
+  std::int64_t* noted;             // (patches)
+  std::int64_t const* step;        // (1): of the look
+  Index patch_size;
+
+  /// Notes the patch of elements of group G if one of them may act; NaN does not.
+  template <int G, class S, class Own>
+  PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, S const& squared, Own const& own) const {
+    if (any_less(S(above[G]), select(S(below[G]) < squared, S(-1), squared)))
+      noted[some_element(own) / patch_size] = *step;
+  }
+  PLIANT_HOST_DEVICE bool selects(Index element) const {
+    return noted[element / patch_size] == *step;
+  }
+};
+
+/// The forces of linear simplices, which a screen sees.
+template <class Laws, Geometry How, class TheScreen>
+struct ScreenedForceKernel {
+  static constexpr bool reads_elements = true;
+  static constexpr bool few_operations = Laws::few_operations;
+  ForceKernel<Laws, How> force;
+  TheScreen screen;
+
+  template <int G, class Own, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G> group, Own const& own, V const& rest,
+                                     V const& u) const {
+    using E = typename Laws::template formulation<G>::element;
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    static constexpr auto table = tabulate<E, Gauss<1>, builtin_scalar<S>>();
+    auto const h = RestMap<E, S, How>::at(Coefficients<E, S>::of(rest), table, 0)
+                       .gradient(Coefficients<E, S>::of(u), table, 0);
+    screen(group, dot(h, h), own);
+    return call(force, group, own, rest, u);
+  }
+};
+
+}  // namespace pliant::detail
