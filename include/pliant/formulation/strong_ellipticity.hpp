@@ -70,19 +70,22 @@ template <class L, class S, int Dim>
 PLIANT_HOST_DEVICE S least_acoustic_eigenvalue(L const& law, Tensor<S, Dim> const& h) {
   using T = builtin_scalar<S>;
   static constexpr auto directions = detail::wave_directions<Dim>();
-  S least(std::numeric_limits<T>::max());
-  for (auto const& n : directions) {
-    Tensor<S, Dim> q;
-    for (int k = 0; k < Dim; ++k) {
+  Tensor<S, Dim> tangent[Dim][Dim];  // ∂P/∂F_kL: fewer products than three for each direction
+  for (int k = 0; k < Dim; ++k)
+    for (int l = 0; l < Dim; ++l) {
       auto df = Tensor<S, Dim>::zero();
-      for (int j = 0; j < Dim; ++j) df(k, j) = S(static_cast<T>(n[static_cast<std::size_t>(j)]));
-      auto const dp = stress_tangent_product(law, h, df);
-      for (int i = 0; i < Dim; ++i) {
-        q(i, k) = S(0);
-        for (int j = 0; j < Dim; ++j)
-          q(i, k) = q(i, k) + dp(i, j) * static_cast<T>(n[static_cast<std::size_t>(j)]);
-      }
+      df(k, l) = S(1);
+      tangent[k][l] = stress_tangent_product(law, h, df);
     }
+  S least(std::numeric_limits<T>::max());
+  for (auto const& direction : directions) {
+    T n[Dim];
+    for (int j = 0; j < Dim; ++j) n[j] = static_cast<T>(direction[static_cast<std::size_t>(j)]);
+    auto q = Tensor<S, Dim>::zero();
+    for (int k = 0; k < Dim; ++k)
+      for (int l = 0; l < Dim; ++l)
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j) q(i, k) = q(i, k) + tangent[k][l](i, j) * (n[j] * n[l]);
     least = minimum(least, detail::least_eigenvalue(q));
   }
   return least;
