@@ -1,26 +1,15 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <vector>
 
-#include <pliant/adaptation/rule.hpp>
-#include <pliant/body/sleep.hpp>
+#include <pliant/adaptation/relaxation.hpp>
 
 // Looks for patches that come to rest, and for sleeping ones that something pulls at.
 namespace pliant {
 
 namespace detail {
-
-/// Sets a flag that other threads may set at the same time.
-PLIANT_HOST_DEVICE void set_flag(std::uint8_t& flag) {
-#if defined(__CUDA_ARCH__)
-  flag = 1;
-#else
-  std::atomic_ref(flag).store(1, std::memory_order_relaxed);
-#endif
-}
 
 /// Marks the patches of nodes that are not at rest: faster than a speed, or pulled so that they would be within a
 /// time.
@@ -118,6 +107,21 @@ std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule) {
 
 }  // namespace detail
 
+namespace detail {
+/// Those that are about to fall asleep while their points relax are not at rest.
+template <class Parts>
+void keep_awake_what_relaxes(Parts& parts, SleepRule const& rule, std::vector<std::int32_t>& rest) {
+  auto const& before = parts.state.rest;
+  auto const falls_asleep = [&](std::size_t p) { return rest[p] < 0 && before[p] >= 0; };
+  bool some = false;
+  for (std::size_t p = 0; p < rest.size(); ++p) some = some || falls_asleep(p);
+  if (!some) return;
+  auto const relaxing = find_relaxing(parts, rule);
+  for (std::size_t p = 0; p < rest.size(); ++p)
+    if (falls_asleep(p) && relaxing[p]) rest[p] = 0;
+}
+}  // namespace detail
+
 /// Wakes patches that something would move, and puts those to sleep that have been at rest for long enough. Before
 /// an integrator with a step has taken the body, nothing sleeps. A look holds for `for_steps` steps: without another
 /// one, all wakes then.
@@ -142,15 +146,15 @@ void look_for_rest(Parts& parts, SleepRule const& rule) {
   state.rest_seen = state.steps;
   auto const stirred = detail::find_stirred(parts, rule);
   auto rest = state.rest;
-  bool changed = false;
   for (std::size_t p = 0; p < count; ++p) {
-    bool const slept = rest[p] < 0;
     if (stirred[p])
       rest[p] = 0;
-    else if (!slept && (rest[p] += passed) >= rule.for_steps)
+    else if (rest[p] >= 0 && (rest[p] += passed) >= rule.for_steps)
       rest[p] = -1;
-    changed = changed || slept != (rest[p] < 0);
   }
+  if constexpr (Parts::has_internal_variables) detail::keep_awake_what_relaxes(parts, rule, rest);
+  bool const changed = !std::ranges::equal(
+      rest, state.rest, [](std::int32_t a, std::int32_t b) { return (a < 0) == (b < 0); });
   if (changed)
     change_rest(parts, [&] { state.rest = std::move(rest); });
   else

@@ -42,16 +42,21 @@ class WithStepSize {
   double before_;
 };
 
-/// Brings internal variables up to displacements u.
-template <class Parts>
-void commit_at(Parts& parts, typename Parts::ConstField u) {
+/// Brings internal variables of elements_of(table) up to displacements u.
+template <class Parts, class ElementsOf>
+void commit_of(Parts& parts, typename Parts::ConstField u, ElementsOf const& elements_of) {
   parts.for_each_type([&](auto& table, auto&) {
     using Table = std::remove_cvref_t<decltype(table)>;
     if constexpr (Table::Laws::internal_variable_count > 0)
       parts.backend.template visit<Table::groups>(
-          table.elements, CommitVisitor<typename Parts::T, typename Table::Laws>{table.laws},
+          elements_of(table), CommitVisitor<typename Parts::T, typename Table::Laws>{table.laws},
           parts.no_counters, parts.rest(), u);
   });
+}
+/// The same of those that are awake; see relax_what_sleeps.
+template <class Parts>
+void commit_at(Parts& parts, typename Parts::ConstField u) {
+  commit_of(parts, u, [&](auto const& table) { return parts.awake_in(table); });
 }
 
 /// Brings internal variables to rest: as if the body had always been where it is.

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include <pliant/body/internal_variables.hpp>
 #include <pliant/body/leapfrog_energy.hpp>
 #include <pliant/body/wake.hpp>
 #include <pliant/math/group_by_key.hpp>
@@ -182,12 +183,31 @@ void bring_up_to_rest(Parts& parts) {
 
 }  // namespace detail
 
+/// Internal variables of sleeping patches relax by the time since they last did, at the displacements that these have
+/// kept: exactly, where a law integrates that exactly.
+template <class Parts>
+void relax_what_sleeps(Parts& parts) {
+  if constexpr (Parts::has_internal_variables) {
+    auto& state = parts.state;
+    double const passed = state.time - std::exchange(state.relaxed_until, state.time);
+    if (!parts.awake || !(passed > 0)) return;
+    std::vector<typename Parts::template Array<Index>> lists;
+    (void)detail::fill_lists(parts, lists, [&](std::size_t p) { return state.rest[p] < 0; });
+    WithStepSize const relaxing(parts, passed);
+    commit_of(parts, std::as_const(parts).u(), [&]<class Table>(Table const& table) {
+      constexpr std::size_t type = Parts::layout_type::template type_of<typename Table::element>;
+      return over(table.elements, lists[type]);
+    });
+  }
+}
+
 /// Changes state.rest by change(), to wake patches or to put them to sleep; those lose their velocity. What that
 /// changes of the energy that is watched is booked, J.
 template <class Parts, class Change>
 void change_rest(Parts& parts, Change const& change) {
   using T = typename Parts::T;
   synchronize_velocities(parts);
+  relax_what_sleeps(parts);
   double const step = parts.watched_energy ? parts.state.integrator.step : 0;
   auto const energies = [&] {
     return std::pair{kinetic_energy_of(parts),

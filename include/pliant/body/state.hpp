@@ -89,6 +89,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   std::vector<std::int32_t> rest;
   std::int64_t rest_seen = 0;   // at which step that was looked at
   std::int64_t rest_until = 0;  // the step by which it has to be looked at again
+  double relaxed_until = 0;     // s: to which internal variables of sleeping patches have relaxed
   FrequencyBounds bounds;       // of all that was awake when the step was chosen last
   AdaptationRecord<dim> record;
   IntegratorState integrator;
@@ -124,6 +125,7 @@ struct State<B, Mesh<Es...>, Fs...> {
     visit("steps at rest", s.rest...);
     visit("step of the last look for rest", s.rest_seen...);
     visit("step of the next look for rest", s.rest_until...);
+    visit("time to which sleeping patches are relaxed", s.relaxed_until...);
     visit("bounds of frequencies", s.bounds...);
     AdaptationRecord<dim>::for_each_member(visit, s.record...);
     visit("integrator", s.integrator...);
