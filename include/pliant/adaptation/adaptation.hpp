@@ -88,7 +88,10 @@ class Adaptation {
   void look(TheBody& body, Forces forces) {
     static_assert(List::template act_on<TheBody>,
                   "a rule is for an element type that the body's mesh does not have");
-    look_at_elements(body.parts(), forces);
+    if constexpr (List::holds_mesh)
+      detail::hold_mesh(body, std::get<0>(rules_.rules));
+    else
+      look_at_elements(body.parts(), forces);
   }
   template <class Parts>
   void look_at_elements(Parts& parts, Forces forces) const {

@@ -49,6 +49,11 @@ void name_rule(std::string& text, TheRule const& rule) {
   } else if constexpr (SleepingRule<TheRule>) {
     add_bytes(text, rule.below);
     add_bytes(text, rule.for_steps);
+  } else if constexpr (HoldingRule<TheRule>) {
+    auto const& options = rule.options;
+    for (double limit : {options.error, options.evaluations_per_step, options.release})
+      add_bytes(text, limit);
+    add_bytes(text, std::int64_t{options.max_level});
   } else {
     name_marking(text, rule);
   }

@@ -151,7 +151,14 @@ concept ChoosingRule = requires(R const& rule) {
   typename R::element;
   { rule.limits_sums() } -> std::same_as<bool>;
 };
+/// Refines and merges elements so that limits hold; `within` with an estimator makes one.
 template <class R>
-concept Rule = SwitchingRule<R> || MeshRule<R> || SleepingRule<R> || ChoosingRule<R>;
+concept HoldingRule = R::holds_mesh && requires(R const& rule) {
+  typename R::from;
+  rule.estimator;
+};
+template <class R>
+concept Rule =
+    SwitchingRule<R> || MeshRule<R> || SleepingRule<R> || ChoosingRule<R> || HoldingRule<R>;
 
 }  // namespace pliant

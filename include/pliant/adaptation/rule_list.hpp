@@ -7,6 +7,7 @@
 
 #include <pliant/adaptation/choice.hpp>
 #include <pliant/adaptation/criteria_visitor.hpp>
+#include <pliant/adaptation/mesh_spending.hpp>
 #include <pliant/adaptation/rule.hpp>
 #include <pliant/adaptation/young_at_rest.hpp>
 #include <pliant/solver/stiffening.hpp>
@@ -18,7 +19,8 @@ template <class... Rules>
 struct RuleList {
   static constexpr bool chooses = (ChoosingRule<Rules> || ...);
   static constexpr bool switches = chooses || (SwitchingRule<Rules> || ...);
-  static constexpr bool changes_mesh = (MeshRule<Rules> || ...);
+  static constexpr bool holds_mesh = (HoldingRule<Rules> || ...);
+  static constexpr bool changes_mesh = holds_mesh || (MeshRule<Rules> || ...);
   static constexpr bool sleeps = (SleepingRule<Rules> || ...);
   static_assert((0 + ... + int{SleepingRule<Rules>}) <= 1,
                 "an Adaptation has at most one rule that puts patches to sleep");
@@ -29,11 +31,14 @@ struct RuleList {
       "cheapest and within choose for all elements of their groups: rules that switch or change "
       "the mesh go into another Adaptation");
 
+  static_assert(!holds_mesh || sizeof...(Rules) == 1,
+                "a rule that holds a mesh within limits goes into an Adaptation of its own");
+
   std::tuple<Rules...> rules;
 
   template <class R>
   static constexpr bool takes_means_by() {
-    if constexpr (SleepingRule<R> || ChoosingRule<R>)
+    if constexpr (SleepingRule<R> || ChoosingRule<R> || HoldingRule<R>)
       return false;
     else
       return !std::same_as<typename TakersOfMeans<decltype(R::criterion), typename R::from>::type,
