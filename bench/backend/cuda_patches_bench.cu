@@ -9,15 +9,17 @@ namespace pliant::bench {
 using Shape = std::array<int, 2>;  // elements per patch, threads per block
 
 template <class F, class T>
-void add_shape(int cells, Shape shape) {
+void add_shape(int cells, Shape shape, NodeOrder order) {
   using E = typename F::element;
-  std::string const name = "patches/" + std::to_string(shape[0]) + "x" + std::to_string(shape[1]);
+  bool const in_fans = order == NodeOrder::any_even;
+  std::string const name =
+      (in_fans ? "fans/" : "patches/") + std::to_string(shape[0]) + "x" + std::to_string(shape[1]);
   static Cuda<T> const backend;
-  add<F, T>(name, "Cuda", cells, [cells, shape](benchmark::State& state) {
+  add<F, T>(name, "Cuda", cells, [cells, shape, order](benchmark::State& state) {
     auto& p = Problem<Cuda<T>, E>::of(backend, cells);
     auto const& table = std::get<0>(OrderedMesh<E>::of(cells).numbering.tables);
     CudaElements<T, E::nodes> const elements(backend, table, std::vector<Tag>(table.size(), 0),
-                                             p.nodes, shape);
+                                             p.nodes, shape, order);
     ForceKernel<GroupLaws<T, F>> const kernel{soft_laws<T, F>()};
     measure(state, backend, [&] {
       p.clear_forces(backend);
@@ -28,9 +30,10 @@ void add_shape(int cells, Shape shape) {
 }
 
 template <class E, class T>
-void add_shapes(std::vector<int> const& sizes, std::vector<Shape> const& shapes) {
+void add_shapes(std::vector<int> const& sizes, std::vector<Shape> const& shapes,
+                NodeOrder order = NodeOrder::as_given) {
   for (int cells : sizes)
-    for (Shape shape : shapes) add_shape<Usual<E, SaintVenantKirchhoff>, T>(cells, shape);
+    for (Shape shape : shapes) add_shape<Usual<E, SaintVenantKirchhoff>, T>(cells, shape, order);
 }
 
 void add_all() {
@@ -43,6 +46,9 @@ void add_all() {
   add_shapes<Tet4, double>(few, small);
   add_shapes<Tet4, float>(many, large);
   add_shapes<Tet4, double>(many, large);
+  std::vector<Shape> const in_fans{{384, 64}, {576, 96}, {768, 96}, {768, 128}};
+  add_shapes<Tet4, float>(many, in_fans, NodeOrder::any_even);
+  add_shapes<Tet4, double>(many, in_fans, NodeOrder::any_even);
   add_shapes<Hex8, double>({usual_cells<Hex8, B>()}, {{64, 64}, {128, 128}, {256, 128}});
 }
 

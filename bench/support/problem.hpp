@@ -47,7 +47,8 @@ struct Problem {
   Problem(B const& backend, OrderedMesh<E> const& ordered)
       : nodes(static_cast<Index>(ordered.mesh.nodes.size())),
         elements(backend, std::get<0>(ordered.numbering.tables), 1,
-                 std::vector<Tag>(std::get<0>(ordered.numbering.tables).size(), 0), nodes),
+                 std::vector<Tag>(std::get<0>(ordered.numbering.tables).size(), 0), nodes,
+                 node_order<E>),
         rest_values(upload(backend, padded(ordered, ordered.mesh.nodes))),
         u_values(upload(backend, padded(ordered, shaken(ordered.mesh.nodes, 1)))),
         du_values(upload(backend, padded(ordered, shaken(ordered.mesh.nodes, 2)))),

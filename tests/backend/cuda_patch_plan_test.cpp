@@ -5,8 +5,10 @@
 #include "support/plan_on_host.hpp"
 
 using namespace pliant;
-using pliant::test::HostPlan;
-using pliant::test::plan_on_host;
+using pliant::test::plan_elements_on_host;
+
+template <int Nodes>
+using HostPlan = pliant::test::HostPlan<pliant::detail::PatchPlanner<Nodes>>;
 
 namespace {
 
@@ -34,20 +36,20 @@ double share(std::size_t element, std::size_t a) {
 
 /// What the kernels do: shares to slots, slots summed along diagonals, sums added to nodes.
 template <int Nodes>
-std::vector<double> accumulate_by(HostPlan<Nodes> const& plan, Index nodes) {
+std::vector<double> accumulate_by(HostPlan<Nodes> const& plan, std::size_t elements, Index nodes) {
   std::vector<double> out(static_cast<std::size_t>(nodes));
   for (std::size_t p = 0; p < static_cast<std::size_t>(plan.patches); ++p) {
     auto const size = static_cast<std::size_t>(plan.patch_size);
     std::vector<double> staging(size * Nodes);
-    for (std::size_t e = p * size; e < std::min(plan.rows.size(), (p + 1) * size); ++e)
-      for (std::size_t a = 0; a < Nodes; ++a) staging[plan.rows[e].slot[a]] = share<Nodes>(e, a);
-    auto const capacity = static_cast<std::size_t>(plan.node_capacity);
+    for (std::size_t e = p * size; e < std::min(elements, (p + 1) * size); ++e)
+      for (std::size_t a = 0; a < Nodes; ++a) staging[plan.units[e].slot[a]] = share<Nodes>(e, a);
+    auto const capacity = plan.node_capacity();
     for (std::size_t r = 0; r < capacity; ++r) {
       auto const [node, valence] = plan.nodes[p * capacity + r];
       if (node < 0) break;
       for (std::size_t d = 0; d < static_cast<std::size_t>(valence); ++d)
         out[static_cast<std::size_t>(node)] +=
-            staging[plan.diagonals[p * static_cast<std::size_t>(plan.diagonal_capacity) + d] + r];
+            staging[plan.diagonals[p * plan.diagonal_capacity() + d] + r];
     }
   }
   return out;
@@ -56,7 +58,7 @@ std::vector<double> accumulate_by(HostPlan<Nodes> const& plan, Index nodes) {
 template <int Nodes>
 void check_plan(Index elements, Index nodes, int patch_size) {
   auto const table = random_table<Nodes>(elements, nodes, 7u + static_cast<unsigned>(elements));
-  auto const plan = plan_on_host<Nodes>(table, patch_size);
+  auto const plan = plan_elements_on_host<Nodes>(table, patch_size);
 
   std::vector<double> expected(static_cast<std::size_t>(nodes));
   bool same_nodes = true, inside = true;
@@ -67,11 +69,9 @@ void check_plan(Index elements, Index nodes, int patch_size) {
     std::size_t const slots =
         std::min(table.size() - first, static_cast<std::size_t>(patch_size)) * Nodes;
     for (std::size_t a = 0; a < Nodes; ++a) {
-      auto const& row = plan.rows[e];
+      auto const& row = plan.units[e];
       expected[static_cast<std::size_t>(table[e][a])] += share<Nodes>(e, a);
-      same_nodes &=
-          plan.nodes[patch * static_cast<std::size_t>(plan.node_capacity) + row.local[a]].node ==
-          table[e][a];
+      same_nodes &= plan.nodes[patch * plan.node_capacity() + row.local[a]].node == table[e][a];
       inside &= row.slot[a] < slots;
       used.emplace(patch, row.slot[a]);
     }
@@ -79,9 +79,9 @@ void check_plan(Index elements, Index nodes, int patch_size) {
   CHECK(same_nodes);
   CHECK(inside);
   CHECK(used.size() == table.size() * Nodes);
-  CHECK(accumulate_by<Nodes>(plan, nodes) == expected);
-  CHECK(plan.node_capacity % 4 == 0);
-  CHECK(plan.diagonal_capacity % 4 == 0);
+  CHECK(accumulate_by<Nodes>(plan, table.size(), nodes) == expected);
+  CHECK(plan.capacity.nodes % 4 == 0);
+  CHECK(plan.capacity.diagonals % 4 == 0);
 }
 
 }  // namespace
@@ -98,29 +98,29 @@ TEST_CASE("slots summed along diagonals equal direct accumulation", "[cuda][patc
 TEST_CASE("a node that all elements of a patch share has one slot for each", "[cuda][patch plan]") {
   Table<3> fan;
   for (Index e = 0; e < 200; ++e) fan.push_back({0, e + 1, (e + 1) % 200 + 1});
-  auto const plan = plan_on_host<3>(fan, 256);
+  auto const plan = plan_elements_on_host<3>(fan, 256);
 
   CHECK(plan.patches == 1);
   CHECK(plan.nodes[0].node == 0);
   CHECK(plan.nodes[0].valence == 200);
-  CHECK(plan.diagonal_capacity == 200);
+  CHECK(plan.capacity.diagonals == 200);
 }
 
 TEST_CASE("no elements make no patches", "[cuda][patch plan]") {
-  CHECK(plan_on_host<4>({}, 128).patches == 0);
+  CHECK(plan_elements_on_host<4>({}, 128).patches == 0);
 }
 
 TEST_CASE("writers of a warp are spread over the banks of shared memory", "[cuda][patch plan]") {
   // Strips of elements that share an edge each: of the slots that a node has, one is of a free bank.
   Table<4> strip;
   for (Index e = 0; e < 256; ++e) strip.push_back({e, e + 1, e + 300, e + 301});
-  auto const plan = plan_on_host<4>(strip, 256);
+  auto const plan = plan_elements_on_host<4>(strip, 256);
   int worst = 0;
   for (std::size_t first = 0; first < strip.size(); first += 32)
     for (std::size_t a = 0; a < 4; ++a) {
       std::array<int, 32> writers{};
       for (std::size_t e = first; e < first + 32; ++e)
-        worst = std::max(worst, ++writers[plan.rows[e].slot[a] % 32]);
+        worst = std::max(worst, ++writers[plan.units[e].slot[a] % 32]);
     }
   CHECK(worst <= 2);
 }

@@ -472,22 +472,21 @@ TEST_CASE("a recording keeps what its verbs use when the backend is gone", "[cud
 }
 
 /// The plan of a table on the device against that of one host thread.
-template <int Nodes>
-void compare_plans(Index elements, int patch_size) {
-  std::mt19937 random(5);
-  std::vector<std::array<Index, Nodes>> table(static_cast<std::size_t>(elements));
-  for (Index e = 0; e < elements; ++e)
-    for (Index& node : table[static_cast<std::size_t>(e)])
-      node = e / 5 + static_cast<Index>(random() % 40);
-  auto const expected = test::plan_on_host<Nodes>(table, patch_size);
+template <class Planner>
+void compare_plan(std::vector<std::array<Index, Planner::nodes>> const& table, int patch_size) {
+  auto const expected = test::plan_on_host<Planner>(table, patch_size);
+  auto const count = static_cast<Index>(table.size());
   Cuda<double> const backend;
   std::vector<Index> flat;
   for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
   auto connectivity = backend.array<Index>(flat.size());
   connectivity.upload(flat);
-  auto const plan = detail::plan_patches<Nodes>(backend, connectivity, elements, Nodes, patch_size);
-  CHECK(plan.node_capacity == expected.node_capacity);
-  CHECK(plan.diagonal_capacity == expected.diagonal_capacity);
+  auto const plan = detail::plan_patches<Planner>(backend, connectivity, count, Planner::nodes,
+                                                  patch_size, [](auto const&) { return true; });
+  CHECK(plan.capacity.nodes == expected.capacity.nodes);
+  CHECK(plan.capacity.diagonals == expected.capacity.diagonals);
+  CHECK(plan.capacity.fans == expected.capacity.fans);
+  CHECK(plan.capacity.slots == expected.capacity.slots);
   auto const same = [](auto const& array, auto const& list) {
     using U = typename std::remove_cvref_t<decltype(list)>::value_type;
     std::vector<U> values(array.size());
@@ -495,9 +494,19 @@ void compare_plans(Index elements, int patch_size) {
     return values.size() == list.size() &&
            std::memcmp(values.data(), list.data(), values.size() * sizeof(U)) == 0;
   };
-  CHECK(same(plan.rows, expected.rows));
+  CHECK(same(plan.units, expected.units));
   CHECK(same(plan.nodes, expected.nodes));
   CHECK(same(plan.diagonals, expected.diagonals));
+}
+
+template <int Nodes>
+void compare_plans(Index elements, int patch_size) {
+  std::mt19937 random(5);
+  std::vector<std::array<Index, Nodes>> table(static_cast<std::size_t>(elements));
+  for (Index e = 0; e < elements; ++e)
+    for (Index& node : table[static_cast<std::size_t>(e)])
+      node = e / 5 + static_cast<Index>(random() % 40);
+  compare_plan<detail::PatchPlanner<Nodes>>(table, patch_size);
 }
 
 TEST_CASE("a GPU plans patches as one host thread does", "[cuda]") {

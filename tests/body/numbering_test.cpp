@@ -60,4 +60,18 @@ TEST_CASE("a run of elements has few nodes, whether or not cells fit the curve",
   }
 }
 
+// A GPU goes around the longest edge of a cell's tetrahedra.
+TEST_CASE("the tetrahedra of a cell lie behind each other", "[body]") {
+  auto mesh = box_of<Tet4>(7);
+  for (auto& x : mesh.nodes) x[0] += 0.02 * x[1] - 0.03 * x[2] * x[0];
+  Numbering<Tet4> const numbering(mesh);
+  auto const& order = numbering.user_element[0];
+  std::size_t whole = 0;
+  for (std::size_t e = 0; e < order.size(); e += 6)
+    whole += std::all_of(order.begin() + static_cast<std::ptrdiff_t>(e),
+                         order.begin() + static_cast<std::ptrdiff_t>(e) + 6,
+                         [&](Index user) { return user / 6 == order[e] / 6; });
+  CHECK(whole == order.size() / 6);
+}
+
 }  // namespace pliant::test::numbering_test

@@ -11,6 +11,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/kernel.hpp>
 #include <pliant/cuda/accumulate.cuh>
+#include <pliant/cuda/accumulate_fans.cuh>
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/launch.hpp>
@@ -101,20 +102,25 @@ class Cuda {
              {blocks(element_count(active), detail::PointRows<E>::elements), detail::row_threads},
              by_rows, active.elements.view({active.list, active.most}), kernel, out, fields...);
     } else if constexpr (detail::scatters<T, nodes>) {
-      void (*const scatter)(detail::ElementView<nodes>, Kernel, NodeField<T, C>, Fields...) =
-          detail::scatter_elements<Groups, nodes, T, C, Kernel, Fields...>;
-      launch("accumulate",
-             {blocks(element_count(active), detail::scatter_threads), detail::scatter_threads},
-             scatter, active.elements.view({active.list, active.most}), kernel, out, fields...);
+      accumulate_by_elements<Groups>(active, kernel, out, fields...);
     } else {
-      using Memory = detail::PatchMemory<T, nodes, C, (Fields::components + ... + 0)>;
-      void (*const by_patch)(detail::PatchView<nodes>, Kernel, NodeField<T, C>, Fields...) =
+      if constexpr (nodes == detail::FanPlanner::nodes && C == 3) {
+        if (active.elements.has_fans()) {
+          if constexpr (SymmetricKernel<Kernel>)
+            accumulate_fans<Groups>(active, kernel, out, fields...);
+          else
+            accumulate_by_elements<Groups>(active, kernel, out, fields...);
+          return;
+        }
+      }
+      using Memory = detail::PatchMemory<T, C, (Fields::components + ... + 0)>;
+      void (*const by_patch)(detail::PatchView<detail::PatchRow<nodes>>, Kernel, NodeField<T, C>,
+                             Fields...) =
           detail::accumulate_patches<Groups, nodes, T, C, Kernel, Fields...>;
       auto const patches = active.elements.patch_view({active.list, active.most});
-      int const bytes =
-          Memory::bytes(patches.diagonal_capacity, patches.node_capacity, patches.patch_size);
-      launch("accumulate", {active.most, active.elements.threads(), bytes}, by_patch, patches,
-             kernel, out, fields...);
+      launch("accumulate",
+             {active.most, active.elements.threads(), Memory::bytes(patches.capacity)}, by_patch,
+             patches, kernel, out, fields...);
     }
   }
   template <int Groups, class Table, class Kernel, class... Fields>
@@ -153,6 +159,28 @@ class Cuda {
  private:
   template <int Nodes, class Field>
   using Values = Matrix<T, Nodes, Field::components>;
+
+  template <int Groups, class Active, class Kernel, int C, class... Fields>
+  void accumulate_by_elements(Active const& active, Kernel const& kernel, NodeField<T, C> out,
+                              Fields const&... fields) const {
+    constexpr int nodes = Active::nodes;
+    void (*const scatter)(detail::ElementView<nodes>, Kernel, NodeField<T, C>, Fields...) =
+        detail::scatter_elements<Groups, nodes, T, C, Kernel, Fields...>;
+    launch("accumulate",
+           {blocks(element_count(active), detail::scatter_threads), detail::scatter_threads},
+           scatter, active.elements.view({active.list, active.most}), kernel, out, fields...);
+  }
+  template <int Groups, class Active, class Kernel, int C, class... Fields>
+  void accumulate_fans(Active const& active, Kernel const& kernel, NodeField<T, C> out,
+                       Fields const&... fields) const {
+    using Memory = detail::PatchMemory<T, C, (Fields::components + ... + 0)>;
+    void (*const by_fan)(detail::PatchView<detail::FanVisit>, Kernel, NodeField<T, C>, Fields...) =
+        detail::accumulate_fans<Groups, T, C, Kernel, Fields...>;
+    auto const fans = active.elements.fan_view({active.list, active.most});
+    int const bytes = Memory::bytes(fans.capacity) + detail::tag_bytes(fans.patch_size);
+    launch("accumulate", {active.most, active.elements.threads(), bytes}, by_fan, fans, kernel, out,
+           fields...);
+  }
 
   /// How many elements a loop looks at, at most.
   template <class Active>

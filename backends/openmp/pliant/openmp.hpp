@@ -59,7 +59,7 @@ class OpenMP {
    public:
     Elements() = default;
     Elements(OpenMP const&, std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
-             std::vector<Tag> const& tags, Index nodes)
+             std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given)
         : detail::Patches<Nodes>(connectivity, groups, tags, nodes) {}
   };
 

@@ -34,7 +34,7 @@ class Reference {
     static constexpr int nodes_per_element = Nodes;
     Elements() = default;
     Elements(Reference const&, std::vector<std::array<Index, Nodes>> connectivity, int,
-             std::vector<Tag> const& tags, Index nodes)
+             std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given)
         : connectivity_(std::move(connectivity)), tags_(tags.size()) {
       detail::check_nodes(connectivity_, nodes);
       tags_.upload(tags);

@@ -41,6 +41,7 @@ template <class Laws, Geometry How, class TheScreen>
 struct ScreenedForceKernel {
   static constexpr bool reads_elements = true;
   static constexpr bool few_operations = Laws::few_operations;
+  static constexpr bool symmetric = Laws::symmetric;
   ForceKernel<Laws, How> force;
   TheScreen screen;
 

@@ -45,8 +45,8 @@
 // in SIMD lanes, or a plain number). Elements whose tag is `no_group` are passed over. A kernel or
 // visitor with `reads_elements = true` gets one more argument before v...: own(field) gives it the
 // values of an ElementField at its element, Vector<S, Components>.
-//   Elements<Nodes>(backend, connectivity, groups, tags, nodes)
-//                              throws Error where an element has a node outside [0, nodes)
+//   Elements<Nodes>(backend, connectivity, groups, tags, nodes, order)
+//                              throws Error where an element has a node outside [0, nodes); order: see NodeOrder
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run
@@ -71,6 +71,10 @@ template <int G>
 struct GroupNumber {
   static constexpr int value = G;
 };
+
+/// Whether a SymmetricKernel may be given the nodes of an element in another order of the same orientation: those of
+/// simplices, where any permutation that is even gives one.
+enum class NodeOrder { as_given, any_even };
 
 /// The tag of an element that no group holds.
 inline constexpr Tag no_group = 255;
@@ -128,7 +132,7 @@ concept TableOf =
     std::default_initializable<E> && std::movable<E> &&
     std::constructible_from<E, B const&,
                             std::vector<std::array<Index, E::nodes_per_element>> const&, int,
-                            std::vector<Tag> const&, Index> &&
+                            std::vector<Tag> const&, Index, NodeOrder> &&
     requires(E e, E const& c) {
       { e.tags() } -> std::same_as<typename B::template Array<Tag>&>;
       { c.tags() } -> std::same_as<typename B::template Array<Tag> const&>;

@@ -67,6 +67,12 @@ concept Visitor = requires {
   { F::counters } -> std::convertible_to<int>;
 } && detail::visits_each<F, T, Own, Again, V...>(std::make_integer_sequence<int, Groups>());
 
+/// A kernel of accumulate whose shares add up to zero and depend on how far its fields differ from node to node alone,
+/// and that knows no first node: given an element's nodes in another order of the same orientation, it gives each of
+/// them what it gave it before. A backend may use all of it.
+template <class F>
+concept SymmetricKernel = requires { requires F::symmetric; };
+
 /// A visitor that tells which elements it has nothing to do with: bool selects(Index element, Tag group) const. A
 /// backend may pass those over.
 template <class F>

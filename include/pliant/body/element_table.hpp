@@ -9,6 +9,11 @@
 
 namespace pliant {
 
+/// How the nodes of elements of a type may be ordered.
+template <Element E>
+inline constexpr NodeOrder node_order =
+    LinearSimplex<E> ? NodeOrder::any_even : NodeOrder::as_given;
+
 /// The elements of one type in a layout, and the groups they may belong to.
 template <Backend B, Element E, class Formulations>
 struct ElementTable;

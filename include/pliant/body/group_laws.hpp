@@ -65,6 +65,10 @@ struct GroupLaws {
   }
   static constexpr int internal_variable_count = std::max({0, internal_variables_of<Fs>...});
   static constexpr bool reads_elements = value_count > 0 || internal_variable_count > 0;
+  /// Whether forces are those of a SymmetricKernel: what points keep is theirs, wherever they lie.
+  static constexpr bool symmetric = ((LinearSimplex<typename Fs::element> &&
+                                      (internal_variables_of<Fs> == 0 || Fs::points == 1)) &&
+                                     ...);
   /// Whether forces take few operations per element.
   static constexpr bool few_operations = (has_two_invariants<typename Fs::template law<T>> && ...);
 

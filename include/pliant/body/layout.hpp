@@ -130,8 +130,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
     table.user_element = std::move(numbering.user_element[I]);
-    table.elements = {backend, std::move(std::get<I>(numbering.tables)), TableType::groups,
-                      std::vector<Tag>(table.user_element.size(), 0), nodes};
+    table.elements = {backend,
+                      std::move(std::get<I>(numbering.tables)),
+                      TableType::groups,
+                      std::vector<Tag>(table.user_element.size(), 0),
+                      nodes,
+                      node_order<typename TableType::element>};
     scratch = std::max(scratch, table.elements.scratch_nodes());
     table.straight = is_straight<typename TableType::element>(topology.mesh);
     table.values = upload(backend, table.in_internal_order(topology.element_values[I]));

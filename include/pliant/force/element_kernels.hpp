@@ -29,6 +29,7 @@ template <class Laws, Geometry How = Geometry::isoparametric>
 struct ForceKernel {
   static constexpr bool reads_elements = Laws::reads_elements;
   static constexpr bool few_operations = Laws::few_operations;
+  static constexpr bool symmetric = Laws::symmetric;
   Laws groups;
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
@@ -54,6 +55,7 @@ struct ForceKernel {
 template <class T, class Laws, Geometry How = Geometry::isoparametric>
 struct TangentKernel {
   static constexpr bool reads_elements = Laws::reads_elements;
+  static constexpr bool symmetric = Laws::symmetric;
   Laws groups;
   T factor;
   template <int G, class... V>

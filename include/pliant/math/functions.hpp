@@ -98,8 +98,8 @@ template <class T>
 PLIANT_HOST_DEVICE T minimum(T const& a, T const& b) {
   return select(b == b, min(a, b), b);
 }
-/// 1 / x. Single precision on a GPU: to the last bit or its neighbour, without the branch that an
-/// exact division takes for the sake of numbers below 1e-38.
+/// 1 / x. On a GPU to the last bit or its neighbour, without the branch that an exact division takes for the sake of
+/// numbers below 1e-38, or 1e-308 in double precision, where zero and infinity give NaN.
 template <class T>
 PLIANT_HOST_DEVICE T reciprocal(T const& x) {
 #if defined(__CUDA_ARCH__)
@@ -107,6 +107,11 @@ PLIANT_HOST_DEVICE T reciprocal(T const& x) {
     float y;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
     return y;
+  } else if constexpr (std::same_as<T, double>) {
+    double y;  // to 20 bits, then doubled twice by Newton's iteration
+    asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+    y = fma(y, fma(-x, y, 1.0), y);
+    return fma(y, fma(-x, y, 1.0), y);
   }
 #endif
   return T(1) / x;

@@ -12,6 +12,7 @@ template <class T, class Laws, Geometry How>
 struct ImpulseKernel {
   static constexpr bool reads_elements = Laws::reads_elements;
   static constexpr bool few_operations = Laws::few_operations;
+  static constexpr bool symmetric = Laws::symmetric;
   Laws groups;
   T weight;
   template <int G, class... V>

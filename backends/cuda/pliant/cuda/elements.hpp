@@ -7,7 +7,7 @@
 #include <pliant/backend/check_nodes.hpp>
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/launch.hpp>
-#include <pliant/cuda/patch_memory.cuh>
+#include <pliant/cuda/patch_nodes.cuh>
 #include <pliant/cuda/plan_patches.cuh>
 #include <pliant/cuda/tuning.hpp>
 
@@ -51,15 +51,26 @@ struct ElementView {
 };
 
 /// The patches of an element table as kernels see them.
-template <int Nodes>
+template <class Unit>
 struct PatchView {
-  Index count;                                               // elements
-  int patch_size, rounds, node_capacity, diagonal_capacity;  // rounds of the block's threads
+  Index count;             // elements
+  int patch_size, rounds;  // of the block's threads
+  PatchCounts capacity;
   Tag const* tags;
-  PatchRow<Nodes> const* rows;     // (elements)
-  PatchNode const* nodes;          // (patches, node_capacity)
-  std::uint16_t const* diagonals;  // (patches, diagonal_capacity)
+  Unit const* units;               // PatchRow (elements), or FanVisit (patches, visits, fans)
+  PatchNode const* nodes;          // (patches, node capacity)
+  std::uint16_t const* diagonals;  // (patches, diagonal capacity)
   ActiveList active;
+
+  __device__ __forceinline__ PatchNodes nodes_of(Index patch) const {
+    return {nodes + static_cast<std::ptrdiff_t>(patch) * capacity.nodes, capacity.nodes};
+  }
+  __device__ __forceinline__ void load_diagonals(Index patch, std::uint16_t* to) const {
+#pragma unroll 1
+    for (int d = static_cast<int>(threadIdx.x); d < capacity.diagonals;
+         d += static_cast<int>(blockDim.x))
+      to[d] = diagonals[static_cast<std::ptrdiff_t>(patch) * capacity.diagonals + d];
+  }
 };
 
 }  // namespace detail
@@ -72,24 +83,29 @@ class CudaElements {
  public:
   static constexpr int nodes_per_element = Nodes;
   CudaElements() = default;
+  /// Simplices of four nodes are loaded in fans where they are many, if kernels may be given their nodes in any even
+  /// order.
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
-               int /* groups */, std::vector<Tag> const& tags, Index nodes)
-      : CudaElements(backend, connectivity, tags, nodes, tuned(connectivity.size())) {}
+               int /* groups */, std::vector<Tag> const& tags, Index nodes,
+               NodeOrder order = NodeOrder::as_given)
+      : CudaElements(backend, connectivity, tags, nodes) {
+    constexpr auto t = detail::fan_tuning<T>();
+    bool const in_fans = order == NodeOrder::any_even && count_ >= t.least_elements;
+    if (in_fans && plan_fans(backend, {t.patch_size, t.threads})) return;
+    plan(backend, tuned(count_));
+  }
   /// With patches of a given size and threads per block, for tuning; small ones where the GPU has no room in
   /// shared memory for those. Throws Error when the size is no multiple of the threads.
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
-               std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads)
-      : count_(static_cast<Index>(connectivity.size())),
-        patch_size_(size_and_threads[0]),
-        threads_(size_and_threads[1]) {
-    if (threads_ < 1 || patch_size_ < threads_ || patch_size_ % threads_ != 0)
-      throw Error("patches of ", patch_size_, " elements for ", threads_,
+               std::vector<Tag> const& tags, Index nodes, std::array<int, 2> size_and_threads,
+               NodeOrder order = NodeOrder::as_given)
+      : CudaElements(backend, connectivity, tags, nodes) {
+    auto const [size, threads] = size_and_threads;
+    if (threads < 1 || size < threads || size % threads != 0)
+      throw Error("patches of ", size, " elements for ", threads,
                   " threads; give a multiple of the threads");
-    detail::check_nodes(connectivity, nodes);
-    tags_ = uploaded(backend, tags);
-    tag_data_ = tags_.data();
-    connectivity_ = padded(backend, connectivity);
-    if constexpr (!detail::scatters<T, Nodes>) plan(backend);
+    if (order == NodeOrder::any_even && plan_fans(backend, size_and_threads)) return;
+    plan(backend, size_and_threads);
   }
 
   Index count() const { return count_; }
@@ -103,43 +119,82 @@ class CudaElements {
   Index patch_size() const { return patch_size_; }
   Index patch_count() const { return count_ / patch_size_ + (count_ % patch_size_ != 0); }
   int threads() const { return threads_; }
+  /// Whether accumulation takes fans of elements, where the kernel allows it.
+  bool has_fans() const { return fans_.units.size() > 0; }
   View view(detail::ActiveList const& active) const {
     return {count_, connectivity_.data(), tag_data_, patch_size_, active};
   }
-  detail::PatchView<Nodes> patch_view(detail::ActiveList const& active) const {
-    return {count_,    patch_size_,  patch_size_ / threads_, node_capacity_,    diagonal_capacity_,
-            tag_data_, rows_.data(), nodes_.data(),          diagonals_.data(), active};
+  detail::PatchView<detail::PatchRow<Nodes>> patch_view(detail::ActiveList const& active) const {
+    return view_of(patches_, active);
+  }
+  detail::PatchView<detail::FanVisit> fan_view(detail::ActiveList const& active) const {
+    return view_of(fans_, active);
   }
 
  private:
-  void plan(Cuda<T> const& backend) {
-    constexpr int small = detail::patch_tuning<T, Nodes>().small_size;
+  using Planner = detail::PatchPlanner<Nodes>;
+
+  CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
+               std::vector<Tag> const& tags, Index nodes)
+      : count_(static_cast<Index>(connectivity.size())) {
+    detail::check_nodes(connectivity, nodes);
+    tags_ = uploaded(backend, tags);
+    tag_data_ = tags_.data();
+    connectivity_ = padded(backend, connectivity);
+  }
+
+  template <class P>
+  detail::PatchView<typename P::Unit> view_of(detail::PatchPlan<P> const& plan,
+                                              detail::ActiveList const& active) const {
+    return {count_,    patch_size_,       patch_size_ / threads_, plan.capacity,
+            tag_data_, plan.units.data(), plan.nodes.data(),      plan.diagonals.data(),
+            active};
+  }
+
+  /// Of patches of a size, where they fit the GPU's shared memory and `is_fit` holds.
+  template <class P, class IsFit>
+  bool make(detail::PatchPlan<P>& plan, Cuda<T> const& backend, int size, IsFit const& is_fit) {
     int const most = detail::most_shared_bytes(backend.device());
-    auto const make = [&] {
-      return detail::plan_patches<Nodes>(backend, connectivity_, count_, View::width, patch_size_);
-    };
-    bool const can_be_planned =
-        patch_size_ <= most && detail::plan_bytes<Nodes>(patch_size_) <= most;
-    detail::PatchPlan<Nodes> plan;
-    if (can_be_planned) plan = make();
-    if (patch_size_ > small && (!can_be_planned || shared_bytes(plan) > most)) {
+    if (size > most || detail::plan_bytes<P>(size) > most) return false;
+    bool fits = true;
+    plan = detail::plan_patches<P>(
+        backend, connectivity_, count_, View::width, size,
+        [&](detail::PatchCounts const& capacity) {
+          // With three fields of three components, and tags.
+          fits = is_fit(capacity) && detail::PatchMemory<T, 3, 9>::bytes(capacity) + size <= most;
+          return fits;
+        });
+    return fits;
+  }
+  void plan(Cuda<T> const& backend, std::array<int, 2> size_and_threads) {
+    patch_size_ = size_and_threads[0];
+    threads_ = size_and_threads[1];
+    if constexpr (!detail::scatters<T, Nodes>) {
+      constexpr int small = detail::patch_tuning<T, Nodes>().small_size;
+      auto const anything = [](auto const&) { return true; };
+      if (make(patches_, backend, patch_size_, anything) || patch_size_ <= small) return;
       patch_size_ = threads_ = small;
-      plan = make();
+      (void)make(patches_, backend, small, anything);
     }
-    node_capacity_ = plan.node_capacity;
-    diagonal_capacity_ = plan.diagonal_capacity;
-    rows_ = std::move(plan.rows);
-    nodes_ = std::move(plan.nodes);
-    diagonals_ = std::move(plan.diagonals);
   }
-  /// What accumulation takes of a block's shared memory with three fields of three components.
-  static int shared_bytes(detail::PatchPlan<Nodes> const& plan) {
-    using Memory = detail::PatchMemory<T, Nodes, 3, 9>;
-    return Memory::bytes(plan.diagonal_capacity, plan.node_capacity, plan.patch_size);
+  bool plan_fans(Cuda<T> const& backend, std::array<int, 2> size_and_threads) {
+    if constexpr (Nodes == detail::FanPlanner::nodes) {
+      using detail::FanSplitter;
+      auto const few_nodes = [](detail::PatchCounts const& capacity) {
+        return capacity.nodes <= FanSplitter::most_nodes;
+      };
+      auto const [size, threads] = size_and_threads;
+      if (size > FanSplitter::most_elements || !make(fans_, backend, size, few_nodes)) return false;
+      patch_size_ = size;
+      threads_ = threads;
+      return has_fans();
+    } else {
+      return false;
+    }
   }
-  static std::array<int, 2> tuned(std::size_t count) {
+  static std::array<int, 2> tuned(Index count) {
     constexpr auto t = detail::patch_tuning<T, Nodes>();
-    if (static_cast<Index>(count) < t.large_from) return {t.small_size, t.small_size};
+    if (count < t.large_from) return {t.small_size, t.small_size};
     return {t.patch_size, t.threads};
   }
   template <class U>
@@ -157,13 +212,12 @@ class CudaElements {
   }
 
   Index count_ = 0;
-  int patch_size_ = 1, threads_ = 1, node_capacity_ = 0, diagonal_capacity_ = 0;
+  int patch_size_ = 1, threads_ = 1;
   DeviceArray<Tag> tags_;
   Tag const* tag_data_ = nullptr;  // whoever owns them
   DeviceArray<Index> connectivity_;
-  DeviceArray<detail::PatchNode> nodes_;
-  DeviceArray<detail::PatchRow<Nodes>> rows_;
-  DeviceArray<std::uint16_t> diagonals_;
+  detail::PatchPlan<Planner> patches_;
+  detail::PatchPlan<detail::FanPlanner> fans_;  // in place of the others
 };
 
 }  // namespace pliant

@@ -48,6 +48,20 @@ constexpr PatchTuning patch_tuning() {
   return {64, 4, false, 64, 64, 64, 0};
 }
 
+/// How patches of tetrahedra accumulate in fans (accumulate_fans.cuh).
+struct FanTuning {
+  int max_threads;       // per block; `threads` may not exceed it
+  int min_blocks;        // that fit a multiprocessor
+  int patch_size;        // elements, 1024 at most
+  int threads;           // per block: a fan each
+  Index least_elements;  // of a table in fans
+};
+
+template <class T>
+constexpr FanTuning fan_tuning() {
+  return sizeof(T) == 4 ? FanTuning{128, 7, 768, 128, 600000} : FanTuning{128, 4, 768, 128, 300000};
+}
+
 /// Kernels of few operations need few registers.
 template <class Kernel>
 concept LightKernel = requires { requires Kernel::few_operations; };
@@ -59,5 +73,10 @@ template <class T, int Nodes, class Kernel>
 inline constexpr int resident_blocks =
     LightKernel<Kernel> ? patch_tuning<T, Nodes>().min_blocks
                         : patch_tuning<T, Nodes>().min_blocks * 4 / 5;
+
+/// The same where fans accumulate: what a thread keeps from element to element takes registers.
+template <class T, class Kernel>
+inline constexpr int fan_blocks =
+    LightKernel<Kernel> ? fan_tuning<T>().min_blocks : fan_tuning<T>().min_blocks * 4 / 5;
 
 }  // namespace pliant::detail

@@ -1,0 +1,240 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include <pliant/cuda/fan_member.hpp>
+#include <pliant/cuda/plan_threads.hpp>
+
+namespace pliant::detail {
+
+/// Splits the tetrahedra of a patch into fans. In rounds: each tetrahedron that is in none votes for the best of its
+/// edges, and where all around an edge do, they become a fan, or several. Best is the edge whose fan visits fewest
+/// nodes for an element; of these, the one whose tetrahedra lie closest together in the patch, so that cells which a
+/// mesh generator has cut into tetrahedra are put together again.
+class FanSplitter {
+ public:
+  static constexpr int most_nodes = 1024, most_elements = 1024;  // of a patch
+
+  PLIANT_HOST_DEVICE FanSplitter(PlanMemory& memory, int patch_size)
+      : members_(memory.take<FanMember>(most_fan_elements * patch_size)),
+        home_(memory.take<std::uint16_t>(patch_size)),
+        size_(memory.take<std::uint8_t>(patch_size)),
+        end_(memory.used()),
+        mask_(2 * static_cast<int>(std::bit_ceil(static_cast<unsigned>(patch_size))) - 1),
+        key_(memory.take<int>(mask_ + 1)),
+        around_(memory.take<int>(mask_ + 1)),
+        votes_(memory.take<int>(mask_ + 1)),
+        first_(memory.take<int>(mask_ + 1)),
+        totals_(memory.take<int>(3)),
+        edge_(memory.take<std::uint16_t>(6 * patch_size)),
+        next_(memory.take<std::uint16_t>(6 * patch_size)),
+        choice_(memory.take<std::uint8_t>(patch_size)),
+        taken_(memory.take<std::uint8_t>(patch_size)),
+        claimed_(memory.take<std::uint8_t>(patch_size)) {}
+
+  /// Behind this, memory is free when the fans are known.
+  PLIANT_HOST_DEVICE int end() const { return end_; }
+
+  /// Of `size` elements whose corners' numbers in the patch, below most_nodes, are local[4 · size]. How many fans there
+  /// are; those of most elements come first.
+  template <class Threads>
+  PLIANT_HOST_DEVICE int split(Threads const& threads, std::uint16_t const* local, int size) {
+    local_ = local;
+    find_edges(threads, size);
+    for (int before = *left(); before > 0;) {
+      share_out(threads, mask_ + 1, [&](int e) { around_[e] = votes_[e] = 0; });
+      threads.meet();
+      for_each_left(threads, size, [&](int t) {
+        for (int q = 0; q < 6; ++q)
+          add_shared(around_[edge_[6 * t + q]], summand(FanMember::of(t, q)));
+      });
+      threads.meet();
+      for_each_left(threads, size, [&](int t) {
+        int const q = best_edge(t);
+        choice_[t] = static_cast<std::uint8_t>(q);
+        add_shared(votes_[edge_[6 * t + q]], 1);
+      });
+      threads.meet();
+      for_each_left(threads, size, [&](int t) { make_fans(FanMember::of(t, choice_[t])); });
+      threads.meet();
+      for_each_left(threads, size, [&](int t) {
+        if (claimed_[t] == 0) return;
+        taken_[t] = 1;
+        add_shared(*left(), -1);
+      });
+      threads.meet();
+      int const now = *left();
+      if (now == before) {  // an element has a node twice
+        leave_alone(threads, size);
+        break;
+      }
+      before = now;
+    }
+    threads.meet();
+    if (threads.first() == 0) *count() = sort(size);
+    threads.meet();
+    return *count();
+  }
+
+  PLIANT_HOST_DEVICE int size(int fan) const { return size_[home_[fan]]; }
+  PLIANT_HOST_DEVICE FanMember member(int fan, int k) const {
+    return members_[most_fan_elements * home_[fan] + k];
+  }
+  /// Of a member's corners, as the patch numbers them: both ends of the edge, then the corners where it follows the
+  /// member before and precedes the next one; an even permutation of the element's own order.
+  PLIANT_HOST_DEVICE int corner(FanMember member, int k) const { return member.corner(local_, k); }
+
+ private:
+  static constexpr int none = 0xffff;
+
+  PLIANT_HOST_DEVICE int* left() const { return totals_; }       // elements in no fan
+  PLIANT_HOST_DEVICE int* count() const { return totals_ + 1; }  // fans
+  PLIANT_HOST_DEVICE int* full() const { return totals_ + 2; }   // whether there are too many edges
+
+  template <class Threads, class F>
+  PLIANT_HOST_DEVICE void for_each_left(Threads const& threads, int size, F const& f) const {
+    share_out(threads, size, [&](int t) {
+      if (taken_[t] == 0) f(t);
+    });
+  }
+
+  /// Each that no fan has becomes one.
+  template <class Threads>
+  PLIANT_HOST_DEVICE void leave_alone(Threads const& threads, int size) const {
+    for_each_left(threads, size, [&](int t) { keep(FanMember::of(t, 0), t, 0, 1); });
+  }
+
+  /// Of what `around_` sums up: how many there are, and whether each one's end is another one's begin.
+  static constexpr int counted = 1 << 21, balance = 1024;
+  PLIANT_HOST_DEVICE int summand(FanMember m) const {
+    return counted + balance + corner(m, 2) - corner(m, 3);
+  }
+  PLIANT_HOST_DEVICE int members_left(int edge) const { return around_[edge] / counted; }
+
+  /// Of an edge: the fewer nodes a fan there visits for an element, the better.
+  PLIANT_HOST_DEVICE std::int64_t rating(int edge) const {
+    int const n = members_left(edge), most = most_fan_elements;
+    bool const closed = n > 2 && n <= most && around_[edge] % counted == balance * n;
+    int const size = n < most ? n : most;
+    int const visits_per_60 = (closed ? size + 2 : size + 3) * 60 / size;
+    return std::int64_t{256 - visits_per_60} << 32 | key_[edge];
+  }
+  PLIANT_HOST_DEVICE int best_edge(int t) const {
+    int best = 0;
+    std::int64_t most = 0;
+    for (int q = 0; q < 6; ++q)
+      if (auto const r = rating(edge_[6 * t + q]); r > most) most = r, best = q;
+    return best;
+  }
+
+  template <class Threads>
+  PLIANT_HOST_DEVICE void find_edges(Threads const& threads, int size) {
+    share_out(threads, mask_ + 1, [&](int e) {
+      key_[e] = first_[e] = -1;
+      around_[e] = size;
+      votes_[e] = 0;
+    });
+    share_out(threads, size, [&](int t) { size_[t] = taken_[t] = claimed_[t] = 0; });
+    if (threads.first() == 0) *left() = size, *full() = 0;
+    threads.meet();
+    share_out(threads, 6 * size, [&](int i) {
+      auto const m = FanMember::of(i / 6, i % 6);
+      int const e = find_or_insert(key_, mask_, corner(m, 0) << 10 | corner(m, 1));
+      edge_[i] = static_cast<std::uint16_t>(e);
+      if (e < 0) {
+        raise_shared(*full(), 1);
+        return;
+      }
+      lower_shared(around_[e], m.element());
+      raise_shared(votes_[e], m.element());
+      int const after = exchange_shared(first_[e], m.bits);
+      next_[i] = static_cast<std::uint16_t>(after);
+    });
+    threads.meet();
+    if (*full() != 0)  // so many edges are of elements that are not neighbours
+      leave_alone(threads, size);
+    // The key becomes the nearness of the edge's elements, and below that its number, shuffled.
+    share_out(threads, mask_ + 1, [&](int e) {
+      if (key_[e] < 0) return;
+      int const apart = votes_[e] - around_[e];
+      unsigned const shuffled = static_cast<unsigned>(key_[e]) * 0x9E37Bu & 0xfffffu;
+      key_[e] = (most_elements - 1 - apart) << 20 | static_cast<int>(shuffled);
+    });
+    threads.meet();
+    if (*full() != 0 && threads.first() == 0) *left() = 0;
+    threads.meet();
+  }
+
+  /// Where all around the edge have voted for it, and this is the first of them. Of more than a fan takes, one fan is
+  /// made, and the others are left.
+  PLIANT_HOST_DEVICE void make_fans(FanMember own) const {
+    int const edge = edge_[6 * own.element() + own.edge()], all = members_left(edge);
+    if (votes_[edge] != all) return;
+    constexpr int most = 16;
+    FanMember around[most];  // by their elements
+    int count = 0;
+    for (int bits = first_[edge]; bits != none;) {
+      FanMember const m{static_cast<std::uint16_t>(bits)};
+      bits = next_[6 * m.element() + m.edge()];
+      if (taken_[m.element()] != 0) continue;
+      if (m.element() < own.element()) return;
+      int at = count < most ? count++ : most;
+      for (; at > 0 && around[at - 1].bits > m.bits; --at)
+        if (at < most) around[at] = around[at - 1];
+      if (at < most) around[at] = m;
+    }
+    unsigned left = (1u << count) - 1;
+    auto const find = [&](int which, int node) {
+      int j = 0;
+      while (j < count && !(left >> j & 1 && corner(around[j], which) == node)) ++j;
+      return j;
+    };
+    while (left != 0) {
+      int begin = count;  // the first that follows no other, or else the first
+      for (int j = count - 1; j >= 0; --j)
+        if (left >> j & 1 && find(3, corner(around[j], 2)) == count) begin = j;
+      for (int j = 0; begin == count; ++j)
+        if (left >> j & 1) begin = j;
+      FanMember fan[most_fan_elements];
+      int size = 0, home = most_elements;
+      for (int j = begin; j < count && size < most_fan_elements;
+           j = find(2, corner(around[j], 3))) {
+        fan[size++] = around[j];
+        left &= ~(1u << j);
+        if (around[j].element() < home) home = around[j].element();
+      }
+      for (int k = 0; k < size; ++k) keep(fan[k], home, k, size);
+      if (all > most_fan_elements) break;
+    }
+  }
+
+  PLIANT_HOST_DEVICE void keep(FanMember m, int home, int k, int size) const {
+    members_[most_fan_elements * home + k] = m;
+    size_[home] = static_cast<std::uint8_t>(size);
+    claimed_[m.element()] = 1;
+  }
+
+  /// Homes by the sizes of their fans, then in their order.
+  PLIANT_HOST_DEVICE int sort(int size) const {
+    int fans = 0;
+    for (int k = most_fan_elements; k > 0; --k)
+      for (int t = 0; t < size; ++t)
+        if (size_[t] == k) home_[fans++] = static_cast<std::uint16_t>(t);
+    return fans;
+  }
+
+  std::uint16_t const* local_ = nullptr;  // (elements, 4)
+  FanMember* members_;                    // (elements, most_fan_elements): of the fan at home there
+  std::uint16_t* home_;                   // (fans): the first of its elements
+  std::uint8_t* size_;                    // (elements): of the fan at home there; 0: none
+  int end_;
+  int mask_;
+  int *key_, *around_, *votes_, *first_;  // (table), of edges; the first of a list of members
+  int* totals_;
+  std::uint16_t *edge_, *next_;  // (elements, 6): where in the table; the next in the edge's list
+  std::uint8_t *choice_, *taken_,
+      *claimed_;  // (elements): a fan has it since an earlier round, or this one
+};
+
+}  // namespace pliant::detail
