@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/formulation/point_stiffness.hpp>
 #include <pliant/formulation/points.hpp>
 
 namespace pliant {
@@ -64,13 +65,7 @@ struct Pointwise {
     for (int q = 0; q < F::points; ++q) {
       auto const map = RestMap<E, S, G>::at(x, table, q);
       auto const h = map.gradient(v, table, q);
-      Matrix<S, dim, nodes> gradient;  // det J ∂N_b/∂X_l
-      for (int l = 0; l < dim; ++l)
-        for (int b = 0; b < nodes; ++b) {
-          gradient(l, b) = map.cofactors(l, 0) * T(table.gradient[q][b][0]);
-          for (int m = 1; m < dim; ++m)
-            gradient(l, b) = gradient(l, b) + map.cofactors(l, m) * T(table.gradient[q][b][m]);
-        }
+      auto const gradient = detail::rest_gradients<E>(map, table, q);
       S const weight = map.inverse_volume * T(table.weight[q]);
       for (int direction = 0; direction < dim; ++direction) {
         Tensor<S, dim> tangent[dim];  // ∂P/∂H_(direction)l
