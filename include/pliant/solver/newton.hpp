@@ -6,6 +6,7 @@
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
 #include <pliant/solver/load_steps.hpp>
+#include <pliant/solver/refine_in_double.hpp>
 #include <pliant/solver/static_matrix_free.hpp>
 #include <pliant/solver/static_problem.hpp>
 
@@ -228,7 +229,9 @@ NewtonReport solve_static_matrix_free(TheBody& body, NewtonOptions const& option
                                                            std::numeric_limits<double>::infinity());
   MatrixFreeStatics<typename TheBody::parts_type> statics(parts, options,
                                                           place_before_drives(parts));
-  auto const report = statics.solve();
+  auto report = statics.solve();
+  if constexpr (sizeof(typename TheBody::scalar) < sizeof(double))
+    refine_in_double(body, options, statics, report);
   change_by_hand(parts, [&] {
     copy_values(parts.backend, statics.displacements().data(), parts.state.u.data(),
                 parts.state.u.size());

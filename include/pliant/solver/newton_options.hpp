@@ -22,7 +22,8 @@ struct NewtonOptions {
   /// gravity of explicit dynamics, whose rest it finds.
   MassMatrix gravity = MassMatrix::consistent;
   /// For the linear systems: automatic takes a matrix, or none on a GPU in double precision where there are many
-  /// unknowns and all forces have a potential. Without one all goes on in the body's precision.
+  /// unknowns and all forces have a potential. Without one iterations go on in the body's precision;
+  /// where that is single, its answer is refined by residuals in double.
   LinearMethod linear = LinearMethod::automatic;
   int max_linear_iterations = 10000;              // without a matrix, per iteration
   KrylovMethod krylov = KrylovMethod::automatic;  // without a matrix
@@ -36,12 +37,13 @@ struct NewtonOptions {
 /// What solve_static found, and at what cost.
 struct NewtonReport {
   Index unknowns = 0;
-  int load_steps = 0;             // that were taken
-  int iterations = 0;             // in all, those of halved load steps included
-  int factorisations = 0;         // of the stiffness
-  LinearReport linear;            // what the linear systems took
-  int assemblies = 0;             // of the stiffness
-  double residual = 0;            // N, the last
+  int load_steps = 0;      // that were taken
+  int iterations = 0;      // in all, those of halved load steps included
+  int factorisations = 0;  // of the stiffness
+  LinearReport linear;     // what the linear systems took
+  int assemblies = 0;      // of the stiffness
+  /// N, the last. Of displacements in double precision, which a body in single precision then keeps rounded.
+  double residual = 0;
   std::vector<double> residuals;  // N: where each iteration of the last load step began
   double energy = 0;              // strain energy, J
   MassMatrix gravity = MassMatrix::consistent;  // on which masses it acted

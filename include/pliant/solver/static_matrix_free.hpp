@@ -76,7 +76,24 @@ class MatrixFreeStatics {
   }
   Array const& displacements() const { return u_; }
 
+  /// Node by node, in the user's order.
+  using Points = std::vector<Point<dim>>;
+  Points points() const { return parts_.layout.in_user_order(u_); }
+  void set(Points const& u) { u_.upload(parts_.layout.padded(u)); }
+  /// What a residual asks of the displacements that were found.
+  Points correction(Points const& residual, double tolerance) {
+    auto& own = balance_.arrays();
+    own.residual.upload(parts_.layout.padded(residual));
+    keep_unknowns(parts_, field(own.residual));
+    solve_matrix_free(parts_, own, tangent(), tolerance, options_.max_linear_iterations,
+                      preconditioning_, options_.krylov);
+    return parts_.layout.in_user_order(own.solution);
+  }
+
  private:
+  ShiftedTangent<Parts> tangent() const {
+    return {0, MassMatrix::lumped, 1, {u_.data()}, 0, {u_.data()}};
+  }
   Array array() const { return zeros<T>(parts_.backend, parts_.layout.rest.size()); }
   Field field(Array const& array) const { return {const_cast<T*>(array.data())}; }
   template <class... Terms>
@@ -140,7 +157,7 @@ class MatrixFreeStatics {
       if (!finite && iteration == 0) throw Error(folded_start());
       if (iteration == options_.max_iterations || !finite)
         throw LoadStepFailed(no_convergence(step, iteration, report_.residual));
-      ShiftedTangent<Parts> const a{0, MassMatrix::lumped, 1, {u_.data()}, 0, {u_.data()}};
+      auto const a = tangent();
       if (driving) {
         a.apply(parts_, increment, field(own.image));
         set(field(own.residual), balance_.scaled(1, field(own.residual)),
