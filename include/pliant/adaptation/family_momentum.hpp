@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <pliant/body/touched_elements.hpp>
 #include <pliant/constraint/condition.hpp>
 #include <pliant/formulation/affine.hpp>
 #include <pliant/topology/plan.hpp>
@@ -97,33 +98,21 @@ void add_family_impulse(TopologyPlan<M> const& plan,
 /// What each node must be given where an element stays, but one of its nodes begins or ceases to hang: the difference in the
 /// velocity at which its mass moves.
 template <Element E, class M>
-void add_impulse_of_slaves(TopologyPlan<M> const& plan, std::size_t type, double density,
+void add_impulse_of_slaves(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
+                           std::size_t type, double density,
                            std::vector<Point<M::dim>> const& v_before,
                            std::vector<Point<M::dim>> const& v,
                            std::vector<Point<M::dim>>& impulse) {
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
-  std::vector<char> hangs(now.nodes.size(), 0), hung(old.nodes.size(), 0);
-  for (Slave const& slave : plan.after->interpolation.slaves())
-    hangs[static_cast<std::size_t>(slave.node)] = 1;
-  for (Slave const& slave : plan.before->interpolation.slaves())
-    hung[static_cast<std::size_t>(slave.node)] = 1;
-  auto const& origins = plan.transfer.origins(type);
-  for (std::size_t e = 0; e < origins.size(); ++e) {
-    if (origins[e].child != Transfer<M::dim>::Origin::same) continue;
-    auto const& from = old.template elements<E>()[static_cast<std::size_t>(origins[e].element)];
-    auto const& to = now.template elements<E>()[e];
-    auto const changes = [&](std::size_t a) {
-      return hung[static_cast<std::size_t>(from[a])] || hangs[static_cast<std::size_t>(to[a])];
-    };
-    char any = 0;  // of all nodes, without a branch for each
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      any |= static_cast<char>(hung[static_cast<std::size_t>(from[a])] |
-                               hangs[static_cast<std::size_t>(to[a])]);
-    if (!any) continue;
+  for (auto const& element : touched.of_type(type).staying) {
+    auto const& from = old.template elements<E>()[static_cast<std::size_t>(element.before)];
+    auto const& to = now.template elements<E>()[static_cast<std::size_t>(element.after)];
+    auto const changes = [&](Index node) { return touched.hangs_otherwise(node); };
+    if (std::ranges::none_of(to, changes)) continue;
     auto const volumes = host_nodal_volumes<E>(nodal(now, to));
     for (std::size_t a = 0; a < E::nodes; ++a)
-      if (changes(a))
+      if (changes(to[a]))
         for (std::size_t k = 0; k < M::dim; ++k)
           impulse[static_cast<std::size_t>(to[a])][k] +=
               density * volumes[static_cast<int>(a)] *
@@ -136,7 +125,8 @@ void add_impulse_of_slaves(TopologyPlan<M> const& plan, std::size_t type, double
 /// nodes took of it, N s. Slaves move with their masters, and hand their impulse to them as their mass. `held`:
 /// directions, by node.
 template <class Layout, class M>
-Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, double density, Layout const& layout,
+Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
+                                 double density, Layout const& layout,
                                  std::vector<DirectionMask> const& held,
                                  std::vector<Point<M::dim>> v_before,
                                  std::vector<Point<M::dim>>& v) {
@@ -153,7 +143,7 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, double density, La
   for (auto const& family : plan.transfer.families())
     add_family_impulse(plan, family, density, v_before, moving, impulse);
   for_each_type_of(plan.after->mesh, [&]<Element E>(E, std::size_t type) {
-    add_impulse_of_slaves<E>(plan, type, density, v_before, moving, impulse);
+    add_impulse_of_slaves<E>(plan, touched, type, density, v_before, moving, impulse);
   });
   plan.after->interpolation.hand_masses(components(impulse), M::dim);
   Point<dim> taken{};

@@ -117,22 +117,32 @@ template <class Parts>
 void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   constexpr int dim = Parts::dim;
   wake_all(parts);
-  auto const energy_now = [](Parts& p) {
-    return p.watched_energy ? p.watched_energy(p) : WatchedEnergy{energies_of(p), 0};
+  auto const energies_but_strain = [](Parts& p) {
+    return Energies{0, kinetic_energy_of(p), p.watched_energy ? potential_energy_of(p) : 0};
   };
-  auto const before = energy_now(parts);
-  auto const give_back = [&](auto const& layout, auto const& held, auto const& v_before, auto& v) {
-    return detail::give_momentum_back(plan, parts.material.density, layout, held, v_before, v);
+  auto const energy_now = [](Parts& p, Energies const& energies) {
+    return p.watched_energy ? p.watched_energy(p, energies) : WatchedEnergy{energies, 0};
   };
-  auto [next, taken] = change_topology(parts, plan.after, plan.transfer, give_back);
-  auto const after = energy_now(next);
+  auto energies = energies_but_strain(parts);
+  auto const give_back = [&](auto const& touched, auto const& layout, auto const& held,
+                             auto const& v_before, auto& v) {
+    return detail::give_momentum_back(plan, touched, parts.material.density, layout, held, v_before,
+                                      v);
+  };
+  auto changed = change_topology(parts, plan.after, plan.transfer, give_back);
+  auto& next = changed.parts;
+  energies.strain = changed.strain_energy_before;
+  auto const before = energy_now(parts, energies);
+  energies = energies_but_strain(next);
+  energies.strain = changed.strain_energy;
+  auto const after = energy_now(next, energies);
   auto const change = [](double from, double to) { return detail::zero_if_not_finite(to - from); };
   LedgerEntry<dim> const entry{next.state.time,
                                detail::actions_of(plan),
                                static_cast<double>(detail::count_actions(plan)),
                                change(before.energies.strain, after.energies.strain),
                                change(before.energies.kinetic, after.energies.kinetic),
-                               taken};
+                               changed.taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
   double const added = next.watched_energy ? watched_change(next, before, after) : 0;

@@ -191,9 +191,14 @@ auto zeros(B const& backend, std::size_t count) {
 /// The array with the values of a vector.
 template <Backend B, class U>
 auto upload(B const& backend, std::vector<U> const& values) {
-  auto array = zeros<U>(backend, values.size());
-  array.upload(values);
-  return array;
+  using Array = typename B::template Array<U>;
+  if constexpr (std::constructible_from<Array, std::span<U const>>) {  // without zeros
+    return Array(std::span<U const>(values));
+  } else {
+    auto array = zeros<U>(backend, values.size());
+    array.upload(values);
+    return array;
+  }
 }
 /// The values of an array, on the host.
 template <class U, class A>

@@ -25,6 +25,18 @@ class HostArray {
       std::fill(data_ + first, data_ + last, U{});
     });
   }
+  /// With values, which are copied. Throws Error when memory runs out.
+  explicit HostArray(std::span<U const> values)
+      : data_(allocate(values.size())), size_(values.size()) {
+    upload(values);
+  }
+  /// Of values that are still to be written: they are not set. Throws Error when memory runs out.
+  static HostArray unset(std::size_t count) {
+    HostArray array;
+    array.data_ = allocate(count);
+    array.size_ = count;
+    return array;
+  }
   ~HostArray() { ::operator delete(data_, line); }
   HostArray(HostArray&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}

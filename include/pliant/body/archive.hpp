@@ -207,7 +207,8 @@ void load_state(Stream& stream, Parts& parts) {
   if (has_checkpoint)
     State::for_each_member(detail::ReadMember<B, M>{read, state.topology}, checkpoint.emplace());
   read.finish();
-  typename Parts::layout_type layout(parts.backend, *state.topology, parts.material, parts.groups);
+  typename Parts::layout_type layout(parts.backend, *state.topology, parts.material, parts.groups,
+                                     parts.layout.first_order);
   auto const complete = [&](State& s) {
     detail::check_sizes(s, layout);
     s.prescribed = detail::with_motions<dim>(*s.prescribed, parts.motions);

@@ -78,9 +78,11 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
   using Origin = typename Transfer<Dim>::Origin;
   constexpr std::size_t width{Table::Laws::internal_variable_count};
   auto const& origins = transfer.origins(type);
-  CarriedPoints carried{std::vector<double>(width * origins.size()), {}};
-  for (std::size_t e = 0; width > 0 && e < origins.size(); ++e) {
-    auto const& origin = origins[e];
+  if (width == 0) return {};
+  std::size_t const count = transfer.elements(type);
+  CarriedPoints carried{std::vector<double>(width * count), {}};
+  std::size_t e = 0;
+  auto const carry_one = [&](Origin const& origin) {
     Family const* const family = origin.family >= 0
                                      ? &transfer.families()[static_cast<std::size_t>(origin.family)]
                                      : nullptr;
@@ -120,7 +122,7 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
           look_at({origin.type < 0 ? type : static_cast<std::size_t>(origin.type), origin.element},
                   [](auto const& xi) { return xi; });
         if (from == nullptr) {
-          carried.at_rest.resize(origins.size(), false);
+          carried.at_rest.resize(count, false);
           carried.at_rest[e] = true;
           return;
         }
@@ -129,7 +131,11 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
       }
     };
     dispatch<Table::groups>(tags[e], fill);
-  }
+    ++e;
+  };
+  for (Origin origin : origins)
+    for (Index const end = origin.element + origin.count; origin.element < end; ++origin.element)
+      carry_one(origin);
   return carried;
 }
 

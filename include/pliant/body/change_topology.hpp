@@ -8,6 +8,7 @@
 #include <pliant/body/ledger.hpp>
 #include <pliant/body/point_visitors.hpp>
 #include <pliant/body/set_state.hpp>
+#include <pliant/body/touched_energy.hpp>
 
 // Another topology for a body: every field goes over by one Transfer.
 namespace pliant {
@@ -41,7 +42,9 @@ Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfe
       for (Index& node : condition.nodes) node = transfer.renumbered(node);
       continue;
     }
-    condition.facets = transfer.carry_facets(condition.facets);
+    auto facets = transfer.carry_facets(condition.facets);
+    if (facets == condition.facets) continue;
+    condition.facets = std::move(facets);
     condition.nodes = nodes_of(condition.facets);
   }
   return prescribed;
@@ -116,16 +119,18 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.revision = next.revision + 1;
 }
 
-/// A body's parts on another topology, and what held nodes took.
+/// A body's parts on another topology, what held nodes took, and the strain energy, before and after, of elements that
+/// are touched and of force terms.
 template <class Parts>
 struct ChangedTopology {
   Parts parts;
-  Point<Parts::dim> taken;  // N s
+  Point<Parts::dim> taken;                         // N s
+  double strain_energy_before, strain_energy = 0;  // J
 };
 
-/// Takes all fields over to another topology, for put_in_force. give_back(layout, held, v before, v) may change the
-/// velocities v that the transfer gives (the user's order), and returns the impulse that held nodes took, N s. The body
-/// is awake. Throws Error where fields are not finite; the body itself is left as it is.
+/// Takes all fields over to another topology, for put_in_force. give_back(touched elements, layout, held, v before, v) may
+/// change the velocities v that the transfer gives (the user's order), and returns the impulse that held nodes took, N s.
+/// The body is awake. Throws Error where fields are not finite; the body itself is left as it is.
 template <class Parts, class GiveBack>
 ChangedTopology<Parts> change_topology(
     Parts& parts, std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
@@ -143,27 +148,41 @@ ChangedTopology<Parts> change_topology(
   u = transfer.carry_nodes(std::move(u));
   auto const v_before = v;
   v = transfer.carry_nodes(std::move(v));
-  std::vector<std::vector<Tag>> tags;
+  detail::TouchedElements<typename Parts::mesh_type> const touched(*parts.state.topology, *topology,
+                                                                   transfer);
+  std::vector<std::vector<Tag>> groups, tags;  // by type: before and after
+  std::vector<std::vector<Index> const*> elements, elements_before;
   std::vector<detail::CarriedPoints> points;
   auto const kept = detail::kept_points(std::as_const(parts));
   parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
+    auto const& own = touched.of_type(groups.size());
+    elements_before.push_back(&own.before);
+    elements.push_back(&own.after);
+    groups.push_back(user_groups<typename Table::element>(std::as_const(parts)));
+  });
+  double const energy_before =
+      detail::energy_of_some(std::as_const(parts), elements_before, groups);
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
     std::size_t const type = tags.size();
-    tags.push_back(detail::carried_groups<Table>(std::as_const(parts), transfer, type));
+    tags.push_back(detail::carried_groups<Table>(std::as_const(parts), groups, transfer, type));
     points.push_back(detail::carried_points<Table>(kept, tags.back(), transfer, type));
   });
   auto prescribed =
       std::make_shared<Prescribed<dim> const>(detail::carried(*parts.state.prescribed, transfer));
 
-  typename Parts::layout_type layout(parts.backend, *topology, parts.material, parts.groups);
+  typename Parts::layout_type layout(parts.backend, *topology, parts.material, parts.groups,
+                                     parts.layout, transfer, touched);
   std::vector<DirectionMask> held(topology->mesh.nodes.size(), 0);  // by the user's number
   for (auto const& condition : prescribed->conditions)
     for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
-  Point<dim> const taken = give_back(layout, held, v_before, v);
+  Point<dim> const taken = give_back(touched, layout, held, v_before, v);
 
   // As they are, and not by the body's setters, which stop driven nodes.
   ChangedTopology<Parts> changed{
-      parts_on(parts, std::move(layout), std::move(topology), std::move(prescribed)), taken};
+      parts_on(parts, std::move(layout), std::move(topology), std::move(prescribed)), taken,
+      energy_before};
   auto& next = changed.parts;
   auto& state = next.state;
   state.rest.clear();
@@ -192,6 +211,7 @@ ChangedTopology<Parts> change_topology(
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
   state.implicit = {};
+  changed.strain_energy = detail::energy_of_some(std::as_const(next), elements, tags);
   return changed;
 }
 

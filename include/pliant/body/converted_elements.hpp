@@ -62,24 +62,26 @@ std::vector<int> places_of_values() {
   return places;
 }
 
-/// The groups of the elements of a type on a new mesh, by the user's number.
+/// The groups of the elements of a type on a new mesh, by the user's number. `groups`: of all types, before.
 template <class Table, class Parts>
-std::vector<Tag> carried_groups(Parts const& parts, Transfer<Parts::dim> const& transfer,
-                                std::size_t type) {
-  std::vector<std::vector<Tag>> lists;
+std::vector<Tag> carried_groups(Parts const& parts, std::vector<std::vector<Tag>> const& groups,
+                                Transfer<Parts::dim> const& transfer, std::size_t type) {
+  std::vector<std::vector<Tag>> converted(groups.size());
+  std::size_t from = 0;
   parts.for_each_type([&](auto const& table, auto const&) {
     using From = std::remove_cvref_t<decltype(table)>;
-    auto& own = lists.emplace_back();
-    if constexpr (std::same_as<From, Table>) {
-      own = user_groups<typename Table::element>(parts);
-    } else if constexpr (are_convertible<From, Table>) {
-      if (!transfer.comes_from(type, lists.size() - 1)) return;
-      own = user_groups<typename From::element>(parts);
+    std::size_t const old = from++;
+    if constexpr (!std::same_as<From, Table> && are_convertible<From, Table>) {
+      if (!transfer.comes_from(type, old)) return;
       constexpr auto to = converted_groups<From, Table>();
-      for (Tag& tag : own) tag = to[tag];
+      for (Tag const tag : groups[old]) converted[old].push_back(to[tag]);
     }
   });
-  return transfer.carry_elements(lists, type);
+  return transfer.carry_elements_from(
+      [&](std::size_t old) -> std::vector<Tag> const& {
+        return old == type ? groups[old] : converted[old];
+      },
+      type);
 }
 
 /// Of all element types of a body.

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
+#include <pliant/body/cell_order.hpp>
 #include <pliant/body/element_table.hpp>
 #include <pliant/body/lumped_volumes.hpp>
 #include <pliant/body/motion.hpp>
 #include <pliant/body/numbering.hpp>
 #include <pliant/body/state.hpp>
+#include <pliant/body/touched_elements.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
 #include <pliant/formulation/affine.hpp>
 #include <pliant/mesh/bounding_box.hpp>
@@ -43,7 +46,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static constexpr bool acts = has<typename F::element>;
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
-  std::vector<double> mass_list;                // kg, in the user's order, slaves' handed on
+  std::shared_ptr<CellOrder const> first_order;
+  std::vector<double> own_masses;               // kg, in the user's order, slaves' with them
+  std::vector<double> mass_list;                // the same, slaves' handed on
   double mass_in_all = 0;                       // kg
   std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
   Index nodes = 0;
@@ -56,34 +61,21 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   std::tuple<Table<Es>...> tables;
   InterpolationOn<B> interpolation;
 
+  /// `first`: the order of the body's first mesh; null: this is it.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-         std::tuple<Group<Fs>...> const& groups) {
-    auto const& mesh = topology.mesh;
-    HostThreads const threads(backend, mesh);
-    Numbering<Es...> numbering(mesh);
-    internal_node = std::move(numbering.internal_node);
-    user_node = std::move(numbering.user_node);
-    nodes = static_cast<Index>(user_node.size());
-    user_node_array = upload(backend, user_node);
-
-    Index scratch = 0;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, topology, material, groups, scratch), ...);
-    }(std::index_sequence_for<Es...>());
-
-    upload_rest(backend, mesh);
-    f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
-                                            static_cast<std::size_t>(scratch));
-    held = zeros<DirectionMask>(backend, static_cast<std::size_t>(nodes));
-
-    std::vector<Slave> internal = topology.interpolation.slaves();
-    for (auto& slave : internal) {
-      slave.node = internal_of(slave.node);
-      for (auto& [master, weight] : slave.masters) master = internal_of(master);
-    }
-    interpolation = InterpolationOn<B>(backend, Interpolation(std::move(internal)));
-    lump_mass(topology, material.density);
-    mass = upload(backend, internal_masses(material.density));
+         std::tuple<Group<Fs>...> const& groups, std::shared_ptr<CellOrder const> first = nullptr)
+      : first_order(std::move(first)) {
+    make(backend, topology, material, groups,
+         [&] { add_all_masses(topology.mesh, material.density); });
+  }
+  /// The same from the layout before a change.
+  Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
+         std::tuple<Group<Fs>...> const& groups, Layout const& before,
+         Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched)
+      : first_order(before.first_order) {
+    make(backend, topology, material, groups, [&] {
+      change_masses(topology.mesh, material.density, before.own_masses, transfer, touched);
+    });
   }
 
   Index internal_of(Index user) const { return internal_node[static_cast<std::size_t>(user)]; }
@@ -122,6 +114,45 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
  private:
   static constexpr Index few_nodes = 16384;
+
+  /// find_own_masses() fills own_masses.
+  template <class FindOwnMasses>
+  void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
+            std::tuple<Group<Fs>...> const& groups, FindOwnMasses const& find_own_masses) {
+    auto const& mesh = topology.mesh;
+    HostThreads const threads(backend, mesh);
+    auto numbering = first_order && topology.tree ? numbering_of(topology, *first_order)
+                                                  : Numbering<Es...>(mesh);
+    if (!first_order)
+      first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
+    internal_node = std::move(numbering.internal_node);
+    user_node = std::move(numbering.user_node);
+    nodes = static_cast<Index>(user_node.size());
+    user_node_array = upload(backend, user_node);
+
+    Index scratch = 0;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (make_table<I>(backend, numbering, topology, material, groups, scratch), ...);
+    }(std::index_sequence_for<Es...>());
+
+    upload_rest(backend, mesh);
+    f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
+                                            static_cast<std::size_t>(scratch));
+    held = zeros<DirectionMask>(backend, static_cast<std::size_t>(nodes));
+
+    std::vector<Slave> internal = topology.interpolation.slaves();
+    for (auto& slave : internal) {
+      slave.node = internal_of(slave.node);
+      for (auto& [master, weight] : slave.masters) master = internal_of(master);
+    }
+    interpolation = InterpolationOn<B>(backend, Interpolation(std::move(internal)));
+    find_own_masses();
+    mass_list = own_masses;
+    topology.interpolation.hand_masses(
+        [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
+    for (double m : mass_list) mass_in_all += m;
+    mass = upload(backend, internal_masses(material.density));
+  }
 
   template <std::size_t I>
   void make_table(B const& backend, Numbering<Es...>& numbering,
@@ -217,17 +248,32 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     rest = upload(backend, places);
   }
 
-  void lump_mass(Topology<Mesh<Es...>> const& topology, double density) {
-    mass_list.assign(topology.mesh.nodes.size(), 0.0);
-    (add_mass<Es>(topology.mesh, density), ...);
-    topology.interpolation.hand_masses(
-        [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
-    for (double m : mass_list) mass_in_all += m;
+  void add_all_masses(Mesh<Es...> const& mesh, double density) {
+    own_masses.assign(mesh.nodes.size(), 0.0);
+    (add_mass<Es>(mesh, density), ...);
+  }
+  /// Sums anew what nodes have around which elements come or go, in the same order.
+  void change_masses(Mesh<Es...> const& mesh, double density, std::vector<double> const& before,
+                     Transfer<dim> const& transfer,
+                     detail::TouchedElements<Mesh<Es...>> const& touched) {
+    own_masses = transfer.carry_sums(before);
+    for (Index node = 0; node < nodes; ++node)
+      if (touched.changes_elements(node)) own_masses[static_cast<std::size_t>(node)] = 0;
+    detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+      for (Index const e : touched.of_type(type).after) {
+        auto const& element = mesh.template elements<E>()[static_cast<std::size_t>(e)];
+        auto const share = host_nodal_volumes<E>(nodal(mesh, element));
+        for (std::size_t a = 0; a < E::nodes; ++a)
+          if (touched.changes_elements(element[a]))
+            own_masses[static_cast<std::size_t>(element[a])] +=
+                density * share[static_cast<int>(a)];
+      }
+    });
   }
   template <Element E>
   void add_mass(Mesh<Es...> const& mesh, double density) {
     auto const& elements = mesh.template elements<E>();
-    auto const add = [&](std::size_t node, double volume) { mass_list[node] += density * volume; };
+    auto const add = [&](std::size_t node, double volume) { own_masses[node] += density * volume; };
     detail::HostParts const parts(static_cast<Index>(elements.size()),
                                   detail::few_elements(E::nodes));
     if (parts.count() > 1 && detail::has_many_host_threads() &&

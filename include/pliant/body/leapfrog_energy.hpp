@@ -57,13 +57,18 @@ double load_term(Parts& parts) {
   return detail::acceleration_term_of(parts, {nullptr});
 }
 
-/// The energies, and what the one that leapfrog keeps has less than their total: that has the kinetic energy v₋·M·v₊/2 of the
+/// Of the present energies: these, and what the one that leapfrog keeps has less than their total: that has the kinetic energy v₋·M·v₊/2 of the
 /// half steps around the present time, v∓ = v ∓ Δt/2 a. For linear laws it is constant to rounding,
 /// whatever the step; beyond the stable one it no longer bounds the motion.
 template <class Parts>
-WatchedEnergy leapfrog_energy(Parts& parts) {
+WatchedEnergy leapfrog_energy(Parts& parts, Energies const& energies) {
   double const step = parts.state.integrator.step;
-  return {energies_of(parts), step * step * acceleration_term(parts)};
+  return {energies, step * step * acceleration_term(parts)};
+}
+
+template <class Parts>
+WatchedEnergy leapfrog_energy(Parts& parts) {
+  return leapfrog_energy(parts, energies_of(parts));
 }
 
 /// Adds to what is booked, J. What is not finite is not; see unbooked_changes.

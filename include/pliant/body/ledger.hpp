@@ -26,8 +26,14 @@ std::vector<double> all_counters(Parts const& parts, Elements const& elements, s
   using Counters = CounterLayout<Table::groups>;
   std::vector<double> sums = counters<Table>(parts, elements, which);
   auto const tags = download<Tag>(elements.tags);
-  std::vector<std::int64_t> since(tags.size(), parts.state.record.born);
-  if (elements.statistics.open) since = download<std::int64_t>(elements.statistics.since);
+  if (!elements.statistics.open) {
+    auto const each = static_cast<double>(parts.state.steps - parts.state.record.born);
+    for (int group = 0; group < Table::groups; ++group)
+      sums[static_cast<std::size_t>(Counters::steps_of(group))] +=
+          static_cast<double>(std::ranges::count(tags, static_cast<Tag>(group))) * each;
+    return sums;
+  }
+  auto const since = download<std::int64_t>(elements.statistics.since);
   for (std::size_t e = 0; e < tags.size(); ++e)
     if (tags[e] < Table::groups)
       sums[static_cast<std::size_t>(Counters::steps_of(tags[e]))] +=

@@ -28,53 +28,64 @@ struct Numbering {
   std::tuple<std::vector<Connectivity<Es>>...> tables;  // internal elements of internal nodes
   std::array<std::vector<Index>, sizeof...(Es)> user_element;  // by the internal number
 
-  explicit Numbering(Mesh<Es...> const& mesh)
+  explicit Numbering(Mesh<Es...> const& mesh) : Numbering(mesh, along_curve(mesh)) {}
+  /// Of elements in a given order: per type the user's numbers.
+  Numbering(Mesh<Es...> const& mesh, std::array<std::vector<Index>, sizeof...(Es)> order)
       : internal_node(mesh.nodes.size(), -1),
         user_node(mesh.nodes.size()),
-        along_curve_(mesh.nodes.size()) {
-    auto const order = hilbert_order(std::span<Point<Mesh<Es...>::dim> const>(mesh.nodes));
-    auto const nodes = static_cast<Index>(mesh.nodes.size());
-    detail::for_each_on_host(nodes, 16384, [&](Index i) {
-      along_curve_[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = i;
-    });
+        user_element(std::move(order)) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (sort_elements<I, Es>(mesh), ...);
+      (fill_table<I, Es>(mesh), ...);
       (number_nodes(std::get<I>(tables)), ...);
     }(std::index_sequence_for<Es...>());
-    for (std::size_t i = 0; next_ < nodes; ++i)  // nodes of no element come last
-      if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);
+    for (std::size_t i = 0; next_ < static_cast<Index>(mesh.nodes.size()); ++i)
+      if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);  // of no element: last
   }
 
  private:
+  static std::array<std::vector<Index>, sizeof...(Es)> along_curve(Mesh<Es...> const& mesh) {
+    auto const order = hilbert_order(std::span<Point<Mesh<Es...>::dim> const>(mesh.nodes));
+    std::vector<Index> place(order.size());  // by the user's number
+    detail::for_each_on_host(static_cast<Index>(order.size()), 16384, [&](Index i) {
+      place[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = i;
+    });
+    return {sorted_elements<Es>(mesh, place)...};
+  }
   void take(Index user, Index number) {
     internal_node[static_cast<std::size_t>(user)] = number;
     user_node[static_cast<std::size_t>(number)] = user;
   }
 
-  template <std::size_t I, Element E>
-  void sort_elements(Mesh<Es...> const& mesh) {
+  template <Element E>
+  static std::vector<Index> sorted_elements(Mesh<Es...> const& mesh,
+                                            std::vector<Index> const& place) {
     auto const& elements = mesh.template elements<E>();
-    auto const count = static_cast<Index>(elements.size());
-    auto const keys = static_cast<Index>(mesh.nodes.size());
     std::vector<Index> first(elements.size());
-    detail::for_each_on_host(count, detail::few_elements(E::nodes), [&](Index e) {
-      first[static_cast<std::size_t>(e)] = first_on_curve(elements[static_cast<std::size_t>(e)]);
-    });
+    detail::for_each_on_host(static_cast<Index>(elements.size()), detail::few_elements(E::nodes),
+                             [&](Index e) {
+                               first[static_cast<std::size_t>(e)] =
+                                   first_on_curve(elements[static_cast<std::size_t>(e)], place);
+                             });
     if constexpr (LinearSimplex<E> && E::dim == 3) keep_together(mesh, elements, first);
-    user_element[I] = detail::group_by_key(first, keys).order;
+    return detail::group_by_key(first, static_cast<Index>(mesh.nodes.size())).order;
+  }
+  template <std::size_t I, Element E>
+  void fill_table(Mesh<Es...> const& mesh) {
+    auto const& elements = mesh.template elements<E>();
     auto& table = std::get<I>(tables);
     table.resize(elements.size());
-    detail::for_each_on_host(count, detail::few_elements(E::nodes), [&](Index i) {
-      auto const at = static_cast<std::size_t>(i);
-      table[at] = elements[static_cast<std::size_t>(user_element[I][at])];
-    });
+    detail::for_each_on_host(static_cast<Index>(elements.size()), detail::few_elements(E::nodes),
+                             [&](Index i) {
+                               auto const at = static_cast<std::size_t>(i);
+                               table[at] = elements[static_cast<std::size_t>(user_element[I][at])];
+                             });
   }
 
-  Index on_curve(Index node) const { return along_curve_[static_cast<std::size_t>(node)]; }
   template <std::size_t Nodes>
-  Index first_on_curve(std::array<Index, Nodes> const& element) const {
-    Index least = on_curve(element[0]);
-    for (Index node : element) least = std::min(least, on_curve(node));
+  static Index first_on_curve(std::array<Index, Nodes> const& element,
+                              std::vector<Index> const& place) {
+    Index least = place[static_cast<std::size_t>(element[0])];
+    for (Index node : element) least = std::min(least, place[static_cast<std::size_t>(node)]);
     return least;
   }
 
@@ -94,8 +105,9 @@ struct Numbering {
     return ends;
   }
   /// `first` of elements around an edge that is the longest of several becomes the least of theirs.
-  void keep_together(Mesh<Es...> const& mesh, std::vector<std::array<Index, 4>> const& elements,
-                     std::vector<Index>& first) const {
+  static void keep_together(Mesh<Es...> const& mesh,
+                            std::vector<std::array<Index, 4>> const& elements,
+                            std::vector<Index>& first) {
     constexpr std::ptrdiff_t several = 5;
     auto const count = static_cast<Index>(elements.size());
     std::vector<Index> one(elements.size()), other(elements.size());
@@ -173,8 +185,7 @@ struct Numbering {
     });
   }
 
-  std::vector<Index> along_curve_;  // by the user's number
-  Index next_ = 0;                  // internal number
+  Index next_ = 0;  // internal number
 };
 
 }  // namespace pliant

@@ -89,7 +89,7 @@ struct Parts {
   std::optional<state_type> checkpoint{};
   bool has_checkpoint = false;  // of the present mesh, with no change by hand since
   /// The energies that an integrator watches; set by it.
-  WatchedEnergy (*watched_energy)(Parts&) = nullptr;
+  WatchedEnergy (*watched_energy)(Parts&, Energies const& present) = nullptr;
   /// Of the integrator that stepped last; null: any. It lives on here: another integrator where
   /// that one was in memory is not taken for it.
   std::shared_ptr<void const> integrator{};

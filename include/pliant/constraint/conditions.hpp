@@ -113,7 +113,7 @@ void upload_conditions(Parts& parts) {
 /// The energy that an integrator watches; none while none does.
 template <class Parts>
 WatchedEnergy present_energy(Parts& parts) {
-  return parts.watched_energy ? parts.watched_energy(parts) : WatchedEnergy{};
+  return parts.watched_energy ? parts.watched_energy(parts, energies_of(parts)) : WatchedEnergy{};
 }
 
 /// What a change from `before` to `after` added to the energy that an integrator watches and keeps, J; 0 while none

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -533,8 +534,8 @@ class CellTree {
     }
 
     cell_gone.flip();
-    auto const node = numbers(node_used), cell = numbers(cell_gone), edge = numbers(edge_used),
-               side = numbers(side_used);
+    auto const node = numbers(node_used, i.nodes), cell = numbers(cell_gone, i.cells),
+               edge = numbers(edge_used, i.edges), side = numbers(side_used, i.sides);
     keep(cells_, cell_gone, i.cells);
     keep(edges_, edge_used, i.edges);
     keep(sides_, side_used, i.sides);
@@ -587,11 +588,12 @@ class CellTree {
     nodes_ = static_cast<Index>(std::ranges::count(node_used, true));
     return {node, cell};
   }
-  static std::vector<Index> numbers(std::vector<bool> const& used) {
-    std::vector<Index> list(used.size(), -1);
-    Index next = 0;
-    for (std::size_t k = 0; k < used.size(); ++k)
-      if (used[k]) list[k] = next++;
+  /// All before `first` are.
+  static std::vector<Index> numbers(std::vector<bool> const& used, Index first) {
+    std::vector<Index> list(used.size());
+    std::iota(list.begin(), list.begin() + first, Index{0});
+    Index next = first;
+    for (std::size_t k = at(first); k < used.size(); ++k) list[k] = used[k] ? next++ : -1;
     return list;
   }
   /// Moves up what is used; all before `first` is.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -55,9 +56,6 @@ class ElementChanges {
     first_divided_ = families_.size();
     for (Index const c : changed.refinement.parents) add_divided(c);
     for (Index const c : changed.split) add_divided(c);
-    is_divided_ = changed.refinement.parents;
-    is_divided_.insert(is_divided_.end(), changed.split.begin(), changed.split.end());
-    std::ranges::sort(is_divided_);
   }
 
   /// Those of a type after the change.
@@ -65,34 +63,34 @@ class ElementChanges {
   ChangedElements<dim> of(std::size_t type) {
     auto const& old_cells = old_cells_[type];
     auto const arriving = arriving_at<E>();
+    auto const leaving = leaving_from(type);
     ChangedElements<dim> list;
     list.cells.reserve(old_cells.size() + arriving.size());
-    list.origins.reserve(old_cells.size() + arriving.size());
-    auto const add = [&](Index c, Origin const& origin) {
-      list.cells.push_back(c);
-      list.origins.push_back(origin);
-    };
-    auto next = arriving.begin();
-    auto const add_arriving_before = [&](Index c) {
-      for (; next != arriving.end() && next->cell < c; ++next)
-        add(next->cell, origin_of(type, next->child, next->family, list.cells.size()));
-    };
-
+    list.origins.reserve(leaving.size() + 2 * arriving.size() + 1);
     // Numbers of cells stay in order, and those of new ones follow.
-    auto next_divided = is_divided_.begin();
-    auto next_converted = changed_.converted.begin();
-    for (std::size_t e = 0; e < old_cells.size(); ++e) {
-      Index const c = changed_.renumbered(old_cells[e]);
-      if (c < 0) continue;
-      while (next_converted != changed_.converted.end() && *next_converted < old_cells[e])
-        ++next_converted;
-      if (next_converted != changed_.converted.end() && *next_converted == old_cells[e]) continue;
-      add_arriving_before(c);
-      while (next_divided != is_divided_.end() && *next_divided < c) ++next_divided;
-      if (next_divided == is_divided_.end() || *next_divided != c)
-        add(c, {static_cast<Index>(e), Origin::same});
+    Index next = 0;  // of the old elements
+    auto const add_those_before = [&](Index end) {
+      if (next == end) return;
+      list.origins.push_back({.element = next, .child = Origin::same, .count = end - next});
+      list.cells.insert(list.cells.end(), old_cells.begin() + next, old_cells.begin() + end);
+      next = end;
+    };
+    auto left = leaving.begin();
+    auto const add_until = [&](Index end) {
+      for (; left != leaving.end() && *left < end; ++left) {
+        add_those_before(*left);
+        next = *left + 1;
+      }
+      add_those_before(std::max(next, end));
+    };
+    for (auto const& own : arriving) {
+      add_until(
+          static_cast<Index>(std::ranges::lower_bound(old_cells, own.old) - old_cells.begin()));
+      list.origins.push_back(origin_of(type, own.child, own.family, list.cells.size()));
+      list.cells.push_back(own.cell);
     }
-    add_arriving_before(static_cast<Index>(after_.cells().size()));
+    add_until(static_cast<Index>(old_cells.size()));
+    renumber(list);
     return list;
   }
 
@@ -105,6 +103,7 @@ class ElementChanges {
     Index cell;
     int child;
     std::size_t family;
+    Index old = std::numeric_limits<Index>::max();  // number of a cell that was there before
   };
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -130,13 +129,13 @@ class ElementChanges {
     for (Index child = 0; child < family.pattern->children; ++child)
       family.before.push_back(old_element(cell.first_child + child));
     family.after.resize(1);
-    list_arriving(changed_.renumbered(old), Origin::merged);
+    list_arriving(old, Origin::merged);
   }
   void add_converted(Index old) {
     auto& family = add_family(before_.cell(old));
     family.before = {old_element(old)};
     family.after.resize(1);
-    list_arriving(changed_.renumbered(old), Origin::converted);
+    list_arriving(old, Origin::converted);
   }
   void add_divided(Index c) {
     auto const& cell = after_.cell(c);
@@ -145,7 +144,28 @@ class ElementChanges {
     family.before = {old_element(old_number(c))};
     family.after.resize(at(family.pattern->children));
   }
-  void list_arriving(Index c, int child) { arriving_.push_back({c, child, families_.size() - 1}); }
+  /// Gives cells that stay their new numbers.
+  void renumber(ChangedElements<dim>& list) const {
+    if (changed_.coarsening.renumbered.cells.empty()) return;
+    std::size_t e = 0;
+    for (auto const& origin : list.origins) {
+      auto const end = e + at(origin.count);
+      if (origin.child != Origin::same) e = end;
+      for (; e < end; ++e) list.cells[e] = changed_.renumbered(list.cells[e]);
+    }
+  }
+  /// The old elements of a type that go or are divided, ascending.
+  std::vector<Index> leaving_from(std::size_t type) const {
+    std::vector<Index> leaving;
+    for (auto const& family : families_)
+      for (auto const& member : family.before)
+        if (member.type == type) leaving.push_back(member.element);
+    std::ranges::sort(leaving);
+    return leaving;
+  }
+  void list_arriving(Index old, int child) {
+    arriving_.push_back({changed_.renumbered(old), child, families_.size() - 1, old});
+  }
   Index old_number(Index c) {
     auto const& renumbered = changed_.coarsening.renumbered.cells;
     if (renumbered.empty()) return c;
@@ -192,7 +212,6 @@ class ElementChanges {
   std::vector<Family> families_;    // merged cells, converted ones, refined ones, split ones
   std::vector<Arriving> arriving_;  // merged and converted cells
   std::size_t first_divided_ = 0;   // of the families
-  std::vector<Index> is_divided_;   // cells, by their new numbers, ascending
   std::vector<Index> old_numbers_;  // of cells; empty until one is asked for that changed
 };
 

@@ -39,23 +39,24 @@ namespace detail {
 template <class M>
 struct RefinementTree {
   std::shared_ptr<Hierarchy<M::dim> const> tree;
-  std::vector<std::vector<Index>> cells;
+  std::shared_ptr<std::vector<std::vector<Index>> const> cells;
 };
 template <class M>
-RefinementTree<M> tree_of(Topology<M> const& topology) {
-  if (topology.tree) return {topology.tree, topology.cells};
-  auto const& mesh = topology.mesh;
+RefinementTree<M> tree_of(std::shared_ptr<Topology<M> const> const& topology) {
+  using Cells = std::shared_ptr<std::vector<std::vector<Index>> const>;
+  if (topology->tree) return {topology->tree, Cells(topology, &topology->cells)};
+  auto const& mesh = topology->mesh;
   if (!mesh.slaves.empty())
     throw Error("refine: the mesh came with ", mesh.slaves.size(),
                 " hanging nodes, of which it is not known what was refined; give the coarse mesh, "
                 "and refine the body");
-  RefinementTree<M> made{std::make_shared<Hierarchy<M::dim>>(mesh), {}};
+  auto cells = std::make_shared<std::vector<std::vector<Index>>>();
   Index next = 0;
   for (std::size_t count : element_counts(mesh)) {
-    auto& cells = made.cells.emplace_back(count);
-    for (Index& c : cells) c = next++;
+    auto& own = cells->emplace_back(count);
+    for (Index& c : own) c = next++;
   }
-  return made;
+  return {std::make_shared<Hierarchy<M::dim>>(mesh), std::move(cells)};
 }
 
 /// The cells of marked elements, which are given by the user's numbers for each element type.
@@ -103,14 +104,14 @@ template <class M>
 std::vector<Index> lowered_cells(M const& mesh, RefinementTree<M> const& old,
                                  std::vector<std::vector<Index>> const& marked) {
   check_conversion(mesh, "lower", 2, marked);
-  return each_once(cells_of(mesh, old.cells, "lower", marked));
+  return each_once(cells_of(mesh, *old.cells, "lower", marked));
 }
 /// The cells of marked elements and of rings of neighbours that get such nodes, each once.
 template <class M>
 std::vector<CellConversion> raised_cells(M const& mesh, RefinementTree<M> const& old,
                                          std::vector<std::vector<Index>> const& marked, int rings) {
   check_conversion(mesh, "raise", 1, marked);
-  auto cells = each_once(cells_of(mesh, old.cells, "raise", marked));
+  auto cells = each_once(cells_of(mesh, *old.cells, "raise", marked));
   for (int ring = 0; ring < rings && !cells.empty(); ++ring)
     cells = TreeQueries(old.tree->tree()).with_neighbours(cells);
   std::vector<CellConversion> raised;
@@ -174,8 +175,8 @@ std::vector<CellSplit> split_cells(M const& mesh, RefinementTree<M> const& old,
                                    MarkedElements const& marked) {
   check_splits(mesh, marked.split);
   check_splits(mesh, marked.split_in_two);
-  auto const in_two = each_once(cells_of(mesh, old.cells, "split", marked.split_in_two));
-  auto cells = cells_of(mesh, old.cells, "split", marked.split);
+  auto const in_two = each_once(cells_of(mesh, *old.cells, "split", marked.split_in_two));
+  auto cells = cells_of(mesh, *old.cells, "split", marked.split);
   cells.insert(cells.end(), in_two.begin(), in_two.end());
   std::vector<CellSplit> splits;
   for (Index const c : each_once(std::move(cells))) {
@@ -210,7 +211,7 @@ std::vector<Index> merged_cells(M const& mesh, RefinementTree<M> const& old,
       throw Error("merge: no element is split into ", E::name(),
                   " elements; mark Tri3, Pyramid5 or Tet4 elements");
   });
-  auto merged = old.tree->split_cells(cells_of(mesh, old.cells, "merge", marked));
+  auto merged = old.tree->split_cells(cells_of(mesh, *old.cells, "merge", marked));
   auto const all = merged;
   std::erase_if(merged, [&](Index c) {
     return old.tree->cell(c).kind == CellKind::pyramid &&
@@ -223,8 +224,8 @@ std::vector<Index> merged_cells(M const& mesh, RefinementTree<M> const& old,
 template <class M>
 CellChanges changes_of(M const& mesh, RefinementTree<M> const& old, MarkedElements const& marked) {
   CellChanges changes{
-      .families = old.tree->families(cells_of(mesh, old.cells, "coarsen", marked.coarsen)),
-      .refine = cells_of(mesh, old.cells, "refine", marked.refine),
+      .families = old.tree->families(cells_of(mesh, *old.cells, "coarsen", marked.coarsen)),
+      .refine = cells_of(mesh, *old.cells, "refine", marked.refine),
       .lower = lowered_cells(mesh, old, marked.lower),
       .raise = raised_cells(mesh, old, marked.raise, marked.raised_rings),
       .split = split_cells(mesh, old, marked)};

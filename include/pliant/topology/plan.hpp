@@ -50,7 +50,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   check("split", marked.split_in_two);
   check("merge", marked.merge);
   if (marked.none()) return std::nullopt;
-  auto const old = detail::tree_of(*before);
+  auto const old = detail::tree_of(before);
   auto changes = detail::changes_of(before->mesh, old, marked);
   if (changes.none()) return std::nullopt;
   auto changed = detail::change_cells(*old.tree, changes, limits);
@@ -78,20 +78,21 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto topology = std::make_shared<Topology<M>>();
   M& mesh = topology->mesh;
   mesh.nodes = changed.tree->points();
-  detail::ElementChanges<M> element_changes(mesh, old.cells, *old.tree, changes.families, changed);
+  detail::ElementChanges<M> element_changes(mesh, *old.cells, *old.tree, changes.families, changed);
   detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
     auto changed_elements = element_changes.template of<E>(type);
     auto& elements = mesh.template elements<E>();
     elements.reserve(changed_elements.cells.size());
-    for (std::size_t e = 0; e < changed_elements.cells.size(); ++e) {
-      auto const& origin = changed_elements.origins[e];
+    for (auto const& origin : changed_elements.origins) {
+      auto const first = elements.size();
       if (origin.child == Transfer<dim>::Origin::same) {
-        elements.push_back(
-            before->mesh.template elements<E>()[static_cast<std::size_t>(origin.element)]);
-        for (Index& node : elements.back())
-          if (!parts.renumbered.empty()) node = parts.renumbered[static_cast<std::size_t>(node)];
+        auto const from = before->mesh.template elements<E>().begin() + origin.element;
+        elements.insert(elements.end(), from, from + origin.count);
+        if (parts.renumbered.empty()) continue;
+        for (auto e = first; e < elements.size(); ++e)
+          for (Index& node : elements[e]) node = parts.renumbered[static_cast<std::size_t>(node)];
       } else {
-        std::ranges::copy(changed.tree->tree().element_nodes(changed_elements.cells[e]),
+        std::ranges::copy(changed.tree->tree().element_nodes(changed_elements.cells[first]),
                           elements.emplace_back().begin());
       }
     }

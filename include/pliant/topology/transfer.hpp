@@ -10,6 +10,7 @@
 
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/mesh/sides.hpp>
+#include <pliant/topology/facet_table.hpp>
 #include <pliant/topology/refinement_pattern.hpp>
 
 namespace pliant {
@@ -44,6 +45,7 @@ class Transfer {
     int child;          ///< 0 and up, or one of these
     Index family = -1;  ///< of a child, or merged elements: its place among the families
     Index type = -1;    ///< of that old element, its place among the mesh's; −1: the same type
+    Index count = 1;    ///< of elements that follow each other as before, of which it is the first
     static constexpr int same = -1;       ///< it is that element
     static constexpr int merged = -2;     ///< it was that element's family
     static constexpr int converted = -3;  ///< it is that element of another type on the same cell
@@ -67,19 +69,20 @@ class Transfer {
         new_nodes{};              ///< by new numbers, ascending; parents may be new, but before
     std::vector<NewNode> gone{};  ///< by old numbers
     std::vector<std::size_t> old_elements{};     ///< by type
-    std::vector<std::vector<Origin>> origins{};  ///< by type, in the new order
+    std::vector<std::vector<Origin>> origins{};  ///< by type, in the new order; see Origin::count
     std::vector<Family> families{};
     std::vector<DividedFacet<Dim>> divided{};  ///< by new numbers
     std::vector<DividedFacet<Dim>> merged{};   ///< by old numbers
   };
 
   explicit Transfer(Parts parts) : p_(std::move(parts)) {
-    for (std::size_t i = 0; i < p_.divided.size(); ++i)
-      divided_.emplace_back(mesh::key_of(p_.divided[i].whole), i);
+    divided_ = FacetTable<Dim>(p_.divided.size());
+    for (std::size_t i = 0; i < p_.divided.size(); ++i) divided_.add(p_.divided[i].whole, i);
+    std::size_t parts_of_merged = 0;
+    for (auto const& merged : p_.merged) parts_of_merged += merged.parts.size();
+    merged_ = FacetTable<Dim>(parts_of_merged);
     for (std::size_t i = 0; i < p_.merged.size(); ++i)
-      for (auto const& part : p_.merged[i].parts) merged_.emplace_back(mesh::key_of(part), i);
-    std::ranges::sort(divided_);
-    std::ranges::sort(merged_);
+      for (auto const& part : p_.merged[i].parts) merged_.add(part, i);
     stay_ = p_.old_nodes;
     if (!p_.renumbered.empty())
       stay_ = static_cast<Index>(
@@ -95,8 +98,15 @@ class Transfer {
   Index renumbered(Index node) const {
     return p_.renumbered.empty() ? node : p_.renumbered[static_cast<std::size_t>(node)];
   }
-  /// Of the elements of one type (its place among the mesh's), in the new order.
+  /// Of the elements of one type (its place among the mesh's), in the new order; one entry for those that follow each
+  /// other as they did before.
   std::vector<Origin> const& origins(std::size_t type = 0) const { return p_.origins[type]; }
+  /// How many elements a type has.
+  std::size_t elements(std::size_t type = 0) const {
+    std::size_t count = 0;
+    for (Origin const& origin : origins(type)) count += static_cast<std::size_t>(origin.count);
+    return count;
+  }
   std::vector<Family> const& families() const { return p_.families; }
 
   /// Values per node (numbers or points) on the new mesh: new nodes take the weighted sum. Throws Error for an
@@ -153,6 +163,12 @@ class Transfer {
       return values[old_type];
     });
   }
+  /// The same by `values_of`(type): the list of an old type.
+  template <class ValuesOf>
+  auto carry_elements_from(ValuesOf const& values_of, std::size_t type,
+                           std::size_t width = 1) const {
+    return carry_from(type, width, values_of);
+  }
   /// Whether elements of a type come from another one.
   bool comes_from(std::size_t type, std::size_t old_type) const {
     auto const is_of = [](std::size_t wanted) {
@@ -173,11 +189,15 @@ class Transfer {
           " among them, not all are listed; list all, or keep the elements there from being "
           "merged");
     std::vector<Facet<Dim>> carried;
+    carried.reserve(facets.size());
     std::vector<bool> done(p_.merged.size(), false);
     for (auto const& facet : facets) {
-      auto const whole = find(merged_, facet);
+      auto const whole = merged_.find(facet);
       if (!whole) {
-        add_parts(new_numbers(facet), carried);
+        if (p_.renumbered.empty())
+          add_parts(facet, carried);
+        else
+          add_parts(new_numbers(facet), carried);
       } else if (!done[*whole]) {
         done[*whole] = true;
         add_parts(new_numbers(whole_of(p_.merged[*whole], facet)), carried);
@@ -187,9 +207,10 @@ class Transfer {
   }
   /// Those of the facets that are merged while others of their whole are not among them.
   std::vector<Facet<Dim>> cut_facets(std::vector<Facet<Dim>> const& facets) const {
+    if (merged_.empty()) return {};
     std::map<std::size_t, std::size_t> parts;  // by whole
     for (auto const& facet : facets)
-      if (auto const whole = find(merged_, facet)) ++parts[*whole];
+      if (auto const whole = merged_.find(facet)) ++parts[*whole];
     std::vector<Facet<Dim>> cut;
     for (auto const& [whole, count] : parts)
       if (count < p_.merged[whole].parts.size())
@@ -198,15 +219,6 @@ class Transfer {
   }
 
  private:
-  /// Where facets are in another list, ascending by their corners: see key_of.
-  using FacetList = std::vector<std::pair<std::array<Index, 4>, std::size_t>>;
-  static std::optional<std::size_t> find(FacetList const& list, Facet<Dim> const& facet) {
-    if (list.empty()) return std::nullopt;
-    auto const key = mesh::key_of(facet);
-    auto const found = std::ranges::lower_bound(list, key, {}, &FacetList::value_type::first);
-    if (found == list.end() || found->first != key) return std::nullopt;
-    return found->second;
-  }
   static void check(std::size_t got, std::size_t wanted, char const* what) {
     if (got != wanted)
       throw Error("transfer: got ", got, " values of ", what, ", but those before the change take ",
@@ -239,7 +251,7 @@ class Transfer {
   auto carry_from(std::size_t type, std::size_t width, ValuesOf const& values_of) const {
     using Values = std::remove_cvref_t<decltype(values_of(type))>;
     Values carried;
-    carried.reserve(origins(type).size() * width);
+    carried.reserve(elements(type) * width);
     std::vector<Values const*> lists(p_.old_elements.size(), nullptr);
     auto const values_of_type = [&](std::size_t old_type) -> Values const& {
       if (lists[old_type] == nullptr) {
@@ -251,12 +263,16 @@ class Transfer {
     for (Origin const& origin : origins(type)) {
       auto const& values =
           values_of_type(origin.type < 0 ? type : static_cast<std::size_t>(origin.type));
-      auto const first = width * static_cast<std::size_t>(origin.element);
-      for (std::size_t k = 0; k < width; ++k)
-        carried.push_back(
-            origin.child == Origin::merged
-                ? merged_value<typename Values::value_type>(values_of_type, origin, width, k)
-                : values[first + k]);
+      if (origin.child == Origin::merged) {
+        for (std::size_t k = 0; k < width; ++k)
+          carried.push_back(
+              merged_value<typename Values::value_type>(values_of_type, origin, width, k));
+        continue;
+      }
+      auto const first =
+          values.begin() + static_cast<std::ptrdiff_t>(width) * std::ptrdiff_t{origin.element};
+      carried.insert(carried.end(), first,
+                     first + static_cast<std::ptrdiff_t>(width) * std::ptrdiff_t{origin.count});
     }
     return carried;
   }
@@ -323,7 +339,7 @@ class Transfer {
     return Dim == 2 ? at != 0 : other[(at + 1) % n] != one[1];
   }
   void add_parts(Facet<Dim> const& facet, std::vector<Facet<Dim>>& parts) const {
-    auto const found = find(divided_, facet);
+    auto const found = divided_.find(facet);
     if (!found) {
       parts.push_back(facet);
       return;
@@ -344,7 +360,7 @@ class Transfer {
 
   Parts p_;
   Index stay_ = 0;
-  FacetList divided_, merged_;
+  FacetTable<Dim> divided_, merged_;
 };
 
 }  // namespace pliant

@@ -29,21 +29,19 @@ class Patches {
   Patches(std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
           std::vector<Tag> const& tags, Index nodes)
       : groups_(groups),
-        connectivity_(connectivity.size() * Nodes),
-        target_(connectivity.size() * Nodes),
-        tags_(tags.size()),
-        ordered_tags_(tags.size()),
-        order_(connectivity.size()) {
+        connectivity_(HostArray<Index>::unset(connectivity.size() * Nodes)),
+        target_(HostArray<Index>::unset(connectivity.size() * Nodes)),
+        tags_(std::span<Tag const>(tags)),
+        ordered_tags_(std::span<Tag const>(tags)),
+        tag_data_(tags_.data()),
+        order_(HostArray<Index>::unset(connectivity.size())) {
     check_nodes(connectivity, nodes);
-    tags_.upload(tags);
-    tag_data_ = tags_.data();
     for_each_on_host(count(), few_elements(Nodes), [&](Index e) {
       std::ranges::copy(connectivity[static_cast<std::size_t>(e)],
                         connectivity_.data() + std::ptrdiff_t{Nodes} * e);
     });
     assign_targets(nodes);
     bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
-    std::ranges::copy(tags, ordered_tags_.data());
     for_each_on_host(patch_count(), few_patches, [&](Index p) { order(p); });
   }
 
@@ -115,11 +113,16 @@ class Patches {
     *bound = static_cast<Index>(next - order_.data());
   }
 
-  /// visit(k) for each place of a patch in the connectivity.
+  /// The places of a patch in the connectivity: [first, last).
+  std::pair<std::ptrdiff_t, std::ptrdiff_t> places_of(Index patch) const {
+    Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
+    return {std::ptrdiff_t{Nodes} * first, std::ptrdiff_t{Nodes} * last};
+  }
+  /// visit(k) for each of them.
   template <class Visit>
   void for_each_place(Index patch, Visit const& visit) const {
-    Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
-    for (auto k = std::ptrdiff_t{Nodes} * first; k < std::ptrdiff_t{Nodes} * last; ++k) visit(k);
+    auto const [first, last] = places_of(patch);
+    for (auto k = first; k < last; ++k) visit(k);
   }
   /// The first patch that has each node; −1: none.
   std::vector<Index> owners(Index nodes) const {
@@ -144,38 +147,59 @@ class Patches {
     });
     return owner;
   }
+  /// A node as a patch knows it that has it.
+  struct Known {
+    Index patch = -1;  // the last one that asked
+    Index target = 0;  // where it adds
+  };
   /// Numbers the scratch rows of a patch from `begin` on, in the order in which its elements first have their nodes, which
-  /// go to `foreign`. `row` is −1 for all nodes, before and after.
-  void number_rows(Index patch, Index begin, std::vector<Index> const& owner,
-                   std::vector<Index>& row, std::vector<Index>& foreign) {
-    Index const *const nodes = connectivity_.data(), *const owners = owner.data();
-    Index *const target = target_.data(), *const rows = row.data();
-    for_each_place(patch, [&](std::ptrdiff_t k) {
-      Index const node = nodes[k];
-      bool const is_own = owners[node] == patch;
-      if (!is_own && rows[node] < 0) {
-        rows[node] = begin + static_cast<Index>(foreign.size());
-        foreign.push_back(node);
-      }
-      target[k] = is_own ? node : rows[node];
-    });
-    for (Index node : foreign) rows[node] = -1;
+  /// go to `foreign`. is_own(node, known): asked once for each node of the patch.
+  template <class IsOwn>
+  void number_rows(Index patch, Index begin, std::vector<Known>& known, std::vector<Index>& foreign,
+                   IsOwn const& is_own) {
+    Index const* const nodes = connectivity_.data();
+    Index* const target = target_.data();
+    Known* const all = known.data();
+    auto const [first, last] = places_of(patch);
+    for (auto k = first; k < last; ++k) {
+      if (all[nodes[k]].patch != patch) number_row(patch, begin, all, nodes[k], foreign, is_own);
+      target[k] = all[nodes[k]].target;
+    }
+  }
+  template <class IsOwn>
+  PLIANT_SELDOM static void number_row(Index patch, Index begin, Known* all, Index node,
+                                       std::vector<Index>& foreign, IsOwn const& is_own) {
+    Known& own = all[node];
+    own.target = node;
+    if (!is_own(node, own)) {
+      own.target = begin + static_cast<Index>(foreign.size());
+      foreign.push_back(node);
+    }
+    own.patch = patch;
   }
 
   void assign_targets(Index nodes) {
-    auto const owner = owners(nodes);
     std::vector<std::vector<Index>> foreign_of(static_cast<std::size_t>(patch_count()));
     Index const of_thread = patch_count() / HostThreads::now();
     HostParts const parts(patch_count(), std::max(few_patches, of_thread));
     bool const in_order =
         parts.count() == 1;  // else each patch begins at `nodes`, until all are counted
+    std::vector<Index> owner;
+    if (!in_order) owner = owners(nodes);
     parts([&](Index first, Index last, int) {
-      std::vector<Index> row(owner.size(), -1);
+      std::vector<Known> known(static_cast<std::size_t>(nodes));
       Index begin = nodes;
       for (Index p = first; p < last; ++p) {
         auto& foreign = foreign_of[static_cast<std::size_t>(p)];
-        number_rows(p, begin, owner, row, foreign);
-        if (in_order) begin += static_cast<Index>(foreign.size());
+        if (in_order) {
+          number_rows(p, begin, known, foreign,
+                      [](Index, Known const& own) { return own.patch < 0; });
+          begin += static_cast<Index>(foreign.size());
+        } else {
+          number_rows(p, begin, known, foreign, [&](Index node, Known const&) {
+            return owner[static_cast<std::size_t>(node)] == p;
+          });
+        }
       }
     });
     std::vector<Index> foreign;  // nodes, by scratch row

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <sstream>
+
+#include "support/repeatable.hpp"
+#include "topology/random_changes.hpp"
+
+// What changes of the mesh make of a body's layout, step by step, is what making it anew gives.
+namespace pliant::test::changed_layout_suite {
+
+/// Masses, numbering and places of a layout are those of one made anew from the same topology.
+template <class TheBody>
+void check_layout(TheBody& body) {
+  auto const& parts = body.parts();
+  auto const& own = parts.layout;
+  using T = typename TheBody::scalar;
+  typename TheBody::layout_type const anew(parts.backend, *parts.state.topology, parts.material,
+                                           parts.groups, own.first_order);
+  CHECK(own.own_masses == anew.own_masses);
+  CHECK(own.mass_list == anew.mass_list);
+  CHECK(own.internal_node == anew.internal_node);
+  CHECK(own.user_node == anew.user_node);
+  CHECK(download<T>(own.mass) == download<T>(anew.mass));
+  CHECK(download<T>(own.rest) == download<T>(anew.rest));
+  parts.for_each_type([&](auto const& table, auto const&) {
+    CHECK(table.user_element ==
+          std::get<std::remove_cvref_t<decltype(table)>>(anew.tables).user_element);
+  });
+}
+
+/// The energy that the last change added is in the ledger.
+template <class TheBody>
+void check_ledger(TheBody& body, double before, std::size_t entries) {
+  double const now = strain_energy(body);
+  if (ledger(body).size() == entries) return;
+  CHECK(ledger(body).back().strain_energy ==
+        Approx(now - before).epsilon(1e-9).margin(1e-12 * (now + before)));
+}
+
+TEST_CASE("a layout that was changed is what a new one would be", "[topology]") {
+  on_each_backend<DoubleBackends>([&]<class B>(B const& backend) {
+    auto const run = [&]<class P>(P) {
+      auto body = P::body(backend), restored = P::body(backend);
+      set_mesh_limits(body, {.nodes = P::most_nodes});
+      body.clamp(body.mesh().boundary("left"));
+      Random random(7);
+      for (int i = 0; i < 60; ++i) {
+        auto u = body.mesh().nodes;
+        for (auto& row : u)
+          for (double& x : row) x = 1e-5 * static_cast<double>(random.below(100));
+        body.set_displacements(u);
+        double const before = strain_energy(body);
+        auto const entries = ledger(body).size();
+        try {
+          change<P>(body, random);
+          check_ledger(body, before, entries);
+        } catch (Error const&) {
+          undo(body);
+        }
+        check_layout(body);
+        if (i % 5 != 0) continue;
+        std::stringstream file;
+        body.save(file);
+        restored.load(file);
+        auto const forces = body.forces(), again = restored.forces();
+        double largest = 0, apart = 0;
+        for (std::size_t n = 0; n < forces.size(); ++n)
+          for (std::size_t k = 0; k < forces[n].size(); ++k) {
+            largest = std::max(largest, std::abs(forces[n][k]));
+            apart = std::max(apart, std::abs(forces[n][k] - again[n][k]));
+          }
+        CHECK(largest > 0);
+        CHECK(apart <= between_runs(1e-12) * largest);
+      }
+    };
+    run(ChangingPlane{});
+    run(ChangingSolid{});
+  });
+}
+
+}  // namespace pliant::test::changed_layout_suite
