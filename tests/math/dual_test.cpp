@@ -50,6 +50,39 @@ TEST_CASE("duals of duals carry second derivatives", "[math]") {
   CHECK(z.derivative[0].derivative[0] == Approx(derivative(slope, 1e-3)).epsilon(1e-9));
 }
 
+TEST_CASE("duals that know their zeros have the derivatives of those that do not", "[math]") {
+  using Knowing = Dual<double, 2, Zeros::known>;
+  using Plain = Dual<double, 2>;
+  for (auto const& [x, y] : {std::pair{0.3, 0.8}, {0.9, 0.2}, {-0.6, 0.7}, {1.7, 1.1}}) {
+    Knowing const along_x = Knowing::variable(x, 0), along_y = Knowing::variable(y, 1);
+    Plain const z = Everything{}(Plain::variable(x, 0), Plain::variable(y, 1));
+    Plain const by_x = Everything{}(Plain::variable(x, 0), Plain(y));
+
+    auto const compare = [](Knowing const& a, Plain const& b) {
+      CHECK(a.value == Approx(b.value).epsilon(1e-14));
+      for (int k = 0; k < 2; ++k) CHECK(a.derivative[k] == Approx(b.derivative[k]).epsilon(1e-13));
+    };
+    compare(Everything{}(along_x, along_y), z);
+    compare(Everything{}(along_x, Knowing(y)), by_x);
+    compare(Knowing(Everything{}(along_x, along_y) * by_x), z * by_x);
+    compare(Knowing(Everything{}(along_x, Knowing(y)) * z), by_x * z);
+  }
+}
+
+TEST_CASE("a dual knows of which variables it is independent", "[math]") {
+  using D = Dual<double, 2, Zeros::known>;
+  D const x = D::variable(0.3, 0), y = D::variable(0.8, 1);
+  D const only_x = select(x < 0.5, square(x) / 3 - 1, 2 * x) * D(4.0) + exp(x),
+          only_y = D(2.0) - log1p(y) / y;
+  CHECK(only_x.derivative.may_differ_from_zero(0));
+  CHECK_FALSE(only_x.derivative.may_differ_from_zero(1));
+  CHECK_FALSE(only_y.derivative.may_differ_from_zero(0));
+  CHECK(only_y.derivative.may_differ_from_zero(1));
+  for (D const& both : {only_x + only_y, only_x - only_y, only_x * only_y, only_x / only_y})
+    for (int k = 0; k < 2; ++k) CHECK(both.derivative.may_differ_from_zero(k));
+  CHECK(only_x.derivative[1] == 0);
+}
+
 TEST_CASE("a constant has no derivative", "[math]") {
   Dual<float, 3> const c(2);
   CHECK(c.value == 2.0f);

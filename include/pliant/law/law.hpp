@@ -152,6 +152,8 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> stress_in(L const& law, Tensor<S, Dim> const& 
   using Family = typename Set::template rebind<S>;
   if constexpr (requires { Family::stress_of(law, h); }) {
     return Family::stress_of(law, h);
+  } else if constexpr (MakesStressOfKnownZeros<Family, Dim>) {
+    return Family::stress(slopes_knowing_zeros<S>(law, Family::of(h)), h);
   } else {
     return Family::stress(slopes_of<S>(law, Family::of(h)), h);
   }

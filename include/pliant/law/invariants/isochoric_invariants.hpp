@@ -39,13 +39,13 @@ struct PrincipalInvariants {
     if constexpr (Dim == 2) {
       S const J_minus_1 = determinant_less_one(h);
       return CauchyGreenInvariants<S>::stress(
-          {w.D1 + w.D2, w.J_minus_1 + (w.D2 + w.D2) * J_minus_1}, h);
+          CauchyGreenInvariants<S>{w.D1 + w.D2, w.J_minus_1 + (w.D2 + w.D2) * J_minus_1}, h);
     } else {
       Tensor<S, 3> m = builtin_scalar<S>(-1) * GreenInvariants<S>::strain(h);
       S const t = -pliant::trace(m);
       for (int i = 0; i < 3; ++i) m(i, i) = m(i, i) + t;
-      auto const distortions =
-          CauchyGreenInvariants<S>::stress({w.D1 + (w.D2 + w.D2), w.J_minus_1}, h);
+      auto const distortions = CauchyGreenInvariants<S>::stress(
+          CauchyGreenInvariants<S>{w.D1 + (w.D2 + w.D2), w.J_minus_1}, h);
       return distortions + (4 * w.D2) * (m + h * m);
     }
   }
@@ -99,7 +99,7 @@ struct IsochoricInvariants {
     detail::PowersOfJ<S> const J(i.J_minus_1);
     S const by_D = w.I1_minus_3 * J.inverse_square;
     S const by_J = builtin_scalar<S>(2.0 / 3) * by_D * (i.J_minus_1 - i.D) * J.inverse;
-    return CauchyGreenInvariants<S>::stress({by_D, w.J_minus_1 + by_J}, h);
+    return CauchyGreenInvariants<S>::stress(CauchyGreenInvariants<S>{by_D, w.J_minus_1 + by_J}, h);
   }
 };
 
