@@ -230,8 +230,8 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N, Z> operator/(Dual<T, N, Z> const& x, C c
 }
 template <class T, int N, Zeros Z, ConstantFor<T> C>
 PLIANT_HOST_DEVICE constexpr Dual<T, N, Z> operator/(C const& c, Dual<T, N, Z> const& x) {
-  T const quotient = T(c) / x.value;
-  return x.chain(quotient, -quotient / x.value);
+  T const inverse = T(1) / x.value, quotient = T(c) * inverse;  // a division that others may share
+  return x.chain(quotient, -quotient * inverse);
 }
 
 template <class T, int N, Zeros Z, class Y>
@@ -319,7 +319,7 @@ PLIANT_HOST_DEVICE constexpr Dual<T, N, Z> abs(Dual<T, N, Z> const& x) {
 }
 template <class T, int N, Zeros Z>
 PLIANT_HOST_DEVICE constexpr Dual<T, N, Z> excess_of_log1p(Dual<T, N, Z> const& x) {
-  return x.chain(excess_of_log1p(x.value), x.value / (T(1) + x.value));
+  return x.chain(excess_of_log1p(x.value), x.value * (T(1) / (T(1) + x.value)));
 }
 template <class T, int N, Zeros Z>
 PLIANT_HOST_DEVICE constexpr Dual<T, N, Z> excess_of_expm1(Dual<T, N, Z> const& x) {

@@ -96,12 +96,22 @@ struct SplitNumber {
     e = above >> Bits<T>::mantissa;
     f = with_bits<T, L>(wrapped_difference<T, L>(bits_of(x), e << Bits<T>::mantissa)) - P(1);
   }
-  /// ln x. With s = f/(2 + f), ln(1 + f) = 2 artanh s = f − f²/2 + s (f²/2 + R), R = Σ 2 s²ᵏ/(2k + 1).
+  /// ln x. With s = f/(2 + f), ln(1 + f) = 2 artanh s = f − f²/2 + s (f²/2 + R(s²)), R = Σ 2 s²ᵏ/(2k + 1), of which this
+  /// is the best polynomial (Sun's fdlibm, e_log.c and its version for float).
   PLIANT_HOST_DEVICE P log() const {
-    P const s = f / (P(2) + f), z = s * s, half = P(T(0.5)) * f * f;
-    constexpr int terms = sizeof(T) == 4 ? 4 : 10;
-    P sum = P(T(2.0 / (2 * terms + 1)));
-    for (int k = terms - 1; k >= 1; --k) sum = sum * z + P(T(2.0 / (2 * k + 1)));
+    P const s = f / (P(2) + f), z = s * s, w = z * z, half = P(T(0.5)) * f * f;
+    P even, odd;  // two shorter chains of operations that wait for each other
+    if constexpr (sizeof(T) == 4) {
+      odd = P(T(0.66666662693)) + w * P(T(0.28498786688));
+      even = P(T(0.40000972152)) + w * P(T(0.24279078841));
+    } else {
+      odd = P(T(6.666666666666735130e-01)) +
+            w * (P(T(2.857142874366239149e-01)) +
+                 w * (P(T(1.818357216161805012e-01)) + w * P(T(1.479819860511658591e-01))));
+      even = P(T(3.999999999940941908e-01)) +
+             w * (P(T(2.222219843214978396e-01)) + w * P(T(1.531383769920937332e-01)));
+    }
+    P const sum = odd + z * even;
     P const e_real{__builtin_convertvector(e, typename P::Register)};
     P const low = s * (half + z * sum) + e_real * P(Bits<T>::ln2_low);
     return e_real * P(Bits<T>::ln2_high) + (f - (half - low));

@@ -2,7 +2,9 @@
 
 #include <omp.h>
 
+#include <atomic>
 #include <cstdint>
+#include <vector>
 
 #include <pliant/backend/first_exception.hpp>
 
@@ -67,15 +69,48 @@ class Threads {
       return g(0, n);
     }
     FirstException thrown;
+    SharedBlocks shared(blocks, count_);
 #pragma omp parallel num_threads(count_)
     {
-#pragma omp for schedule(dynamic)
-      for (Index b = 0; b < blocks; ++b) thrown.guard(b, [&] { f(b, b + 1); });
+      for (Index b; (b = shared.next(omp_get_thread_num())) >= 0;)
+        thrown.guard(b, [&] { f(b, b + 1); });
+#pragma omp barrier
       Part const part(n);
       g(part.first, part.last);
     }
     thrown.rethrow();
   }
+  /// Blocks in as many runs as there are threads. Each thread takes those of its own run first, whose data its caches
+  /// may still have from the last loop, then what others have left.
+  class SharedBlocks {
+   public:
+    SharedBlocks(Index blocks, int threads) : runs_(static_cast<std::size_t>(threads)) {
+      std::int64_t const n = blocks;
+      for (int t = 0; t < threads; ++t) {
+        Run& run = runs_[static_cast<std::size_t>(t)];
+        run.next = static_cast<Index>(t * n / threads);
+        run.last = static_cast<Index>((t + 1) * n / threads);
+      }
+    }
+    /// −1: all are taken.
+    Index next(int thread) {
+      auto const count = static_cast<int>(runs_.size());
+      for (int k = 0; k < count; ++k) {
+        Run& run = runs_[static_cast<std::size_t>((thread + k) % count)];
+        if (run.next.load(std::memory_order_relaxed) >= run.last) continue;
+        Index const block = run.next.fetch_add(1, std::memory_order_relaxed);
+        if (block < run.last) return block;
+      }
+      return -1;
+    }
+
+   private:
+    struct alignas(64) Run {
+      std::atomic<Index> next;
+      Index last;
+    };
+    std::vector<Run> runs_;
+  };
   /// That of the calling thread in a parallel region.
   struct Part {
     Index first, last;
