@@ -21,7 +21,8 @@ struct Everything {
 
 TEST_CASE("duals carry the values and the derivatives along", "[math]") {
   using D = Dual<double, 2>;
-  for (auto const& [x, y] : {std::pair{0.3, 0.8}, {0.9, 0.2}, {-0.6, 0.7}, {1.7, 1.1}}) {
+  for (auto const& point : {std::pair{0.3, 0.8}, {0.9, 0.2}, {-0.6, 0.7}, {1.7, 1.1}}) {
+    double const x = point.first, y = point.second;
     D const z = Everything{}(D::variable(x, 0), D::variable(y, 1));
 
     CHECK(z.value == Approx(Everything{}(x, y)).epsilon(1e-14));
@@ -53,7 +54,8 @@ TEST_CASE("duals of duals carry second derivatives", "[math]") {
 TEST_CASE("duals that know their zeros have the derivatives of those that do not", "[math]") {
   using Knowing = Dual<double, 2, Zeros::known>;
   using Plain = Dual<double, 2>;
-  for (auto const& [x, y] : {std::pair{0.3, 0.8}, {0.9, 0.2}, {-0.6, 0.7}, {1.7, 1.1}}) {
+  for (auto const& point : {std::pair{0.3, 0.8}, {0.9, 0.2}, {-0.6, 0.7}, {1.7, 1.1}}) {
+    double const x = point.first, y = point.second;
     Knowing const along_x = Knowing::variable(x, 0), along_y = Knowing::variable(y, 1);
     Plain const z = Everything{}(Plain::variable(x, 0), Plain::variable(y, 1));
     Plain const by_x = Everything{}(Plain::variable(x, 0), Plain(y));

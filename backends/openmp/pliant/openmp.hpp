@@ -12,6 +12,7 @@
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/backend/kernel.hpp>
 #include <pliant/error.hpp>
+#include <pliant/openmp/accumulate_fans.hpp>
 #include <pliant/openmp/few_patches.hpp>
 #include <pliant/openmp/pack_members.hpp>
 #include <pliant/openmp/patches.hpp>
@@ -59,8 +60,8 @@ class OpenMP {
    public:
     Elements() = default;
     Elements(OpenMP const&, std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
-             std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given)
-        : detail::Patches<Nodes>(connectivity, groups, tags, nodes) {}
+             std::vector<Tag> const& tags, Index nodes, NodeOrder order = NodeOrder::as_given)
+        : detail::Patches<Nodes>(connectivity, groups, tags, nodes, order) {}
   };
 
   template <class F>
@@ -139,9 +140,9 @@ class OpenMP {
     if (active.list != nullptr && 4 * active.patch_count() < 3 * elements.patch_count())
       return detail::accumulate_few(threads_, active, accumulate_in, out);
     if (active.list != nullptr) clear_scratch(elements, out);
-    threads_.for_each_block(active.patch_count(), accumulate_in, elements.folded_count(),
+    threads_.for_each_block(active.patch_count(), accumulate_in, elements.rows().folded_count(),
                             [&](Index k) {
-                              auto const f = elements.folded(k);
+                              auto const f = elements.rows().folded(k);
                               for (Index row : f.rows)
                                 for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
                             });
@@ -196,7 +197,7 @@ class OpenMP {
   template <int Nodes, int C>
   void clear_scratch(Elements<Nodes> const& elements, NodeField<T, C> out) const {
     if (elements.patch_count() == 0) return;
-    Index const first = elements.scratch_of(0).first;
+    Index const first = elements.rows().scratch_of(0).first;
     threads_.for_each_part(elements.scratch_nodes(), small_loop, [&](Index from, Index to) {
       std::fill_n(out.data + std::ptrdiff_t{node_stride} * (first + from),
                   std::ptrdiff_t{node_stride} * (to - from), T(0));
@@ -206,16 +207,20 @@ class OpenMP {
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   static void accumulate_patch(Elements<Nodes> const& elements, Index patch, Kernel const& kernel,
                                NodeField<T, C> out, Fields const&... fields) {
-    auto const [first, last] = elements.scratch_of(patch);
+    auto const [first, last] = elements.rows().scratch_of(patch);
     std::fill_n(out.data + std::ptrdiff_t{node_stride} * first,
                 std::ptrdiff_t{node_stride} * (last - first), T(0));
+    if constexpr (Elements<Nodes>::may_have_fans && SymmetricKernel<Kernel>)
+      if (elements.has_fans())
+        return detail::accumulate_fans<Groups>(elements.fans(), patch, kernel, out, fields...);
+    detail::PatchTargets<Nodes> const targets(elements, patch);
     detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
       detail::prefetch_next<Nodes>(elements, m, out, fields...);
       auto const values =
           call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int a = 0; a < Nodes; ++a) {
         Index rows[Scalar::lanes];
-        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = elements.targets(m.element[l])[a];
+        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l])[a];
         typename Scalar::Register r[4] = {};
         for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
         detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
