@@ -72,8 +72,7 @@ class OpenMP {
     });
   }
   /// f(k) for each k < n on the host, in no order, each call worth a thread.
-  template <class F>
-  void for_each_task(Index n, F const& f) const {
+  void for_each_task(Index n, FunctionRef<void(Index)> f) const {
     threads_.for_each_block(n, f);
   }
   template <class F>
@@ -141,10 +140,12 @@ class OpenMP {
       return detail::accumulate_few(threads_, active, accumulate_in, out);
     if (active.list != nullptr) clear_scratch(elements, out);
     threads_.for_each_block(active.patch_count(), accumulate_in, elements.rows().folded_count(),
-                            [&](Index k) {
-                              auto const f = elements.rows().folded(k);
-                              for (Index row : f.rows)
-                                for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
+                            [&](Index first, Index last) {
+                              for (Index k = first; k < last; ++k) {
+                                auto const f = elements.rows().folded(k);
+                                for (Index row : f.rows)
+                                  for (int c = 0; c < C; ++c) out(f.node, c) += out(row, c);
+                              }
                             });
   }
 

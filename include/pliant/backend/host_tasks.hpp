@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include <pliant/backend/function_ref.hpp>
 #include <pliant/config.hpp>
 
 namespace pliant {
@@ -15,20 +16,18 @@ class HostTasks {
   /// The backend has to live longer.
   template <class B>
   explicit HostTasks(B const& backend) {
-    if constexpr (requires(std::function<void(Index)> const& f) {
+    if constexpr (requires(FunctionRef<void(Index)> f) {
                     backend.for_each_task(Index{}, f);
                     backend.threads();
                   }) {
       threads_ = backend.threads();
-      run_ = [&backend](Index n, std::function<void(Index)> const& f) {
-        backend.for_each_task(n, f);
-      };
+      run_ = [&backend](Index n, FunctionRef<void(Index)> f) { backend.for_each_task(n, f); };
     }
   }
 
   int threads() const { return threads_; }
   /// f(k) for each k < n; as tasks worth a thread each.
-  void operator()(Index n, std::function<void(Index)> const& f) const {
+  void operator()(Index n, FunctionRef<void(Index)> f) const {
     if (run_ && n > 1) return run_(n, f);
     for (Index k = 0; k < n; ++k) f(k);
   }
@@ -47,7 +46,7 @@ class HostTasks {
 
  private:
   int threads_ = 1;
-  std::function<void(Index, std::function<void(Index)> const&)> run_;
+  std::function<void(Index, FunctionRef<void(Index)>)> run_;
 };
 
 }  // namespace pliant

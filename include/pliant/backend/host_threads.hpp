@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <functional>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -21,6 +20,7 @@
 #endif
 
 #include <pliant/backend/first_exception.hpp>
+#include <pliant/backend/function_ref.hpp>
 
 namespace pliant {
 
@@ -80,7 +80,7 @@ class HostThreads {
     return threads == nullptr || threads->in_loop_ ? 1 : threads->count_;
   }
   /// task(k) for each k < count, in no order. Throws what the first of them throws.
-  static void run(int count, std::function<void(int)> const& task) {
+  static void run(int count, FunctionRef<void(int)> task) {
     if (count > 1 && now() > 1) return current()->share(count, task);
     for (int k = 0; k < count; ++k) task(k);
   }
@@ -88,7 +88,7 @@ class HostThreads {
  private:
   /// A loop, of which threads take what is next.
   struct Loop {
-    std::function<void(int)> const& task;
+    FunctionRef<void(int)> task;
     int count, room;  // room: for so many threads more
     std::atomic<int> next{0};
     detail::FirstException thrown{};
@@ -117,7 +117,7 @@ class HostThreads {
     return size;
   }
 
-  void share(int count, std::function<void(int)> const& task) {
+  void share(int count, FunctionRef<void(int)> task) {
     Loop loop{.task = task, .count = count, .room = std::min(count_, count) - 1};
     start(loop.room);
     in_loop_ = true;
@@ -188,8 +188,7 @@ class HostParts {
                           static_cast<unsigned>(count_));
   }
   /// f(first, last, part) for each part. Throws what a loop over [0, n) would have thrown first.
-  template <class F>
-  void operator()(F const& f) const {
+  void operator()(FunctionRef<void(I, I, int)> f) const {
     if (count_ == 1) return f(I{0}, n_, 0);
     HostThreads::run(count_, [&](int part) { f(first(part), first(part + 1), part); });
   }

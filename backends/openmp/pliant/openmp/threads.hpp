@@ -7,24 +7,9 @@
 #include <vector>
 
 #include <pliant/backend/first_exception.hpp>
+#include <pliant/backend/function_ref.hpp>
 
 namespace pliant::detail {
-
-/// What a loop does in a range, of whatever type: loops are compiled once, and not for each of these.
-class LoopBody {
- public:
-  /// f(first, last) for the range; f outlives this.
-  template <class F>
-  explicit LoopBody(F const& f)
-      : f_(&f), call_([](void const* own, Index first, Index last) {
-          (*static_cast<F const*>(own))(first, last);
-        }) {}
-  void operator()(Index first, Index last) const { call_(f_, first, last); }
-
- private:
-  void const* f_;
-  void (*call_)(void const*, Index, Index);
-};
 
 /// Loops on a number of threads. What does not pay for waking them runs on the caller's alone, with no
 /// call of the OpenMP runtime.
@@ -34,26 +19,7 @@ class Threads {
   int count() const { return count_; }
 
   /// Calls f(first, last) with a part of [0, n) on each thread; on one up to n = `few`.
-  template <class F>
-  void for_each_part(Index n, Index few, F const& f) const {
-    run_parts(n, few, LoopBody(f));
-  }
-  /// Calls f(block) for each block of work; then g(k) for each k < n, where f is done with all blocks.
-  template <class F, class G>
-  void for_each_block(Index blocks, F const& f, Index n, G const& g) const {
-    auto const all_of_g = [&](Index first, Index last) {
-      for (Index k = first; k < last; ++k) g(k);
-    };
-    auto const one_of_f = [&](Index block, Index) { f(block); };
-    run_blocks(blocks, LoopBody(one_of_f), n, LoopBody(all_of_g));
-  }
-  template <class F>
-  void for_each_block(Index blocks, F const& f) const {
-    for_each_block(blocks, f, 0, [](Index) {});
-  }
-
- private:
-  void run_parts(Index n, Index few, LoopBody const& f) const {
+  void for_each_part(Index n, Index few, FunctionRef<void(Index, Index)> f) const {
     if (count_ == 1 || n <= few) return f(0, n);
     FirstException thrown;
 #pragma omp parallel num_threads(count_)
@@ -63,23 +29,30 @@ class Threads {
     }
     thrown.rethrow();
   }
-  void run_blocks(Index blocks, LoopBody const& f, Index n, LoopBody const& g) const {
+  /// Calls f(block) for each block of work; then g(first, last) with a part of [0, n) on each thread, where f is done
+  /// with all blocks.
+  void for_each_block(Index blocks, FunctionRef<void(Index)> f, Index n,
+                      FunctionRef<void(Index, Index)> g) const {
     if (count_ == 1 || blocks < 2) {
-      for (Index b = 0; b < blocks; ++b) f(b, b + 1);
+      for (Index b = 0; b < blocks; ++b) f(b);
       return g(0, n);
     }
     FirstException thrown;
     SharedBlocks shared(blocks, count_);
 #pragma omp parallel num_threads(count_)
     {
-      for (Index b; (b = shared.next(omp_get_thread_num())) >= 0;)
-        thrown.guard(b, [&] { f(b, b + 1); });
+      for (Index b; (b = shared.next(omp_get_thread_num())) >= 0;) thrown.guard(b, [&] { f(b); });
 #pragma omp barrier
       Part const part(n);
       g(part.first, part.last);
     }
     thrown.rethrow();
   }
+  void for_each_block(Index blocks, FunctionRef<void(Index)> f) const {
+    for_each_block(blocks, f, 0, [](Index, Index) {});
+  }
+
+ private:
   /// Blocks in as many runs as there are threads. Each thread takes those of its own run first, whose data its caches
   /// may still have from the last loop, then what others have left.
   class SharedBlocks {
