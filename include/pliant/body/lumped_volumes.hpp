@@ -26,10 +26,16 @@ void add_in_order(M const& mesh, Add const& add) {
   auto const order = std::make_unique_for_overwrite<Index[]>(places);
   auto const count = static_cast<Index>(mesh.nodes.size());
   Index const shift = shift_to_few(count), ranges = (count >> shift) + 1;
+  auto const range_of = [&](Index place) { return node(static_cast<std::size_t>(place)) >> shift; };
   auto const begin = distribute(
       static_cast<Index>(places), ranges,
-      [&](Index place) { return node(static_cast<std::size_t>(place)) >> shift; },
-      [&](Index at, Index place) { order[static_cast<std::size_t>(at)] = place; });
+      [&](Index from, Index to, Index* numbers) {
+        for (Index place = from; place < to; ++place) ++numbers[range_of(place)];
+      },
+      [&](Index from, Index to, Index* next) {
+        for (Index place = from; place < to; ++place)
+          order[static_cast<std::size_t>(next[range_of(place)]++)] = place;
+      });
   for_each_on_host(ranges, 1, [&](Index range) {
     auto const r = static_cast<std::size_t>(range);
     for (Index k = begin[r]; k < begin[r + 1]; ++k) {

@@ -16,28 +16,24 @@ struct GroupedByKey {
   std::vector<Index> first, order;
 };
 
-/// Calls put(place, i) for each i < n with the place of i among all by their keys, those of one key in their order: where each
-/// key's places begin. Keys are few: each thread counts them on its own.
-template <class KeyOf, class Put>
-std::vector<Index> distribute(Index n, Index keys, KeyOf const& key_of, Put const& put) {
+/// Distributes the entries 0 to n − 1 to places, ordered by their keys, those of one key in their order: where each key's
+/// places begin. count(from, to, numbers) adds to numbers[key] for each entry of a range; put(from, to, places) has each
+/// of them take the place places[key]++. Keys are few: each thread counts them on its own.
+inline std::vector<Index> distribute(Index n, Index keys,
+                                     FunctionRef<void(Index, Index, Index*)> count,
+                                     FunctionRef<void(Index, Index, Index*)> put) {
   HostParts const parts(n);
   auto const width = static_cast<std::size_t>(keys);
   std::vector<Index> next(static_cast<std::size_t>(parts.count()) * width);  // (parts, keys)
   auto const row = [&](int part) { return next.data() + static_cast<std::size_t>(part) * width; };
-  parts([&](Index from, Index to, int part) {
-    Index* const counts = row(part);
-    for (Index i = from; i < to; ++i) ++counts[key_of(i)];
-  });
+  parts([&](Index from, Index to, int part) { count(from, to, row(part)); });
   std::vector<Index> first(width + 1, n);
   Index before = 0;
   for (std::size_t k = 0; k < width; ++k) {
     first[k] = before;
     for (int part = 0; part < parts.count(); ++part) before += std::exchange(row(part)[k], before);
   }
-  parts([&](Index from, Index to, int part) {
-    Index* const places = row(part);
-    for (Index i = from; i < to; ++i) put(places[key_of(i)]++, i);
-  });
+  parts([&](Index from, Index to, int part) { put(from, to, row(part)); });
   return first;
 }
 
@@ -55,9 +51,15 @@ inline GroupedByKey group_by_ranges(std::vector<Index> const& keys, Index count)
   Index const ranges = (count >> shift) + 1, n = static_cast<Index>(keys.size());
   auto const entries = std::make_unique_for_overwrite<Entry[]>(keys.size());
   auto const begin = distribute(
-      n, ranges, [&](Index i) { return keys[static_cast<std::size_t>(i)] >> shift; },
-      [&](Index place, Index i) {
-        entries[static_cast<std::size_t>(place)] = {keys[static_cast<std::size_t>(i)], i};
+      n, ranges,
+      [&](Index from, Index to, Index* numbers) {
+        for (Index i = from; i < to; ++i) ++numbers[keys[static_cast<std::size_t>(i)] >> shift];
+      },
+      [&](Index from, Index to, Index* places) {
+        for (Index i = from; i < to; ++i) {
+          Index const key = keys[static_cast<std::size_t>(i)];
+          entries[static_cast<std::size_t>(places[key >> shift]++)] = {key, i};
+        }
       });
   GroupedByKey grouped;
   grouped.first.resize(static_cast<std::size_t>(count) + 1);

@@ -116,7 +116,8 @@ class BoxOfCells {
 
   /// The sides of elements on one side of the box, in the order of their smallest corner.
   std::vector<Facet<3>> side(Mesh<E> const& made, std::size_t axis, bool at_end) const {
-    std::vector<Facet<3>> facets;
+    std::vector<Facet<3>> found;
+    std::vector<std::array<Index, 4>> order;  // the smallest corner, and the place in the list
     std::array<int, 3> first{0, 0, 0}, last = o_.cells;
     if (at_end) first[axis] = last[axis] - 1;
     last[axis] = first[axis] + 1;
@@ -128,7 +129,10 @@ class BoxOfCells {
     auto const add = [&](Connectivity<E> const& element) {
       for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
         auto const facet = side_of<E>(element, static_cast<int>(s));
-        if (std::ranges::all_of(facet, is_here)) facets.push_back(facet);
+        if (!std::ranges::all_of(facet, is_here)) continue;
+        order.push_back(
+            {*std::min_element(facet.begin(), facet.end()), static_cast<Index>(found.size())});
+        found.push_back(facet);
       }
     };
     for (int k = first[2]; k < last[2]; ++k)
@@ -137,8 +141,11 @@ class BoxOfCells {
           for (std::ptrdiff_t e = 0; e < per_cell; ++e)
             add(made.template elements<E>()[static_cast<std::size_t>(cell(i, j, k) * per_cell +
                                                                      e)]);
-    std::ranges::stable_sort(facets, {},
-                             [](Facet<3> const& f) { return *std::ranges::min_element(f); });
+    std::sort(order.begin(), order.end());
+    std::vector<Facet<3>> facets;
+    facets.reserve(found.size());
+    for (auto const& [smallest, place, none, unused] : order)
+      facets.push_back(found[static_cast<std::size_t>(place)]);
     return facets;
   }
 

@@ -19,13 +19,18 @@ inline void sort_by_high_bits(std::unique_ptr<std::uint64_t[]>& list, Index n) {
   constexpr int digit = 11;  // bits
   auto sorted = std::make_unique_for_overwrite<std::uint64_t[]>(static_cast<std::size_t>(n));
   for (int shift = 31; shift < 64; shift += digit) {
+    auto const digit_of = [&](Index i) {
+      return list[static_cast<std::size_t>(i)] >> shift & ((std::uint64_t{1} << digit) - 1);
+    };
     distribute(
         n, Index{1} << digit,
-        [&](Index i) {
-          return list[static_cast<std::size_t>(i)] >> shift & ((std::uint64_t{1} << digit) - 1);
+        [&](Index from, Index to, Index* numbers) {
+          for (Index i = from; i < to; ++i) ++numbers[digit_of(i)];
         },
-        [&](Index place, Index i) {
-          sorted[static_cast<std::size_t>(place)] = list[static_cast<std::size_t>(i)];
+        [&](Index from, Index to, Index* places) {
+          for (Index i = from; i < to; ++i)
+            sorted[static_cast<std::size_t>(places[digit_of(i)]++)] =
+                list[static_cast<std::size_t>(i)];
         });
     list.swap(sorted);
   }

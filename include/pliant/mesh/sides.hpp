@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -91,61 +93,81 @@ inline PLIANT_INLINE void for_each_side_sum(Connectivity<E> const& element, Visi
 
 namespace detail {
 
+/// Where a side is found: the number of its element's type among the mesh's, of the element, and on its cell.
+struct PlaceOfSide {
+  Index type, element, side;
+};
+
+template <Element... Es>
+Facet<Mesh<Es...>::dim> side_at(Mesh<Es...> const& mesh, PlaceOfSide const& place) {
+  Facet<Mesh<Es...>::dim> facet;
+  Index type = 0;
+  ((type++ == place.type
+        ? void(facet = side_of<Es>(
+                   mesh.template elements<Es>()[static_cast<std::size_t>(place.element)],
+                   place.side))
+        : void()),
+   ...);
+  return facet;
+}
+
 /// Sides of elements, and what tells them from others.
-template <int Dim>
 struct SideList {
-  std::vector<Facet<Dim>> sides;
+  std::vector<PlaceOfSide> places;
   std::vector<std::array<Index, 4>> keys;
   std::vector<Index> smallest;  // corner
 
   void append(SideList const& other) {
-    sides.insert(sides.end(), other.sides.begin(), other.sides.end());
+    places.insert(places.end(), other.places.begin(), other.places.end());
     keys.insert(keys.end(), other.keys.begin(), other.keys.end());
     smallest.insert(smallest.end(), other.smallest.begin(), other.smallest.end());
   }
 };
 
+/// Flips bits[corner] by the sums of the sides of elements, first to last, with the smallest corner there.
+template <Element E>
+void flip_sides(std::vector<Connectivity<E>> const& elements, Index first, Index last,
+                std::vector<std::uint64_t>& bits, bool is_shared) {
+  auto const count = static_cast<Index>(bits.size());
+  for (auto e = static_cast<std::size_t>(first); e < static_cast<std::size_t>(last); ++e) {
+    auto const element = elements[e];
+    for (Index node : element)
+      if (node < 0 || node >= count)
+        throw Error("mesh: an element refers to node ", node, ", but the mesh has ", bits.size(),
+                    " nodes; correct the connectivity");
+    for_each_side_sum<E>(element, [&](std::size_t, Index corner, std::uint64_t sum) {
+      auto& own = bits[static_cast<std::size_t>(corner)];
+      if (is_shared)
+        std::atomic_ref(own).fetch_xor(sum, std::memory_order_relaxed);
+      else
+        own ^= sum;
+    });
+  }
+}
+
 /// The sides of elements but those whose smallest corner has none but sides that are there twice: they cancel in the
 /// exclusive or over the sides of one smallest corner, so that most corners are done with; 64 bits make an accidental
 /// zero as good as impossible. Throws Error for an element of nodes that the mesh has not.
 template <Element... Es>
-SideList<Mesh<Es...>::dim> sides_that_may_be_outer(Mesh<Es...> const& mesh) {
-  auto const count = static_cast<Index>(mesh.nodes.size());
+SideList sides_that_may_be_outer(Mesh<Es...> const& mesh) {
   std::vector<std::uint64_t> left(mesh.nodes.size());
   auto const parts_of = [&]<Element E>(E) {
     return pliant::detail::HostParts(static_cast<Index>(mesh.template elements<E>().size()),
                                      pliant::detail::few_elements(E::nodes));
   };
-  auto const flip_sides = [&]<Element E>(E) {
+  auto const flip = [&]<Element E>(E) {
+    auto const& elements = mesh.template elements<E>();
     auto const parts = parts_of(E{});
-    auto const flip_in = [&](Index first, Index last, auto const& flip) {
-      auto* const bits = left.data();
-      auto const* const elements = mesh.template elements<E>().data();
-      for (Index e = first; e < last; ++e) {
-        auto const element = elements[e];
-        for (Index node : element)
-          if (node < 0 || node >= count)
-            throw Error("mesh: an element refers to node ", node, ", but the mesh has ",
-                        mesh.nodes.size(), " nodes; correct the connectivity");
-        for_each_side_sum<E>(element, [&](std::size_t, Index corner, std::uint64_t sum) {
-          flip(bits[corner], sum);
-        });
-      }
-    };
     if (parts.count() == 1 || !pliant::detail::has_many_host_threads())
-      return flip_in(0, static_cast<Index>(mesh.template elements<E>().size()),
-                     [](std::uint64_t& bits, std::uint64_t by) { bits ^= by; });
-    parts([&](Index first, Index last, int) {
-      flip_in(first, last, [](std::uint64_t& bits, std::uint64_t by) {
-        std::atomic_ref(bits).fetch_xor(by, std::memory_order_relaxed);
-      });
-    });
+      return flip_sides<E>(elements, 0, static_cast<Index>(elements.size()), left, false);
+    parts([&](Index first, Index last, int) { flip_sides<E>(elements, first, last, left, true); });
   };
-  (flip_sides(Es{}), ...);
-  SideList<Mesh<Es...>::dim> all;
+  (flip(Es{}), ...);
+  SideList all;
+  Index type = 0;
   auto const collect = [&]<Element E>(E) {
     auto const parts = parts_of(E{});
-    std::vector<SideList<Mesh<Es...>::dim>> of_parts(static_cast<std::size_t>(parts.count()));
+    std::vector<SideList> of_parts(static_cast<std::size_t>(parts.count()));
     parts([&](Index first, Index last, int part) {
       auto& found = of_parts[static_cast<std::size_t>(part)];
       for (Index e = first; e < last; ++e) {
@@ -155,13 +177,15 @@ SideList<Mesh<Es...>::dim> sides_that_may_be_outer(Mesh<Es...> const& mesh) {
         if (any == 0) continue;
         for_each_side_sum<E>(element, [&](std::size_t s, Index corner, std::uint64_t) {
           if (left[static_cast<std::size_t>(corner)] == 0) return;
-          found.sides.push_back(side_of<E>(element, static_cast<int>(s)));
-          found.keys.push_back(key_of(found.sides.back()));
+          auto const side = static_cast<Index>(s);
+          found.places.push_back({type, e, side});
+          found.keys.push_back(key_of(side_of<E>(element, side)));
           found.smallest.push_back(corner);
         });
       }
     });
     for (auto const& found : of_parts) all.append(found);
+    ++type;
   };
   (collect(Es{}), ...);
   return all;
@@ -190,7 +214,7 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
       int times = 0;
       for (Index k = at_corner.first[corner]; k < at_corner.first[corner + 1]; ++k)
         times += is_same(found.keys[side(k)], found.keys[side(i)]);
-      if (times == 1) outer.push_back(found.sides[side(i)]);
+      if (times == 1) outer.push_back(detail::side_at(mesh, found.places[side(i)]));
     }
   return outer;
 }
@@ -210,8 +234,8 @@ void for_each_side_with(Mesh<Es...> const& mesh, std::vector<std::array<Index, 4
     auto const& elements = mesh.template elements<E>();
     pliant::detail::HostParts const parts(static_cast<Index>(elements.size()),
                                           pliant::detail::few_elements(E::nodes));
-    std::vector<std::vector<std::pair<std::size_t, Facet<Dim>>>> found(
-        static_cast<std::size_t>(parts.count()));
+    // Per part: the place among the keys, the element, and its side.
+    std::vector<std::vector<std::array<Index, 4>>> found(static_cast<std::size_t>(parts.count()));
     parts([&](Index first, Index last, int part) {
       for (auto e = static_cast<std::size_t>(first); e < static_cast<std::size_t>(last); ++e) {
         int corners = 0;
@@ -219,15 +243,18 @@ void for_each_side_with(Mesh<Es...> const& mesh, std::vector<std::array<Index, 4
           corners += named[static_cast<std::size_t>(elements[e][a])];
         if (corners < Dim) continue;
         for (std::size_t s = 0; s < E::cell::sides().size(); ++s) {
-          auto const side = side_of<E>(elements[e], static_cast<int>(s));
-          auto const key = std::ranges::lower_bound(keys, key_of(side));
-          if (key != keys.end() && *key == key_of(side))
-            found[static_cast<std::size_t>(part)].emplace_back(key - keys.begin(), side);
+          auto const own = key_of(side_of<E>(elements[e], static_cast<int>(s)));
+          auto const key = std::lower_bound(keys.begin(), keys.end(), own);
+          if (key != keys.end() && *key == own)
+            found[static_cast<std::size_t>(part)].push_back({static_cast<Index>(key - keys.begin()),
+                                                             static_cast<Index>(e),
+                                                             static_cast<Index>(s)});
         }
       }
     });
     for (auto const& of_part : found)
-      for (auto const& [k, side] : of_part) visit(k, side);
+      for (auto const& [k, e, s, none] : of_part)
+        visit(static_cast<std::size_t>(k), side_of<E>(elements[static_cast<std::size_t>(e)], s));
   };
   (look_at(Es{}), ...);
 }
@@ -239,7 +266,7 @@ class FacetsByCorners {
   void add(Facet<Dim> const& facet) { keys_.push_back(key_of(facet)); }
   /// Behind the last one that is added.
   void sort() {
-    std::ranges::sort(keys_);
+    std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     facets_.resize(keys_.size());
   }
@@ -247,8 +274,8 @@ class FacetsByCorners {
   Facet<Dim>& operator[](std::size_t k) { return facets_[k]; }
   /// For one that was added: empty, or what was assigned.
   Facet<Dim> const& at(Facet<Dim> const& facet) const {
-    return facets_[static_cast<std::size_t>(std::ranges::lower_bound(keys_, key_of(facet)) -
-                                            keys_.begin())];
+    return facets_[static_cast<std::size_t>(
+        std::lower_bound(keys_.begin(), keys_.end(), key_of(facet)) - keys_.begin())];
   }
 
  private:

@@ -16,8 +16,9 @@
 
 namespace pliant {
 
-/// The cells, edges and sides of a mesh under refinement, plane or solid, without geometry: the topology of
-/// Hierarchy. Numbers ascend from older to newer. Copies share what neither changes.
+/// The cells, edges and sides of a mesh under refinement, without geometry: the topology of Hierarchy. Numbers ascend
+/// from older to newer. Copies share what neither changes.
+template <int Dim>
 class CellTree {
  public:
   CellTree() = default;
@@ -40,7 +41,7 @@ class CellTree {
       if (is_new) edges_.push_back({.nodes = ends});
       auto const& known = edges_[at(edge)];
       // Counter-clockwise neighbours run along their common edge in opposite directions.
-      if (p.dim == 2 && !is_new && (known.leaves > 1 || known.nodes == ends))
+      if (Dim == 2 && !is_new && (known.leaves > 1 || known.nodes == ends))
         throw Error("Hierarchy: cell ", c, " overlaps another one at the edge from node ", ends[0],
                     " to ", ends[1], "; give each edge one cell on either side at most");
       cell.edges[e] = edge;
@@ -255,18 +256,10 @@ class CellTree {
   }
 
   /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
-  struct NodeList {
-    std::array<Index, 27> nodes;
-    std::size_t count = 0;
-    auto begin() const { return nodes.begin(); }
-    auto end() const { return nodes.begin() + static_cast<std::ptrdiff_t>(count); }
-    Index operator[](std::size_t a) const { return nodes[a]; }
-    void push_back(Index node) { nodes[count++] = node; }
-  };
-  [[nodiscard]] NodeList nodes_of(Index c) const {
+  [[nodiscard]] CellNodeList nodes_of(Index c) const {
     auto const& cell = cells_[at(c)];
     auto const& p = cell.pattern();
-    NodeList list;
+    CellNodeList list;
     for (std::size_t a = 0; a < at(p.corners); ++a) list.push_back(cell.nodes[a]);
     if (cell.has == CellNodes::corners) return list;
     for (std::size_t e = 0; e < at(p.edges); ++e) list.push_back(edges_[at(cell.edges[e])].middle);
@@ -277,7 +270,7 @@ class CellTree {
     return list;
   }
   /// The same as the element has them, whose volume is positive.
-  [[nodiscard]] NodeList element_nodes(Index c) const {
+  [[nodiscard]] CellNodeList element_nodes(Index c) const {
     auto list = nodes_of(c);
     if (!cells_[at(c)].mirrored) return list;
     std::swap(list.nodes[2], list.nodes[3]);

@@ -17,9 +17,10 @@ namespace pliant {
 /// The nodes of a tree that hang, by the minimum rule: on an edge or side the displacement is of the lowest degree of
 /// all leaves around, and on a whole edge or side of a leaf it is what that leaf's nodes say. A side whose leaf
 /// meets finer ones of lower degree, or has such an edge between its parts, is of that degree throughout, with its edges.
+template <int Dim>
 class HangingNodes {
  public:
-  explicit HangingNodes(CellTree const& tree) : tree_(tree), edges_(tree.edges()) {}
+  explicit HangingNodes(CellTree<Dim> const& tree) : tree_(tree), edges_(tree.edges()) {}
 
   /// Every one, ascending, with its free masters.
   [[nodiscard]] std::vector<Slave> slaves() {
@@ -126,9 +127,9 @@ class HangingNodes {
     }
   }
   /// The nodes of a side as an element has them.
-  [[nodiscard]] CellTree::NodeList nodes_of(TreeSide const& side, CellNodes has) const {
+  [[nodiscard]] CellNodeList nodes_of(TreeSide const& side, CellNodes has) const {
     auto const n = side.corners();
-    CellTree::NodeList nodes;
+    CellNodeList nodes;
     for (std::size_t k = 0; k < n; ++k) nodes.push_back(side.nodes[k]);
     if (has == CellNodes::corners) return nodes;
     for (std::size_t k = 0; k < n; ++k) nodes.push_back(edges_[at(side.edges[k])].middle);
@@ -144,7 +145,8 @@ class HangingNodes {
     auto const nodes = nodes_of(side, has);
     auto const kind = quad ? CellKind::quadrilateral : CellKind::triangle;
     auto const add_at = [&](Index node, std::array<double, 3> const& place) {
-      if (node >= 0) add(side.level, true, node, detail::shape_weights(kind, has, nodes, place));
+      if (node >= 0)
+        add(side.level, true, node, detail::shape_weights<Dim>(kind, has, nodes, place));
     };
     if (quad && has != CellNodes::all) add_at(side.centre, p.place[at(p.centre)]);
     if (has == CellNodes::corners && !mixed()) return;
@@ -177,18 +179,19 @@ class HangingNodes {
         if (c >= 0) has = std::min(has, tree_[c].has);
       if (has == CellNodes::all) continue;
       add(side.level, true, side.centre,
-          detail::shape_weights(CellKind::quadrilateral, has, nodes_of(side, has), {0, 0, 0}));
+          detail::shape_weights<Dim>(CellKind::quadrilateral, has, nodes_of(side, has), {0, 0, 0}));
     }
     for (Index c = 0; c < static_cast<Index>(tree_.cells().size()); ++c) {
       auto const& cell = tree_[c];
       if (cell.first_child >= 0 || cell.centre < 0 || cell.has == CellNodes::all) continue;
       auto const& p = cell.pattern();
       add(cell.level, true, cell.centre,
-          detail::shape_weights(cell.kind, cell.has, tree_.nodes_of(c), p.place[at(p.centre)]));
+          detail::shape_weights<Dim>(cell.kind, cell.has, tree_.nodes_of(c),
+                                     p.place[at(p.centre)]));
     }
   }
 
-  CellTree const& tree_;
+  CellTree<Dim> const& tree_;
   SharedList<TreeEdge> const& edges_;
   std::vector<bool> listed_;       // by node; empty where leaves are of one degree
   std::vector<bool> linear_edge_;  // by edge, from sides

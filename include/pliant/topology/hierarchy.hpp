@@ -89,7 +89,7 @@ class Hierarchy {
   }
 
   [[nodiscard]] std::vector<Point<Dim>> const& points() const { return points_; }
-  [[nodiscard]] CellTree const& tree() const { return tree_; }
+  [[nodiscard]] CellTree<Dim> const& tree() const { return tree_; }
   [[nodiscard]] SharedList<TreeCell> const& cells() const { return tree_.cells(); }
   [[nodiscard]] TreeCell const& cell(Index c) const { return tree_[c]; }
   [[nodiscard]] bool is_leaf(Index c) const { return tree_.is_leaf(c); }
@@ -287,7 +287,8 @@ class Hierarchy {
   }
 
   /// Throws Error where it takes more than a limit to divide so many cells.
-  void check_room(char const* verb, std::size_t count, TreeQueries::Needed const& needed,
+  void check_room(char const* verb, std::size_t count,
+                  typename TreeQueries<Dim>::Needed const& needed,
                   RefinementLimits const& limits) const {
     auto const check = [&](char const* what, std::size_t in_all, std::size_t limit) {
       if (in_all > limit)
@@ -313,8 +314,8 @@ class Hierarchy {
   }
   NewNode interpolated(PlacedNode const& node) const {
     auto const& parent = cell(node.cell);
-    return {node.node,
-            detail::shape_weights(parent.kind, node.had, tree_.nodes_of(node.cell), node.place)};
+    return {node.node, detail::shape_weights<Dim>(parent.kind, node.had, tree_.nodes_of(node.cell),
+                                                  node.place)};
   }
   Point<Dim> mean_of_parents(NewNode const& n) const {
     // Equal weights as a sum and a division: the mean does not depend on how the sum is rounded.
@@ -427,7 +428,7 @@ class Hierarchy {
           for (std::size_t b = 0; b < cell(child).corners(); ++b)
             for (std::size_t k = 0; k < 3; ++k)
               place[k] += places[a][b] * p.place[at(corners[b])][k];
-          found.push_back({list[a], detail::shape_weights(own.kind, own.has, nodes, place)});
+          found.push_back({list[a], detail::shape_weights<Dim>(own.kind, own.has, nodes, place)});
         }
       }
     }
@@ -453,7 +454,7 @@ class Hierarchy {
   }
 
   std::vector<Point<Dim>> points_;
-  CellTree tree_;
+  CellTree<Dim> tree_;
   std::size_t leaf_count_ = 0;
 };
 

@@ -9,7 +9,7 @@
 #include <pliant/element/linear.hpp>
 #include <pliant/element/quadratic_simplex.hpp>
 #include <pliant/element/quadratic_tensor.hpp>
-#include <pliant/topology/cell_tree.hpp>
+#include <pliant/topology/tree_cell.hpp>
 
 // Elements by the cell they are on, and their shape functions.
 namespace pliant {
@@ -23,7 +23,7 @@ inline constexpr CellNodes nodes_on_cell =
 namespace detail {
 
 template <Element E>
-std::vector<std::pair<Index, double>> shape_weights(CellTree::NodeList const& nodes,
+std::vector<std::pair<Index, double>> shape_weights(CellNodeList const& nodes,
                                                     std::array<double, 3> const& place) {
   Vector<double, E::dim> xi;
   for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
@@ -33,11 +33,12 @@ std::vector<std::pair<Index, double>> shape_weights(CellTree::NodeList const& no
     if (shape[a] != 0) list.emplace_back(nodes[static_cast<std::size_t>(a)], shape[a]);
   return list;
 }
-/// The weights of an element's nodes in the value at a place on its cell; dyadic numbers, without rounding, so
-/// that they are the same from all elements around.
-inline std::vector<std::pair<Index, double>> shape_weights(CellKind kind, CellNodes has,
-                                                           CellTree::NodeList const& nodes,
-                                                           std::array<double, 3> const& place) {
+/// The weights of an element's nodes in the value at a place on its cell, in Dim dimensions; dyadic numbers, without
+/// rounding, so that they are the same from all elements around.
+template <int Dim>
+std::vector<std::pair<Index, double>> shape_weights(CellKind kind, CellNodes has,
+                                                    CellNodeList const& nodes,
+                                                    std::array<double, 3> const& place) {
   auto const choose = [&]<Element Linear, Element Edges, Element All>(
                           std::type_identity<std::tuple<Linear, Edges, All>>) {
     if (has == CellNodes::corners) return shape_weights<Linear>(nodes, place);

@@ -111,6 +111,16 @@ struct TreeSide {
   }
 };
 
+/// The nodes of the element on a cell or side, in the element's order.
+struct CellNodeList {
+  std::array<Index, 27> nodes;
+  std::size_t count = 0;
+  auto begin() const { return nodes.begin(); }
+  auto end() const { return nodes.begin() + static_cast<std::ptrdiff_t>(count); }
+  Index operator[](std::size_t a) const { return nodes[a]; }
+  void push_back(Index node) { nodes[count++] = node; }
+};
+
 /// How many of each there are.
 struct TreeSizes {
   Index cells = 0, edges = 0, sides = 0, nodes = 0;

@@ -12,9 +12,10 @@
 namespace pliant {
 
 /// What is asked of a tree before it changes. Refers to the tree.
+template <int Dim>
 class TreeQueries {
  public:
-  explicit TreeQueries(CellTree const& tree)
+  explicit TreeQueries(CellTree<Dim> const& tree)
       : tree_(tree), cells_(tree.cells()), edges_(tree.edges()), sides_(tree.sides()) {}
 
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
@@ -181,7 +182,7 @@ class TreeQueries {
     return list;
   }
 
-  CellTree const& tree_;
+  CellTree<Dim> const& tree_;
   SharedList<TreeCell> const& cells_;
   SharedList<TreeEdge> const& edges_;
   SharedList<TreeSide> const& sides_;
