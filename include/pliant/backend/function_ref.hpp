@@ -15,8 +15,8 @@ class FunctionRef<Result(Arguments...)> {
  public:
   template <class F>
     requires(!std::is_same_v<F, FunctionRef> && std::is_invocable_v<F const&, Arguments...>)
-  FunctionRef(F const& f) : object_(std::addressof(f)), call_(call<F>) {}
-  Result operator()(Arguments... arguments) const {
+  [[gnu::always_inline]] FunctionRef(F const& f) : object_(std::addressof(f)), call_(call<F>) {}
+  [[gnu::always_inline]] Result operator()(Arguments... arguments) const {
     return call_(object_, static_cast<Arguments>(arguments)...);
   }
 
