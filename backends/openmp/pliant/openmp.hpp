@@ -72,9 +72,7 @@ class OpenMP {
     });
   }
   /// f(k) for each k < n on the host, in no order, each call worth a thread.
-  void for_each_task(Index n, FunctionRef<void(Index)> f) const {
-    threads_.for_each_block(n, f);
-  }
+  void for_each_task(Index n, FunctionRef<void(Index)> f) const { threads_.for_each_block(n, f); }
   template <class F>
   double sum(Index n, F const& f) const {
     std::vector<double> partial((static_cast<std::size_t>(n) + sum_block - 1) / sum_block);
@@ -175,14 +173,15 @@ class OpenMP {
     require_visitor<Visitor, T, Gather<nodes, Fields...>, Groups, PackMembers,
                     Values<nodes, Fields>...>();
     auto const active = detail::active(table);
-    std::vector<std::array<double, Visitor::counters>> partial(
-        static_cast<std::size_t>(active.patch_count()));
+    constexpr std::size_t own = Visitor::counters;
+    std::vector<double> partial(own * static_cast<std::size_t>(active.patch_count()));
     threads_.for_each_block(active.patch_count(), [&](Index k) {
-      partial[static_cast<std::size_t>(k)] =
-          visit_patch<Groups>(active.elements, active.patch(k), visitor, fields...);
+      auto const mine = visit_patch<Groups>(active.elements, active.patch(k), visitor, fields...);
+      for (std::size_t c = 0; c < own; ++c)
+        partial[static_cast<std::size_t>(k) * own + c] = mine[c];
     });
-    for (auto const& mine : partial)
-      for (std::size_t k = 0; k < mine.size(); ++k) counters.data()[k] += mine[k];
+    if constexpr (own > 0)
+      for (std::size_t k = 0; k < partial.size(); ++k) counters.data()[k % own] += partial[k];
   }
 
  private:

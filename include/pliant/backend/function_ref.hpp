@@ -1,7 +1,6 @@
 #pragma once
 
-#include <memory>
-#include <type_traits>
+#include <concepts>
 
 namespace pliant {
 
@@ -14,8 +13,8 @@ template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
   template <class F>
-    requires(!std::is_same_v<F, FunctionRef> && std::is_invocable_v<F const&, Arguments...>)
-  [[gnu::always_inline]] FunctionRef(F const& f) : object_(std::addressof(f)), call_(call<F>) {}
+    requires(!std::same_as<F, FunctionRef> && std::invocable<F const&, Arguments...>)
+  [[gnu::always_inline]] FunctionRef(F const& f) : object_(&f), call_(call<F>) {}
   [[gnu::always_inline]] Result operator()(Arguments... arguments) const {
     return call_(object_, static_cast<Arguments>(arguments)...);
   }

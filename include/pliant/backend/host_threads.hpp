@@ -32,7 +32,8 @@ class HostThreads {
  public:
   /// As many as the process may run on, or OMP_NUM_THREADS where that is less.
   HostThreads() : HostThreads(available()) {}
-  explicit HostThreads(int most) : count_(std::max(most, 1)), is_outermost_(current() == nullptr) {
+  explicit HostThreads(int most)
+      : count_(std::clamp(most, 1, most_threads)), is_outermost_(current() == nullptr) {
     if (is_outermost_) current() = this;
   }
   /// No more than a backend has on the host, where it has some.
@@ -55,7 +56,7 @@ class HostThreads {
       stopping_ = true;
     }
     wake_.notify_all();
-    for (std::thread& helper : helpers_) helper.join();
+    for (int k = 0; k < started_; ++k) helpers_[static_cast<std::size_t>(k)].join();
   }
   HostThreads(HostThreads const&) = delete;
   HostThreads& operator=(HostThreads const&) = delete;
@@ -68,7 +69,7 @@ class HostThreads {
 #endif
     if (char const* const wanted = std::getenv("OMP_NUM_THREADS"))
       if (int const threads = std::atoi(wanted); threads > 0) cores = std::min(cores, threads);
-    return std::clamp(cores, 1, 64);  // more do not load memory faster
+    return std::clamp(cores, 1, most_threads);
   }
   /// How many threads work on elements is worth that have so many nodes in all, each counted by each of them.
   static int worth(std::size_t connectivity_size, int most = available()) {
@@ -84,6 +85,8 @@ class HostThreads {
     if (count > 1 && now() > 1) return current()->share(count, task);
     for (int k = 0; k < count; ++k) task(k);
   }
+
+  static constexpr int most_threads = 64;  // more do not load memory faster
 
  private:
   /// A loop, of which threads take what is next.
@@ -138,9 +141,10 @@ class HostThreads {
   /// The helpers of a loop, or as many as the system gives.
   void start(int helpers) {
     try {
-      while (static_cast<int>(helpers_.size()) < helpers) helpers_.emplace_back([this] { help(); });
+      for (; started_ < helpers; ++started_)
+        helpers_[static_cast<std::size_t>(started_)] = std::thread([this] { help(); });
     } catch (std::system_error const&) {
-      count_ = static_cast<int>(helpers_.size()) + 1;
+      count_ = started_ + 1;
     }
   }
   void help() {
@@ -162,7 +166,8 @@ class HostThreads {
   int count_;
   bool is_outermost_;
   std::atomic<bool> in_loop_{false};
-  std::vector<std::thread> helpers_;
+  std::array<std::thread, most_threads - 1> helpers_;
+  int started_ = 0;   // of them
   std::mutex mutex_;  // of what follows
   std::condition_variable wake_, idle_;
   Loop* loop_ = nullptr;

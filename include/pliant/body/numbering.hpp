@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -148,14 +147,15 @@ struct Numbering {
   void number_in_parts(std::vector<std::array<Index, Nodes>>& table,
                        detail::HostParts<Index> const& parts) {
     // Of each new node, parts.count() less the first part that has it; 0: it is not new.
-    std::vector<std::atomic<std::uint16_t>> owner(internal_node.size());
+    std::vector<Index> owner(internal_node.size());
     auto const each_new = [&](Index from, Index to, int part, auto const& visit) {
-      auto const own = static_cast<std::uint16_t>(parts.count() - part);
+      Index const own = parts.count() - part;
       for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)
         for (Index node : table[i]) visit(node, owner[static_cast<std::size_t>(node)], own);
     };
     parts([&](Index from, Index to, int part) {
-      each_new(from, to, part, [&](Index node, auto& kept, std::uint16_t own) {
+      each_new(from, to, part, [&](Index node, Index& kept_there, Index own) {
+        std::atomic_ref const kept(kept_there);
         auto before = kept.load(std::memory_order_relaxed);
         if (before >= own || internal_node[static_cast<std::size_t>(node)] >= 0) return;
         while (before < own &&
@@ -166,8 +166,8 @@ struct Numbering {
     std::vector<Index> first(static_cast<std::size_t>(parts.count()));
     parts([&](Index from, Index to, int part) {
       Index count = 0;
-      each_new(from, to, part, [&](Index node, auto& kept, std::uint16_t own) {
-        if (kept.load(std::memory_order_relaxed) != own) return;
+      each_new(from, to, part, [&](Index node, Index& kept, Index own) {
+        if (kept != own) return;
         Index& number = internal_node[static_cast<std::size_t>(node)];
         if (number < 0) number = count++;
       });
@@ -176,8 +176,8 @@ struct Numbering {
     for (Index& before : first) next_ += std::exchange(before, next_);
     detail::for_each_on_host(static_cast<Index>(owner.size()), 16384, [&](Index user) {
       auto const i = static_cast<std::size_t>(user);
-      if (std::size_t const own = owner[i].load(std::memory_order_relaxed); own > 0)
-        take(user, internal_node[i] + first[static_cast<std::size_t>(parts.count()) - own]);
+      if (Index const own = owner[i]; own > 0)
+        take(user, internal_node[i] + first[static_cast<std::size_t>(parts.count() - own)]);
     });
     parts([&](Index from, Index to, int) {
       for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)

@@ -77,17 +77,17 @@ void check_elements(M const& mesh) {
 /// Throws Error for a node of no element.
 template <Element... Es>
 void check_used(Mesh<Es...> const& mesh) {
-  std::vector<std::atomic<bool>> used(mesh.nodes.size());
+  std::vector<std::uint8_t> used(mesh.nodes.size());
   auto const use = [&]<Element E>(E) {
     auto const& elements = mesh.template elements<E>();
     for_each_on_host(static_cast<Index>(elements.size()), few_elements(E::nodes), [&](Index e) {
       for (Index node : elements[static_cast<std::size_t>(e)])
-        used[static_cast<std::size_t>(node)].store(true, std::memory_order_relaxed);
+        std::atomic_ref(used[static_cast<std::size_t>(node)]).store(1, std::memory_order_relaxed);
     });
   };
   (use(Es{}), ...);
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (!used[i].load(std::memory_order_relaxed))
+    if (used[i] == 0)
       throw Error("mesh: node ", i, " at ", mesh.nodes[i],
                   " belongs to no element; leave it out, and number the others without it");
 }

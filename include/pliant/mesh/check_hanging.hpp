@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -133,7 +134,7 @@ class HangingCheck {
   }
 
   M const& mesh_;
-  std::vector<char> known_;  // slaves
+  std::vector<std::uint8_t> known_;  // slaves
   std::vector<Side> sides_;
   std::vector<Index> side_of_corner_;
   GroupedByKey at_node_;  // corners

@@ -94,35 +94,18 @@ inline PLIANT_INLINE void for_each_side_sum(Connectivity<E> const& element, Visi
 namespace detail {
 
 /// Where a side is found: the number of its element's type among the mesh's, of the element, and on its cell.
-struct PlaceOfSide {
-  Index type, element, side;
-};
+using PlaceOfSide = std::array<Index, 4>;  // and its smallest corner
 
 template <Element... Es>
 Facet<Mesh<Es...>::dim> side_at(Mesh<Es...> const& mesh, PlaceOfSide const& place) {
   Facet<Mesh<Es...>::dim> facet;
+  auto const e = static_cast<std::size_t>(place[1]);
   Index type = 0;
-  ((type++ == place.type
-        ? void(facet = side_of<Es>(
-                   mesh.template elements<Es>()[static_cast<std::size_t>(place.element)],
-                   place.side))
-        : void()),
+  ((type++ == place[0] ? void(facet = side_of<Es>(mesh.template elements<Es>()[e], place[2]))
+                       : void()),
    ...);
   return facet;
 }
-
-/// Sides of elements, and what tells them from others.
-struct SideList {
-  std::vector<PlaceOfSide> places;
-  std::vector<std::array<Index, 4>> keys;
-  std::vector<Index> smallest;  // corner
-
-  void append(SideList const& other) {
-    places.insert(places.end(), other.places.begin(), other.places.end());
-    keys.insert(keys.end(), other.keys.begin(), other.keys.end());
-    smallest.insert(smallest.end(), other.smallest.begin(), other.smallest.end());
-  }
-};
 
 /// Flips bits[corner] by the sums of the sides of elements, first to last, with the smallest corner there.
 template <Element E>
@@ -149,7 +132,7 @@ void flip_sides(std::vector<Connectivity<E>> const& elements, Index first, Index
 /// exclusive or over the sides of one smallest corner, so that most corners are done with; 64 bits make an accidental
 /// zero as good as impossible. Throws Error for an element of nodes that the mesh has not.
 template <Element... Es>
-SideList sides_that_may_be_outer(Mesh<Es...> const& mesh) {
+std::vector<PlaceOfSide> sides_that_may_be_outer(Mesh<Es...> const& mesh) {
   std::vector<std::uint64_t> left(mesh.nodes.size());
   auto const parts_of = [&]<Element E>(E) {
     return pliant::detail::HostParts(static_cast<Index>(mesh.template elements<E>().size()),
@@ -163,11 +146,11 @@ SideList sides_that_may_be_outer(Mesh<Es...> const& mesh) {
     parts([&](Index first, Index last, int) { flip_sides<E>(elements, first, last, left, true); });
   };
   (flip(Es{}), ...);
-  SideList all;
+  std::vector<PlaceOfSide> all;
   Index type = 0;
   auto const collect = [&]<Element E>(E) {
     auto const parts = parts_of(E{});
-    std::vector<SideList> of_parts(static_cast<std::size_t>(parts.count()));
+    std::vector<std::vector<PlaceOfSide>> of_parts(static_cast<std::size_t>(parts.count()));
     parts([&](Index first, Index last, int part) {
       auto& found = of_parts[static_cast<std::size_t>(part)];
       for (Index e = first; e < last; ++e) {
@@ -176,15 +159,12 @@ SideList sides_that_may_be_outer(Mesh<Es...> const& mesh) {
         for (Index node : element) any |= left[static_cast<std::size_t>(node)];
         if (any == 0) continue;
         for_each_side_sum<E>(element, [&](std::size_t s, Index corner, std::uint64_t) {
-          if (left[static_cast<std::size_t>(corner)] == 0) return;
-          auto const side = static_cast<Index>(s);
-          found.places.push_back({type, e, side});
-          found.keys.push_back(key_of(side_of<E>(element, side)));
-          found.smallest.push_back(corner);
+          if (left[static_cast<std::size_t>(corner)] != 0)
+            found.push_back({type, e, static_cast<Index>(s), corner});
         });
       }
     });
-    for (auto const& found : of_parts) all.append(found);
+    for (auto const& found : of_parts) all.insert(all.end(), found.begin(), found.end());
     ++type;
   };
   (collect(Es{}), ...);
@@ -199,9 +179,17 @@ template <Element... Es>
 std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
   HostThreads const threads(mesh);
   auto const found = detail::sides_that_may_be_outer(mesh);
+  std::vector<Index> smallest;
+  std::vector<std::array<Index, 4>> keys;
+  smallest.reserve(found.size());
+  keys.reserve(found.size());
+  for (auto const& place : found) {
+    smallest.push_back(place[3]);
+    keys.push_back(key_of(detail::side_at(mesh, place)));
+  }
   // Two elements that share a side see the same corners: look for them among those of one corner.
   auto const at_corner =
-      pliant::detail::group_by_key(found.smallest, static_cast<Index>(mesh.nodes.size()));
+      pliant::detail::group_by_key(smallest, static_cast<Index>(mesh.nodes.size()));
   std::vector<Facet<Mesh<Es...>::dim>> outer;
   auto const is_same = [](auto const& a, auto const& b) {  // without a call of memcmp
     return a[3] == b[3] && a[2] == b[2] && a[1] == b[1] && a[0] == b[0];
@@ -213,8 +201,8 @@ std::vector<Facet<Mesh<Es...>::dim>> outer_sides(Mesh<Es...> const& mesh) {
       };
       int times = 0;
       for (Index k = at_corner.first[corner]; k < at_corner.first[corner + 1]; ++k)
-        times += is_same(found.keys[side(k)], found.keys[side(i)]);
-      if (times == 1) outer.push_back(detail::side_at(mesh, found.places[side(i)]));
+        times += is_same(keys[side(k)], keys[side(i)]);
+      if (times == 1) outer.push_back(detail::side_at(mesh, found[side(i)]));
     }
   return outer;
 }
@@ -225,7 +213,7 @@ template <Element... Es, class Visit>
 void for_each_side_with(Mesh<Es...> const& mesh, std::vector<std::array<Index, 4>> const& keys,
                         Visit const& visit) {
   constexpr int Dim = Mesh<Es...>::dim;
-  std::vector<char> named(mesh.nodes.size(), 0);
+  std::vector<std::uint8_t> named(mesh.nodes.size(), 0);
   for (auto const& key : keys)
     for (Index node : key)
       if (node >= 0 && node < static_cast<Index>(named.size()))

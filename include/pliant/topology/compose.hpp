@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -16,10 +15,19 @@ namespace pliant {
 /// A slave must come after the slaves among its masters. Throws Error where one does not (which is
 /// so for any circle of slaves) and where a node is a slave twice.
 [[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> slaves) {
-  std::unordered_map<Index, std::size_t> position;
-  for (std::size_t i = 0; i < slaves.size(); ++i) {
-    if (!position.emplace(slaves[i].node, i).second)
-      throw Error("compose: node ", slaves[i].node,
+  constexpr Index none = -1;
+  std::vector<Index> position;  // in the list, by node
+  auto const position_of = [&](Index node) {
+    return static_cast<std::size_t>(node) < position.size()
+               ? position[static_cast<std::size_t>(node)]
+               : none;
+  };
+  for (Index i = 0; Slave const& slave : slaves) {
+    if (slave.node < 0) throw Error("compose: there is no node ", slave.node);
+    auto const node = static_cast<std::size_t>(slave.node);
+    if (node >= position.size()) position.resize(std::max(node + 1, 2 * position.size()), none);
+    if (std::exchange(position[node], i++) != none)
+      throw Error("compose: node ", slave.node,
                   " is a slave twice; list each slave once, with all of its masters");
   }
   for (std::size_t i = 0; i < slaves.size(); ++i) {
@@ -31,15 +39,16 @@ namespace pliant {
           {master, weight});
     };
     for (auto const& [master, weight] : slaves[i].masters) {
-      auto const found = position.find(master);
-      if (found == position.end()) {
+      Index const found = position_of(master);
+      if (found == none) {
         add(master, weight);
         continue;
       }
-      if (found->second >= i)
+      if (static_cast<std::size_t>(found) >= i)
         throw Error("compose: slave node ", slaves[i].node, " has the master ", master,
                     ", a slave that does not come before it; order slaves after their masters");
-      for (auto const& [free, share] : slaves[found->second].masters) add(free, weight * share);
+      for (auto const& [free, share] : slaves[static_cast<std::size_t>(found)].masters)
+        add(free, weight * share);
     }
     auto& masters = slaves[i].masters;
     masters.clear();
@@ -50,8 +59,11 @@ namespace pliant {
         masters.emplace_back(free, weight);
     }
   }
-  std::ranges::sort(slaves, {}, &Slave::node);  // as an Interpolation wants them
-  return slaves;
+  std::vector<Slave> ascending;  // as an Interpolation wants them
+  ascending.reserve(slaves.size());
+  for (Index const found : position)
+    if (found != none) ascending.push_back(std::move(slaves[static_cast<std::size_t>(found)]));
+  return ascending;
 }
 
 }  // namespace pliant
