@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+
 #include "support/formulations.hpp"
 
 // What the energy check of CentralDifference sees, and what it does not take for growth.
@@ -193,6 +195,69 @@ TEST_CASE("a call says which of its steps were looked at", "[solver]") {
   CHECK_FALSE(finite_state(wild));
   CHECK(done.checked == 0);
   CHECK(hasty(wild, 100).rolled_back);
+}
+
+TEST_CASE("a state can be looked at before it is used", "[solver]") {
+  auto body = gel_body<Square<NeoHookean>>(MainBackend{}, regular_mesh<Quad4>(2));
+  body.set_velocities(Random(1).field<2>(static_cast<std::size_t>(body.nodes()), 1));
+  CentralDifference hasty{{.step = 40 * stable_step(body), .watch_interval = 1 << 20}};
+  auto const before = hasty.check(body);
+  CHECK(before.checked == 0);
+  CHECK_FALSE(before.rolled_back);
+
+  hasty(body, 200);
+  REQUIRE_FALSE(finite_state(body));
+  auto const after = hasty.check(body);
+  CHECK(after.rolled_back);
+  CHECK(after.steps == -200);
+  CHECK(after.checked == body.steps());
+  CHECK(finite_state(body));
+  CHECK(hasty.retries() == 1);
+}
+
+TEST_CASE("a fall of the energy between two looks is seen", "[solver]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    auto const mesh = mesh::rectangle({.size = {1, 0.25}, .cells = {8, 2}});
+    auto const run = [&](CentralDifferenceOptions const& options, double share) {
+      auto body = gel_body<Square<Hooke>>(backend, mesh);
+      body.set_velocities(Random(1).field<2>(mesh.nodes.size(), 0.01));
+      double const start = kinetic_energy(body);
+      CentralDifference step(options);
+      step(body, 10);
+      step.check(body);
+      body.parts().state.energy_by_hand += share * start;  // which the body has not got
+      return step.check(body).rolled_back;
+    };
+    CHECK(run({}, 0.03));
+    CHECK_FALSE(run({}, 0.01));
+    CHECK_FALSE(run({.energy_drift = 1e9}, 0.03));
+  });
+}
+
+TEST_CASE("the step does not follow each swing of a body", "[solver]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    // It spins and breathes, so that its stable step goes up and down by a twentieth.
+    auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {2, 2}});
+    FieldOf<2> v;
+    for (auto const& X : mesh.nodes) v.push_back({-20 * (X[1] - 0.5), 20 * (X[0] - 0.5)});
+    auto const distinct_steps = [&](double hysteresis) {
+      auto own = body_of<Square<SaintVenantKirchhoff>>(backend, mesh, {2e6, 0.3, 1e3});
+      own.set_velocities(v);
+      CentralDifference step{{.safety = 0.5, .refresh_interval = 64, .hysteresis = hysteresis}};
+      std::set<double> sizes;
+      for (int k = 0; k < 100; ++k) {
+        step(own, 64);
+        sizes.insert(step.step());
+      }
+      return std::pair(sizes.size(), std::abs(external_work(own).steps));
+    };
+    auto const [few, little] = distinct_steps(0.1);
+    auto const [many, much] = distinct_steps(0);
+    CHECK(few < 8);
+    CHECK(many > 50);
+    // What leapfrog keeps depends on the step: following it adds up.
+    CHECK(little < 0.3 * much);
+  });
 }
 
 TEST_CASE("a state that is touched again and again does not blind the check", "[solver]") {

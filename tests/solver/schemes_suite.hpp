@@ -247,6 +247,36 @@ TEST_CASE("steps follow the error that was asked for", "[solver]") {
   check(BDF2{});
 }
 
+TEST_CASE("reports tell how far displacements may be off", "[solver]") {
+  VectorXd const exact = end_of_swing(Newmark{}, 2000);
+  auto const check = [&](auto const& scheme, double step) {
+    CAPTURE(scheme.name);
+    auto body = stretched_square();
+    auto const report = Implicit{scheme, {.step = step, .tolerance = 1e-12}}.until(body, 0.3);
+    double const off =
+        (vector_of(body, body.displacements()) - exact).template lpNorm<Eigen::Infinity>();
+    CHECK(report.error_in_all > off);
+    CHECK(report.error_in_all < 30 * off);
+  };
+  check(BackwardEuler{}, 1e-3);
+  check(Newmark{}, 3e-3);
+  check(GeneralizedAlpha{0.8}, 3e-3);
+  check(BDF2{}, 2e-3);
+}
+
+TEST_CASE("reports tell what of the residual single precision leaves", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto body = beam<Rubber>(backend);
+    auto const report = Implicit{Newmark{}, {.step = 1e-3}}(body, 3);
+    if (sizeof(typename B::scalar) == 8) {
+      CHECK(report.reached <= 1e-10);
+    } else {
+      CHECK(report.reached > 1e-10);
+      CHECK(report.reached < 1e-4);
+    }
+  });
+}
+
 TEST_CASE("a first step that is too long is made shorter", "[solver]") {
   auto body = beam<Rubber>(MainBackend{});
   Implicit step{Newmark{}, {.step = 0.1, .error = 1e-5}};

@@ -27,8 +27,8 @@ struct ChosenScheme {
 struct Progress {
   double step = 0;
   bool rolled_back = false;
-  bool vouched = true;  // whether the last state was looked at
   int retries = 0;
+  double error = 0;  // m: by how much displacements may be off, as the integrator tells
 };
 
 /// One of the integrators that advance a state, for as long as it keeps its step. All have lumped masses, in which the
@@ -36,28 +36,37 @@ struct Progress {
 class Stepper {
  public:
   /// `step`: s; 0 where the integrator chooses. Implicit ones have to be given one.
-  Stepper(Method method, double safety, double step) : method_(method), step_(step) {
+  Stepper(Method method, double safety, double step, bool accept_folded = false)
+      : method_(method), step_(step) {
     if (method == Method::explicit_steps)
       central_.emplace(CentralDifferenceOptions{.safety = safety, .step = step});
     else if (method == Method::local_steps)
       local_.emplace(LocalStepsOptions{.safety = std::min(safety, 0.8), .macro_step = step});
     else if (method != Method::statics)
-      implicit_.emplace(ChosenScheme{method == Method::backward_euler},
-                        ImplicitOptions{.step = step, .mass = MassMatrix::lumped});
+      implicit_.emplace(
+          ChosenScheme{method == Method::backward_euler},
+          ImplicitOptions{
+              .step = step, .mass = MassMatrix::lumped, .accept_folded = accept_folded});
   }
 
   template <class TheBody>
   Progress operator()(TheBody& body, int steps) {
     if (central_) {
       auto const done = (*central_)(body, steps);
-      return {done.step, done.rolled_back, done.checked == body.steps(), central_->retries()};
+      return {done.step, done.rolled_back, central_->retries()};
     }
     if (local_) {
       auto const done = (*local_)(body, steps);
-      return {done.step, done.rolled_back, done.checked == body.steps(), local_->retries()};
+      return {done.step, done.rolled_back, local_->retries()};
     }
-    (*implicit_)(body, steps);
-    return {.step = step_};
+    return {.step = step_, .error = (*implicit_)(body, steps).error_in_all};
+  }
+  /// Whether the present state is good; explicit integrators look at it only now, and go back where it is not.
+  template <class TheBody>
+  bool check(TheBody& body) {
+    if (central_) return !central_->check(body).rolled_back;
+    if (local_) return !local_->check(body).rolled_back;
+    return true;
   }
 
  private:

@@ -6,7 +6,9 @@
 #include <pliant/mesh/rectangle.hpp>
 #include <pliant/pliant.hpp>
 #include <pliant/reference.hpp>
-#if defined(_OPENMP)
+#if defined(__CUDACC__)
+#include <pliant/cuda.hpp>
+#elif defined(_OPENMP)
 #include <pliant/openmp.hpp>
 #endif
 
@@ -139,7 +141,7 @@ class Run {
   }
 
   void sample() {
-    Sample s{.time = body_.time(), .steps = body_.steps()};
+    Sample s{.time = body_.time(), .steps = body_.steps(), .error = error_};
     auto const u = body_.displacements(), v = body_.velocities();
     auto const& mass = body_.parts().layout.mass_list;
     s.strain = strain_energy(body_);
@@ -206,49 +208,33 @@ class Run {
   void count(Progress const& progress) {
     record_.step = progress.step;
     record_.rolled_back = record_.rolled_back || progress.rolled_back;
-    record_.retries += progress.retries;
-    record_.vouched = progress.vouched;
+    record_.retries = std::max(record_.retries, progress.retries);
+    error_ += progress.error;
+  }
+  /// Steps until done(), at a state that the integrator has looked at: what it has not is no result yet.
+  template <class Done, class Take>
+  void go_on(Stepper& stepper, Done const& done, Take const& take) {
+    do {
+      while (!done()) count(take());
+    } while (!stepper.check(body_));
   }
 
   void advance() {
     double const step = scene_.step > 0 ? scene_.step : scene_.stable_steps * record_.stable_step;
     Stepper stepper(scene_.method, scene_.safety, step);
-    Progress last;
     for (int k = 1; k <= scene_.samples; ++k) {
       between_(k);
       if (scene_.steps > 0) {
         auto const goal = static_cast<std::int64_t>(scene_.steps) * k / scene_.samples;
-        while (body_.steps() < goal) {
-          last = stepper(body_, static_cast<int>(goal - body_.steps()));
-          record_.rolled_back = record_.rolled_back || last.rolled_back;
-        }
+        go_on(
+            stepper, [&] { return body_.steps() >= goal; },
+            [&] { return stepper(body_, static_cast<int>(goal - body_.steps())); });
       } else {
-        double const goal = scene_.duration * k / scene_.samples;
-        while (body_.time() < goal * (1 - 1e-9)) {
-          last = stepper(body_, 1);
-          record_.rolled_back = record_.rolled_back || last.rolled_back;
-        }
+        double const goal = scene_.duration * k / scene_.samples * (1 - 1e-9);
+        go_on(
+            stepper, [&] { return body_.time() >= goal; }, [&] { return stepper(body_, 1); });
       }
       sample();
-    }
-    last.rolled_back = false;
-    count(last);
-    if (!record_.samples.back().finite) go_on(stepper);
-  }
-
-  /// Whether a report comes after all.
-  void go_on(Stepper& stepper) {
-    auto const ended = body_.steps();
-    try {
-      while (body_.steps() < ended + 1100) {
-        auto const progress = stepper(body_, 16);
-        if (progress.rolled_back || progress.retries > record_.retries) {
-          record_.late = "rolled back";
-          return;
-        }
-      }
-    } catch (Error const& error) {
-      record_.late = error.what();
     }
   }
 
@@ -267,9 +253,12 @@ class Run {
       // Local steps at a quarter are steps of the finest element.
       auto const method =
           scene_.method == Method::local_steps ? Method::explicit_steps : scene_.method;
-      Stepper stepper(method, 0.9, length / static_cast<double>(steps));
-      auto const progress = stepper(body_, static_cast<int>(steps));
-      count(progress);
+      Stepper stepper(method, 0.9, length / static_cast<double>(steps), true);
+      int ahead = static_cast<int>(steps);
+      double const goal = samples[k].time * (1 - 1e-9);
+      go_on(
+          stepper, [&] { return body_.time() >= goal; },
+          [&] { return stepper(body_, std::exchange(ahead, 1)); });
       sample();
     }
   }
@@ -344,6 +333,7 @@ class Run {
   Record& record_;
   std::function<void(int)> between_;
   std::vector<Index> fixed_;
+  double error_ = 0;
 };
 
 /// A scene on the body that `make(material)` makes; `between(body, k)` is called before the stretch to sample k.

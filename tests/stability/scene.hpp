@@ -91,6 +91,7 @@ struct Sample {
   std::vector<Vec> u{};
   double strain = 0, kinetic = 0, potential = 0;  // J
   double work = 0;                                // J, booked by the body
+  double error = 0;  // m: by how much displacements may be off, as the integrator tells
   Vec momentum{}, spin{};
   double speed = 0;      // Σ m |v|, kg m/s
   double arm = 0;        // Σ m |x| |v|, kg m²/s
@@ -103,10 +104,7 @@ struct Record {
   std::vector<Sample> samples{};
   std::string error{};     // what Error said
   std::string stranger{};  // what any other exception said
-  std::string
-      late{};  // what was said of values that are not finite, steps after they were handed back
   bool rolled_back = false;
-  bool vouched = true;  // whether the integrator looked at the last state
   int retries = 0;
   bool finite_after = true;  // the state that an Error left
   double stable_step = 0;    // s, at the start

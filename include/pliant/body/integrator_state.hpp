@@ -64,6 +64,7 @@ struct IntegratorState {
   /// Less what was booked, J: what leapfrog keeps, at the start; the total, at the last check.
   double first_energy = std::numeric_limits<double>::quiet_NaN();
   double last_energy = std::numeric_limits<double>::quiet_NaN();
+  double last_kept = std::numeric_limits<double>::quiet_NaN();  // what leapfrog keeps, then
   double scale = 0;     // the largest of strain and kinetic energy so far, J
   double unbooked = 0;  // changes that were not booked up to the last check
 
@@ -83,6 +84,7 @@ struct IntegratorState {
     visit("next watch", r.next_watch...);
     visit("first energy", r.first_energy...);
     visit("last energy", r.last_energy...);
+    visit("last energy that is kept", r.last_kept...);
     visit("scale", r.scale...);
     visit("unbooked changes", r.unbooked...);
   }

@@ -20,9 +20,12 @@ struct CentralDifferenceOptions {
   int check_interval = 256;     // steps between checks of finiteness and energy
   int refresh_interval = 1024;  // steps between evaluations of the stable step, at the most
   int watch_interval = 16;  // steps between looks at the distortion, which may ask for one earlier
+  /// A chosen step gets longer when this share more would be stable. One that followed each swing of a body would pump
+  /// energy: what leapfrog keeps depends on the step.
+  double hysteresis = 0.1;
   /// What counts as a blow-up: growth of the total energy since the last check, over strain and kinetic
   /// energy, which beyond the stable step is many times (at safety 0.94 that of the highest mode swings
-  /// by 0.9 of its largest), and more than the loads' accelerations explain; and growth of the energy that leapfrog keeps since the start, over the
+  /// by 0.9 of its largest), and more than the loads' accelerations explain; and growth of the energy that leapfrog keeps since the start, or a fall since the last check, over the
   /// largest of these so far; energies below what rounding makes of a body at rest, 64 ε E V, count as that much. The work of loads, pressures, driven nodes and damping is booked, and no
   /// growth. Not looked at with laws that have internal variables, which may give back what the strain
   /// energy does not count, nor while there are driven nodes or pressures, whose work would hide it: then
@@ -32,11 +35,10 @@ struct CentralDifferenceOptions {
 
 /// What a call of an integrator did.
 struct Advanced {
-  std::int64_t steps = 0;  // by which the body's count went forward; negative after a roll-back
-  double time = 0;         // s: where the body is now
-  double step = 0;         // s: the size of the last step
-  bool rolled_back =
-      false;  // to a time before the call: set anew what depends on the time that it is now
+  std::int64_t steps = 0;    // by which the body's count went forward; negative after a roll-back
+  double time = 0;           // s: where the body is now
+  double step = 0;           // s: the size of the last step
+  bool rolled_back = false;  // to a time before the call: set anew what depends on the present one
   /// The last step at which the state was found good, which is where a roll-back would go; −1 where it was not looked at
   /// since it was changed by hand. What came after may turn out not to be finite.
   std::int64_t checked = -1;
@@ -64,11 +66,11 @@ class CentralDifference {
     if (!(options.safety > 0 && options.safety <= 1) ||
         !(options.step >= 0 && std::isfinite(options.step)) || options.check_interval < 1 ||
         options.refresh_interval < 1 || options.watch_interval < 1 ||
+        !(options.hysteresis >= 0 && std::isfinite(options.hysteresis)) ||
         !(options.energy_growth >= 0) || !(options.energy_drift >= 0))
       throw Error(
-          "CentralDifference: safety must be in (0, 1], step, energy_growth and energy_drift not "
-          "negative, and "
-          "intervals at least 1");
+          "CentralDifference: safety must be in (0, 1], intervals at least 1, and step, "
+          "hysteresis, energy_growth and energy_drift not negative");
   }
 
   /// The size of the last step, s.
@@ -98,6 +100,16 @@ class CentralDifference {
       adapt.between_steps(body);
     });
   }
+  /// Looks at the present state as steps do at intervals, and goes back to the last good one where it is not good: before
+  /// use is made of what no call has looked at (see Advanced::checked). Costs some two steps.
+  template <DeformableBody TheBody>
+  Advanced check(TheBody& body) {
+    auto& parts = body.parts();
+    std::int64_t const begun = parts.state.steps;
+    begin(parts);
+    bool const good = is_good(parts);
+    return detail::advanced(parts, begun, parts.state.integrator.step, !good);
+  }
 
  private:
   /// take(parts, dt, n) takes at least one and at most n steps of size dt.
@@ -117,7 +129,7 @@ class CentralDifference {
           !parts.has_checkpoint || state.steps >= std::min(own.next_check, own.next_refresh);
       if (due && checked != state.steps) {
         // A step is chosen for a good state only.
-        if (check(parts)) checked = state.steps;
+        if (is_good(parts)) checked = state.steps;
         if (state.steps < begun) return detail::advanced(parts, begun, own.step, true);
         if (checked != state.steps) continue;
       }
@@ -169,9 +181,12 @@ class CentralDifference {
   void refresh(Parts& parts) {
     auto& own = parts.state.integrator;
     double const distortion = largest_distortion(parts);
-    double const step =
+    double step =
         (options_.step > 0 ? options_.step : options_.safety * awake_stable_step_of(parts)) /
         own.slower;
+    bool const like_before = own.asked_step == options_.step && own.safety == options_.safety;
+    if (like_before && step > own.step && step <= (1 + options_.hysteresis) * own.step)
+      step = own.step;
     // Nothing throws from here on: a step that could not be chosen is asked for again.
     own.next_refresh = parts.state.steps + options_.refresh_interval;
     own.distortion = distortion;
@@ -217,7 +232,7 @@ class CentralDifference {
   };
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
   template <class Parts>
-  bool check(Parts& parts) {
+  bool is_good(Parts& parts) {
     detail::EnergyCheck const how{"CentralDifference",   "step",
                                   "a smaller step",      options_.energy_growth,
                                   options_.energy_drift, options_.check_interval};

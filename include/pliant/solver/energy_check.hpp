@@ -8,7 +8,7 @@
 #include <pliant/body/ledger.hpp>
 #include <pliant/body/set_state.hpp>
 
-// Whether the state of a run is good: finite, and with no more energy than it had and was given.
+// Whether the state of a run is good: finite, and with the energy that it had and was given.
 namespace pliant::detail {
 
 /// How an integrator checks states, and the words for it.
@@ -39,7 +39,7 @@ double rounding_energy(Parts const& parts) {
 
 /// The next check has nothing to compare with.
 inline void forget_energies(IntegratorState& own) {
-  own.first_energy = own.last_energy = std::numeric_limits<double>::quiet_NaN();
+  own.first_energy = own.last_energy = own.last_kept = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Whether the state is good, and is kept as a checkpoint; if not, it is rolled back, to be done again with half
@@ -64,14 +64,17 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
   bool const watched =
       !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
   // An unstable step lets the total grow while what the steps keep stays; a state that stiffens faster than the
-  // step follows adds to that too. Comparisons with NaN, before the first check, are false.
+  // step follows adds to that too, or takes from it at once. Comparisons with NaN, before the first check, are false.
+  double const drift = check.drift * std::max(own.scale, least);
   bool const grew =
       watched &&
       ((total > own.last_energy + check.growth * least && !steps.explains(check.growth * least)) ||
-       kept > own.first_energy + check.drift * std::max(own.scale, least));
-  if (std::isfinite(total) && !grew) {
+       kept > own.first_energy + drift);
+  bool const fell = watched && kept < own.last_kept - drift;
+  if (std::isfinite(total) && !grew && !fell) {
     own.scale = std::max(own.scale, present);
     own.last_energy = total;
+    own.last_kept = kept;
     if (!std::isfinite(own.first_energy)) own.first_energy = kept;
     own.next_check = state.steps + check.interval;
     keep_checkpoint(parts);
@@ -82,9 +85,11 @@ bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
     }
     return true;
   }
-  std::string const what =
-      message({check.integrator, ": the body ", grew ? "gained energy" : "went non-finite",
-               " before ", check.step_name, " ", state.steps});
+  std::string const what = message({check.integrator, ": the body ",
+                                    !std::isfinite(total) ? "went non-finite"
+                                    : grew                ? "gained energy"
+                                                          : "lost energy",
+                                    " before ", check.step_name, " ", state.steps});
   if (!parts.has_checkpoint)
     throw Error(what,
                 ", and there is no earlier state to go back to since the mesh, a condition or the "

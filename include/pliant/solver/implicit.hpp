@@ -33,15 +33,22 @@ struct ImplicitOptions {
 
 /// What a call of an implicit integrator did, and at what cost.
 struct ImplicitReport {
-  int steps = 0;           // taken
-  int rejected = 0;        // and others that were too long
-  double time = 0;         // s: where the body is now
-  double step = 0;         // s: the size of the last step
-  double error = 0;        // m: of the last step, as it was told
+  int steps = 0;     // taken
+  int rejected = 0;  // and others that were too long
+  double time = 0;   // s: where the body is now
+  double step = 0;   // s: the size of the last step
+  double error = 0;  // m: of the last step, as its extrapolation tells
+  /// m: twice the sum over these steps, as each is one of the velocity too, which displaces as much again. Displacements
+  /// may be off by as much, and by more where motions part by themselves; a fast motion that steps do not resolve counts
+  /// in full.
+  double error_in_all = 0;
   int iterations = 0;      // of Newton's method, in all
   int factorisations = 0;  // of matrices, in all
   LinearReport linear{};   // what the linear systems took
   double residual = 0;     // N, of the last step
+  /// The largest residual of these steps over the forces that it is the sum of: above the tolerance where steps ended as
+  /// the body's precision tells no more of its displacements.
+  double reached = 0;
   LeastJacobian
       least_J{};  // det F where it is least at the ends of these steps, at points of elements and between
 };
@@ -172,13 +179,14 @@ class Implicit {
           h /= 4;
           continue;
         }
-        double const error = options_.error > 0 ? step_error(h) : 0;
-        if (error > options_.error) {
+        double const error = step_error(h);
+        if (options_.error > 0 && error > options_.error) {
           h *= std::max(0.2, 0.8 * growth(error));
           continue;
         }
         accept(h);
         report_.error = error;
+        report_.error_in_all += 2 * error;
         if (options_.error > 0)
           kept.next_step = std::max(cut ? asked : 0.0, h * std::clamp(growth(error), 0.3, 2.0));
         return;
@@ -282,8 +290,10 @@ class Implicit {
         report_.residual = now.residual;
         if (!std::isfinite(now.residual)) return false;
         // Where forces cancel to rounding, the displacement tells.
-        if (now.residual <= std::max(options_.tolerance * now.scale, nothing) || settled)
+        if (now.residual <= std::max(options_.tolerance * now.scale, nothing) || settled) {
+          reached_ = now.scale > 0 ? now.residual / now.scale : 0;
           return true;
+        }
         if (iteration == options_.max_iterations) return false;
         double const enough =
             std::clamp(0.1 * options_.tolerance * now.scale / now.residual, 1e-12, 0.1);
@@ -443,6 +453,7 @@ class Implicit {
       ++report_.steps;
       report_.time = state.time;
       report_.step = h;
+      report_.reached = std::max(report_.reached, reached_);
       if (!(least_.value >= report_.least_J.value)) report_.least_J = least_;
     }
 
@@ -460,6 +471,7 @@ class Implicit {
     StepRule rule_{};
     LeastJacobian least_{};
     std::string why_not_;    // the linear system of a step was not solved; empty where it was
+    double reached_ = 0;     // of the present step
     double start_work_ = 0;  // J: of the residual along the solution, where that begins
   };
 

@@ -81,7 +81,7 @@ class LocalSteps {
       bool const due =
           !parts.has_checkpoint || state.steps >= std::min(own.next_check, own.next_refresh);
       if (due && checked != state.steps) {
-        if (check(parts)) checked = state.steps;  // levels are chosen for a good state only
+        if (is_good(parts)) checked = state.steps;  // levels are chosen for a good state only
         if (state.steps < begun) return detail::advanced(parts, begun, step_, true);
         if (checked != state.steps) continue;
       }
@@ -93,6 +93,16 @@ class LocalSteps {
                            state.steps));
     }
     return detail::advanced(parts, begun, step_, false);
+  }
+  /// See CentralDifference::check.
+  template <DeformableBody TheBody>
+  Advanced check(TheBody& body) {
+    auto& parts = body.parts();
+    std::int64_t const begun = parts.state.steps;
+    begin(parts);
+    if (parts.state.integrator.macro_step > 0 && !parts.schedule) restore(parts);
+    bool const good = is_good(parts);
+    return detail::advanced(parts, begun, step_, !good);
   }
 
  private:
@@ -179,6 +189,8 @@ class LocalSteps {
       // Of the present levels, once there are some; a change by hand begins the comparison anew.
       auto& own = parts.state.integrator;
       if (!parts.has_checkpoint) own.first_energy = std::numeric_limits<double>::quiet_NaN();
+      // Loads that come at once let what is kept fall, by the half-kicks: only growth tells.
+      own.last_kept = std::numeric_limits<double>::quiet_NaN();
       double const kept = parts.schedule ? total - booked - correction(parts)
                                          : std::numeric_limits<double>::quiet_NaN();
       return {total - booked, kept};
@@ -198,7 +210,7 @@ class LocalSteps {
   };
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.
   template <class Parts>
-  bool check(Parts& parts) {
+  bool is_good(Parts& parts) {
     detail::EnergyCheck const how{"LocalSteps",          "macro step",
                                   "less safety",         options_.energy_growth,
                                   options_.energy_drift, options_.check_interval};
