@@ -58,7 +58,7 @@ TEST_CASE("fans have each tetrahedron once, by its nodes in its orientation", "[
 TEST_CASE("six tetrahedra of a cube make a fan", "[openmp]") {
   Numbering<Tet4> const numbering(mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {6, 6, 6}}));
   auto const& elements = std::get<0>(numbering.tables);
-  detail::FanSplitter splitter;
+  detail::HostFanSplitter splitter;
   int fans = 0;
   splitter.split(elements[0].data(), static_cast<int>(elements.size()),
                  [&](Index const*, Index const*, Index const*, int) { ++fans; });
@@ -68,11 +68,11 @@ TEST_CASE("six tetrahedra of a cube make a fan", "[openmp]") {
 TEST_CASE("elements that have a node twice, or an edge of many, are split into fans", "[openmp]") {
   Connectivity elements{{0, 0, 1, 2}, {0, 1, 2, 3}, {3, 3, 3, 3}};
   for (Index k = 0; k < 100; ++k) elements.push_back({0, 1, 10 + k, 11 + k});
-  detail::FanSplitter splitter;
+  detail::HostFanSplitter splitter;
   std::vector<int> times(elements.size());
   splitter.split(elements[0].data(), static_cast<int>(elements.size()),
                  [&](Index const*, Index const*, Index const* members, int size) {
-                   CHECK(size <= detail::most_fan_elements);
+                   CHECK(size <= detail::most_host_fan_elements);
                    for (int k = 0; k < size; ++k) ++times[static_cast<std::size_t>(members[k])];
                  });
   CHECK(times == std::vector<int>(elements.size(), 1));

@@ -6,7 +6,7 @@
 
 #include <pliant/body/cell_order.hpp>
 #include <pliant/body/element_table.hpp>
-#include <pliant/body/lumped_volumes.hpp>
+#include <pliant/body/lumped_masses.hpp>
 #include <pliant/body/motion.hpp>
 #include <pliant/body/numbering.hpp>
 #include <pliant/body/state.hpp>
@@ -262,25 +262,24 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
       for (Index const e : touched.of_type(type).after) {
         auto const& element = mesh.template elements<E>()[static_cast<std::size_t>(e)];
-        auto const share = host_nodal_volumes<E>(nodal(mesh, element));
+        auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
         for (std::size_t a = 0; a < E::nodes; ++a)
           if (touched.changes_elements(element[a]))
-            own_masses[static_cast<std::size_t>(element[a])] +=
-                density * share[static_cast<int>(a)];
+            own_masses[static_cast<std::size_t>(element[a])] += share[static_cast<int>(a)];
       }
     });
   }
   template <Element E>
   void add_mass(Mesh<Es...> const& mesh, double density) {
     auto const& elements = mesh.template elements<E>();
-    auto const add = [&](std::size_t node, double volume) { own_masses[node] += density * volume; };
+    auto const add = [&](std::size_t node, double share) { own_masses[node] += share; };
     detail::HostParts const parts(static_cast<Index>(elements.size()),
                                   detail::few_elements(E::nodes));
     if (parts.count() > 1 && detail::has_many_host_threads() &&
         elements.size() <= std::numeric_limits<Index>::max() / E::nodes)
-      return detail::add_in_order<E>(mesh, add);
+      return detail::add_in_order<E>(mesh, density, add);
     for (auto const& element : elements) {
-      auto const share = host_nodal_volumes<E>(nodal(mesh, element));
+      auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
       for (std::size_t a = 0; a < E::nodes; ++a)
         add(static_cast<std::size_t>(element[a]), share[static_cast<int>(a)]);
     }

@@ -111,4 +111,12 @@ inline PLIANT_INLINE Vector<double, E::nodes> host_nodal_volumes(Nodal<E, double
     return detail::nodal_volumes_by_shape<E>(rest);
 }
 
+/// The share that each node has of an element's mass, kg, at a density, kg/m³. Out of line, so that whoever adds these up adds
+/// the same bits, whatever a compiler fuses where it inlines.
+template <Element E>
+[[gnu::noinline]] Vector<double, E::nodes> host_nodal_masses(Nodal<E, double> const& rest,
+                                                             double density) {
+  return density * host_nodal_volumes<E>(rest);
+}
+
 }  // namespace pliant

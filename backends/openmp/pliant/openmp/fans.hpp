@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <pliant/backend/host_array.hpp>
-#include <pliant/openmp/fan_splitter.hpp>
+#include <pliant/openmp/host_fan_splitter.hpp>
 #include <pliant/openmp/patch_rows.hpp>
 
 namespace pliant::detail {
@@ -32,7 +32,7 @@ class Fans {
     sizes_.resize(patches);
     HostParts const parts(static_cast<Index>(patches), few_patches);
     parts([&](Index from, Index to, int) {
-      FanSplitter splitter;
+      HostFanSplitter splitter;
       for (Index p = from; p < to; ++p) {
         Index const first = p * patch_size, count = std::min(patch_size, elements - first);
         auto& own = corners[static_cast<std::size_t>(p)];
@@ -77,9 +77,9 @@ class Fans {
   /// Orders the runs of a patch by group.
   void order(Index patch, Tag const* tags, int groups) {
     auto const p = static_cast<std::size_t>(patch);
-    std::vector<Index> next(static_cast<std::size_t>(groups * most_fan_elements) + 1);
+    std::vector<Index> next(static_cast<std::size_t>(groups * most_host_fan_elements) + 1);
     auto const place = [&](int group, int size) -> Index& {
-      return next[static_cast<std::size_t>((group + 1) * most_fan_elements - size)];
+      return next[static_cast<std::size_t>((group + 1) * most_host_fan_elements - size)];
     };
     for_each_run(patch, tags, [&](int group, FanRun const& run) {
       if (group < groups) ++place(group, run.size);
@@ -87,7 +87,7 @@ class Fans {
     Index before = 0;
     for (Index& n : next) before += std::exchange(n, before);
     bounds_[p].clear();
-    for (int g = 0; g < groups; ++g) bounds_[p].push_back(place(g, most_fan_elements));
+    for (int g = 0; g < groups; ++g) bounds_[p].push_back(place(g, most_host_fan_elements));
     bounds_[p].push_back(before);
     runs_[p].resize(static_cast<std::size_t>(before));
     for_each_run(patch, tags, [&](int group, FanRun const& run) {

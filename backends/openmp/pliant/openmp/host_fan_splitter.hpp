@@ -13,12 +13,12 @@
 namespace pliant::detail {
 
 /// The most elements of a fan.
-inline constexpr int most_fan_elements = 12;
+inline constexpr int most_host_fan_elements = 12;
 
 /// Splits tetrahedra into fans: runs of elements around an edge, each of which shares a face with the next. Long fans come
 /// first, as long as there are any, and among edges of as many elements those whose elements stand near each
 /// other, as the parts of a cell do.
-class FanSplitter {
+class HostFanSplitter {
  public:
   /// Calls keep(ends, ring, elements, size) for each fan of `count` elements with the nodes rows[4 · count]: element k of
   /// it has, up to an even permutation, the nodes ends[0], ends[1], ring[k], ring[k + 1].
@@ -27,7 +27,7 @@ class FanSplitter {
     rows_ = rows;
     find_edges(count);
     int left = count;
-    for (int size = most_fan_elements; left > 0; --size)
+    for (int size = most_host_fan_elements; left > 0; --size)
       for (std::size_t k = 0; left > 0 && k < edges_of_[at(size)].size(); ++k) {  // which may grow
         int const edge = edges_of_[at(size)][k];
         int longest = find_longest(edge, size);
@@ -86,7 +86,8 @@ class FanSplitter {
       for (std::size_t k = 0; k < edges_.size(); ++k) {
         Edge const& edge = edges_[k];
         if ((edge.last - edge.first < 2 * edge.count) == near)
-          edges_of_[at(std::min(edge.count, most_fan_elements))].push_back(static_cast<int>(k));
+          edges_of_[at(std::min(edge.count, most_host_fan_elements))].push_back(
+              static_cast<int>(k));
       }
   }
   Edge& edge_of(Index low, Index high, int element) {
@@ -114,11 +115,11 @@ class FanSplitter {
     }
     if (count < size) return count;
     int longest = 0, done = 0;
-    std::array<Member, most_fan_elements> best;
+    std::array<Member, most_host_fan_elements> best;
     while (done < count) {
       int const length = chain(done, count);
       if (length > longest) {
-        longest = std::min(length, most_fan_elements);
+        longest = std::min(length, most_host_fan_elements);
         std::copy_n(around_.begin() + done, longest, best.begin());
       }
       done += length;
@@ -149,7 +150,7 @@ class FanSplitter {
   template <class Keep>
   void take(int e, int size, Keep const& keep) {
     Index const ends[2] = {edges_[at(e)].low, edges_[at(e)].high};
-    Index ring[most_fan_elements + 1], elements[most_fan_elements];
+    Index ring[most_host_fan_elements + 1], elements[most_host_fan_elements];
     ring[0] = around_[0].begin;
     for (int k = 0; k < size; ++k) {
       Member const& m = around_[at(k)];
@@ -163,8 +164,9 @@ class FanSplitter {
   Index const* rows_ = nullptr;
   std::vector<int> table_, next_;  // of edges by a hash of their nodes; (elements, 6)
   std::vector<Edge> edges_;
-  std::vector<char> is_taken_;                                    // (elements)
-  std::array<std::vector<int>, most_fan_elements + 1> edges_of_;  // by the longest fan there may be
+  std::vector<char> is_taken_;  // (elements)
+  std::array<std::vector<int>, most_host_fan_elements + 1>
+      edges_of_;  // by the longest fan there may be
   std::array<Member, most_around> around_;
 };
 
