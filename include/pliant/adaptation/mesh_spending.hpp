@@ -32,7 +32,7 @@ struct MeshWithinRule {
 /// Refines the elements of F whose estimated error drops most per cost and merges the families whose error rises least per
 /// cost saved, at each look anew: as few elements as keep what is estimated at most `error`, and never more than
 /// `evaluations_per_step`, which comes first. Errors of smooth solutions are taken to fall by 4^degree where an element is
-/// refined; at singular places that takes more looks. To keep levels within one, neighbours are refined along, beyond
+/// refined; at singular places that takes more looks. A look aims at half of the error at the least. To keep levels within one, neighbours are refined along, beyond
 /// the budget until the next look merges others. Throws Error for options out of range.
 template <class F, class E>
 auto within(E estimator, MeshWithinOptions const& options) {
@@ -109,8 +109,10 @@ class MeshOffers {
       return std::pair{a, b};
     };
     double limit = high;
+    // Not all at once: what is left after half of the error is best known then.
+    double const aim = std::max(options.error, error_ / 2);
     if (std::isfinite(options.error))
-      limit = search([&](Outcome const& o) { return o.error <= options.error; }).first;
+      limit = search([&](Outcome const& o) { return o.error <= aim; }).first;
     else
       limit = low;
     if (at(limit).evaluations > options.evaluations_per_step)
