@@ -31,8 +31,8 @@ class Replaying : private SmallPatches<T, Size> {
    public:
     Elements() = default;
     Elements(Replaying const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
-             int groups, std::vector<Tag> const& tags, Index nodes)
-        : Verbs::template Elements<Nodes>(backend, connectivity, groups, tags, nodes) {}
+             int groups, std::vector<Tag> const& tags, Index nodes, NodeOrder order)
+        : Verbs::template Elements<Nodes>(backend, connectivity, groups, tags, nodes, order) {}
   };
 
   class Recording {
@@ -130,7 +130,6 @@ class Replaying : private SmallPatches<T, Size> {
     else
       call();
   }
-
 
   std::shared_ptr<std::optional<Queue>> queue_ = std::make_shared<std::optional<Queue>>();
 };
