@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -105,7 +106,11 @@ TEST_CASE("indefinite systems have the solutions that dense factors find", "[sol
       CHECK(found.report.converged);
       CHECK(found.report.indefinite);
       CHECK(found.linear.minres == 1);
-      CHECK(found.report.residual == Approx((b - a * found.x).norm()).epsilon(0.05));
+      // The recursion does not know how the solution was rounded.
+      double const rounding =
+          double{std::numeric_limits<typename B::scalar>::epsilon()} * a.norm() * found.x.norm();
+      CHECK(found.report.residual ==
+            Approx((b - a * found.x).norm()).epsilon(0.05).margin(rounding));
       CHECK((b - a * found.x).norm() < 1.1 * tolerance * b.norm());
       CHECK((found.x - expected).norm() < (is_double<B> ? 1e-7 : 2e-2) * expected.norm());
       auto const gradients = sheet.solve(shift, b, KrylovMethod::conjugate_gradients, tolerance);

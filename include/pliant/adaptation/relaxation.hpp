@@ -3,6 +3,7 @@
 #include <atomic>
 #include <vector>
 
+#include <pliant/adaptation/rule.hpp>
 #include <pliant/body/internal_variables.hpp>
 #include <pliant/body/sleep.hpp>
 
