@@ -1,6 +1,4 @@
 #include "adaptation/looks_suite.hpp"
 #include "support/program.hpp"
 
-int main(int argc, char** argv) {
-  return pliant::bench::run(argc, argv, pliant::bench::add_looks);
-}
+int main(int argc, char** argv) { return pliant::bench::run(argc, argv, pliant::bench::add_looks); }

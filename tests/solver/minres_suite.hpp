@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <limits>
+#include <array>
 #include <numeric>
 #include <optional>
 

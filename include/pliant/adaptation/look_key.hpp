@@ -51,7 +51,8 @@ void name_rule(std::string& text, TheRule const& rule) {
     add_bytes(text, rule.for_steps);
   } else if constexpr (HoldingRule<TheRule>) {
     auto const& options = rule.options;
-    add_bytes(text, options.error);  // one by one: nvcc 13 does not hand on a loop over a list of them
+    add_bytes(text,
+              options.error);  // one by one: nvcc 13 does not hand on a loop over a list of them
     add_bytes(text, options.evaluations_per_step);
     add_bytes(text, options.release);
     add_bytes(text, std::int64_t{options.max_level});
