@@ -1,7 +1,7 @@
 #pragma once
 
-#include <limits>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <optional>
 

@@ -3,8 +3,8 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
+#include <pliant/cuda/nodes_of_patch.cuh>
 #include <pliant/cuda/patch_loop.cuh>
-#include <pliant/cuda/patch_nodes.cuh>
 
 namespace pliant::detail {
 
@@ -26,7 +26,7 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   if (patch < 0) return;
   Index const thread = static_cast<Index>(threadIdx.x);
   Index const threads = static_cast<Index>(blockDim.x);
-  PatchNodes const nodes = patches.nodes_of(patch);
+  NodesOfPatch const nodes = patches.nodes_of(patch);
   Index e = patch * patches.patch_size + thread;
   PatchLoop loop(patches.rounds);
   auto const is_element = [&] { return loop.has_rounds() && e < patches.count; };

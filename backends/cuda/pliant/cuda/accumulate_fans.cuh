@@ -3,8 +3,8 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/cuda/elements.hpp>
 #include <pliant/cuda/launch.hpp>
+#include <pliant/cuda/nodes_of_patch.cuh>
 #include <pliant/cuda/patch_loop.cuh>
-#include <pliant/cuda/patch_nodes.cuh>
 
 namespace pliant::detail {
 
@@ -56,7 +56,7 @@ __global__ void __launch_bounds__(fan_tuning<T>().max_threads, (fan_blocks<T, Ke
   if (patch < 0) return;
   Index const thread = static_cast<Index>(threadIdx.x);
   Index const threads = static_cast<Index>(blockDim.x);
-  PatchNodes const nodes = patches.nodes_of(patch);
+  NodesOfPatch const nodes = patches.nodes_of(patch);
   int const fans = patches.capacity.fans;
   FanVisit const* const visits =
       patches.units + static_cast<std::ptrdiff_t>(patch) * most_fan_visits * fans;

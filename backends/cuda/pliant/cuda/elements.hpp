@@ -7,7 +7,7 @@
 #include <pliant/backend/check_nodes.hpp>
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/launch.hpp>
-#include <pliant/cuda/patch_nodes.cuh>
+#include <pliant/cuda/nodes_of_patch.cuh>
 #include <pliant/cuda/plan_patches.cuh>
 #include <pliant/cuda/tuning.hpp>
 
@@ -62,7 +62,7 @@ struct PatchView {
   std::uint16_t const* diagonals;  // (patches, diagonal capacity)
   ActiveList active;
 
-  __device__ __forceinline__ PatchNodes nodes_of(Index patch) const {
+  __device__ __forceinline__ NodesOfPatch nodes_of(Index patch) const {
     return {nodes + static_cast<std::ptrdiff_t>(patch) * capacity.nodes, capacity.nodes};
   }
   __device__ __forceinline__ void load_diagonals(Index patch, std::uint16_t* to) const {

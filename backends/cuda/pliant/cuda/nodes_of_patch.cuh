@@ -35,7 +35,7 @@ __device__ __forceinline__ auto call_on_rows(Kernel const& kernel, Group group, 
 }
 
 /// The nodes of a block's patch.
-struct PatchNodes {
+struct NodesOfPatch {
   PatchNode const* nodes;
   int capacity;
 
