@@ -61,7 +61,7 @@ TEST_CASE("six tetrahedra of a cube make a fan", "[openmp]") {
   detail::HostFanSplitter splitter;
   int fans = 0;
   splitter.split(elements[0].data(), static_cast<int>(elements.size()),
-                 [&](Index const*, Index const*, Index const*, int) { ++fans; });
+                 [&](int const*, int const*, int const*, int) { ++fans; });
   CHECK(fans == 216);
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("elements that have a node twice, or an edge of many, are split into f
   detail::HostFanSplitter splitter;
   std::vector<int> times(elements.size());
   splitter.split(elements[0].data(), static_cast<int>(elements.size()),
-                 [&](Index const*, Index const*, Index const* members, int size) {
+                 [&](int const*, int const*, int const* members, int size) {
                    CHECK(size <= detail::most_host_fan_elements);
                    for (int k = 0; k < size; ++k) ++times[static_cast<std::size_t>(members[k])];
                  });

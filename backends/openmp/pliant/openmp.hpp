@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/dispatch.hpp>
@@ -59,9 +60,11 @@ class OpenMP {
   class Elements : public detail::Patches<Nodes> {
    public:
     Elements() = default;
-    Elements(OpenMP const&, std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
-             std::vector<Tag> const& tags, Index nodes, NodeOrder order = NodeOrder::as_given)
-        : detail::Patches<Nodes>(connectivity, groups, tags, nodes, order) {}
+    Elements(OpenMP const&, std::vector<std::array<Index, Nodes>> connectivity, int groups,
+             std::vector<Tag> const& tags, Index nodes, NodeOrder order = NodeOrder::as_given,
+             ElementBlocks const& blocks = {}, Elements const* before = nullptr)
+        : detail::Patches<Nodes>(std::move(connectivity), groups, tags, nodes, order, blocks,
+                                 before) {}
   };
 
   template <class F>

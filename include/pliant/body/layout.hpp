@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/cell_order.hpp>
 #include <pliant/body/element_table.hpp>
 #include <pliant/body/lumped_masses.hpp>
@@ -65,7 +66,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups, std::shared_ptr<CellOrder const> first = nullptr)
       : first_order(std::move(first)) {
-    make(backend, topology, material, groups,
+    make(backend, topology, material, groups, {}, nullptr,
          [&] { add_all_masses(topology.mesh, material.density); });
   }
   /// The same from the layout before a change.
@@ -73,7 +74,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
          std::tuple<Group<Fs>...> const& groups, Layout const& before,
          Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched)
       : first_order(before.first_order) {
-    make(backend, topology, material, groups, [&] {
+    auto const changed = changed_cells(topology, first_order->size(), transfer);
+    make(backend, topology, material, groups, changed, &before, [&] {
       change_masses(topology.mesh, material.density, before.own_masses, transfer, touched);
     });
   }
@@ -115,14 +117,19 @@ struct Layout<B, Mesh<Es...>, Fs...> {
  private:
   static constexpr Index few_nodes = 16384;
 
-  /// find_own_masses() fills own_masses.
+  /// find_own_masses() fills own_masses. `changed`: see elements_in_order; `before`: the layout before a change, or null.
   template <class FindOwnMasses>
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-            std::tuple<Group<Fs>...> const& groups, FindOwnMasses const& find_own_masses) {
+            std::tuple<Group<Fs>...> const& groups, std::vector<char> const& changed,
+            Layout const* before, FindOwnMasses const& find_own_masses) {
     auto const& mesh = topology.mesh;
     HostThreads const threads(backend, mesh);
-    auto numbering = first_order && topology.tree ? numbering_of(topology, *first_order)
-                                                  : Numbering<Es...>(mesh);
+    OrderedElements<sizeof...(Es)> ordered;
+    bool const is_first = !first_order || !topology.tree;
+    if (!is_first) ordered = elements_in_order(topology, *first_order, changed);
+    auto numbering = is_first ? Numbering<Es...>(mesh)
+                              : Numbering<Es...>(mesh, std::move(ordered.elements));
+    if (is_first) ordered.blocks = first_blocks(mesh);
     if (!first_order)
       first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
     internal_node = std::move(numbering.internal_node);
@@ -132,7 +139,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
     Index scratch = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, topology, material, groups, scratch), ...);
+      (make_table<I>(backend, numbering, ordered.blocks[I], before, topology, material, groups,
+                     scratch),
+       ...);
     }(std::index_sequence_for<Es...>());
 
     upload_rest(backend, mesh);
@@ -155,18 +164,26 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
 
   template <std::size_t I>
-  void make_table(B const& backend, Numbering<Es...>& numbering,
-                  Topology<Mesh<Es...>> const& topology, Elastic const& material,
+  void make_table(B const& backend, Numbering<Es...>& numbering, ElementBlocks const& blocks,
+                  Layout const* before, Topology<Mesh<Es...>> const& topology, Elastic const& material,
                   std::tuple<Group<Fs>...> const& groups, Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
     table.user_element = std::move(numbering.user_element[I]);
-    table.elements = {backend,
-                      std::move(std::get<I>(numbering.tables)),
-                      TableType::groups,
-                      std::vector<Tag>(table.user_element.size(), 0),
-                      nodes,
-                      node_order<typename TableType::element>};
+    auto const make_elements = [&](auto const&... planned) {
+      table.elements = {backend,
+                        std::move(std::get<I>(numbering.tables)),
+                        TableType::groups,
+                        std::vector<Tag>(table.user_element.size(), 0),
+                        nodes,
+                        node_order<typename TableType::element>,
+                        planned...};
+    };
+    if constexpr (PlansByBlocks<decltype(table.elements), B>)
+      make_elements(blocks,
+                    before == nullptr ? nullptr : &std::get<I>(before->tables).elements);
+    else
+      make_elements();
     scratch = std::max(scratch, table.elements.scratch_nodes());
     table.straight = is_straight<typename TableType::element>(topology.mesh);
     table.values = upload(backend, table.in_internal_order(topology.element_values[I]));

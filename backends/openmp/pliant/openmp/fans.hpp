@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <pliant/backend/host_array.hpp>
-#include <pliant/openmp/host_fan_splitter.hpp>
+#include <pliant/openmp/fan_block.hpp>
 #include <pliant/openmp/patch_rows.hpp>
 
 namespace pliant::detail {
@@ -19,47 +19,34 @@ struct FanRun {
   int size;
 };
 
-/// Tetrahedra in fans around edges, patch by patch: whoever works on a fan at once visits 3 + n nodes for n elements.
+/// Tetrahedra in fans around edges, patch by patch: whoever works on a fan at once visits 3 + n nodes for n elements. Fans
+/// are those of blocks, cut where patches begin or end in them.
 class Fans {
  public:
   Fans() = default;
-  /// Of patches of patch_size elements with the nodes connectivity[4 · elements].
-  Fans(Index const* connectivity, Index elements, Index patch_size, Index nodes)
+  /// Of patches of patch_size elements with the nodes connectivity[4 · elements]. `before` has the blocks that stay.
+  Fans(Index const* connectivity, Index elements, Index patch_size, Index nodes,
+       ElementBlocks const& blocks = {}, Fans const* before = nullptr)
       : patch_size_(patch_size),
+        blocks_(connectivity, elements, blocks, before == nullptr ? nullptr : &before->blocks_),
         elements_(HostArray<Index>::unset(static_cast<std::size_t>(elements))) {
-    auto const patches = static_cast<std::size_t>((elements + patch_size - 1) / patch_size);
-    std::vector<std::vector<Index>> corners(patches);
-    sizes_.resize(patches);
-    HostParts const parts(static_cast<Index>(patches), few_patches);
-    parts([&](Index from, Index to, int) {
-      HostFanSplitter splitter;
-      for (Index p = from; p < to; ++p) {
-        Index const first = p * patch_size, count = std::min(patch_size, elements - first);
-        auto& own = corners[static_cast<std::size_t>(p)];
-        Index* element = elements_.data() + first;
-        splitter.split(
-            connectivity + std::ptrdiff_t{4} * first, count,
-            [&](Index const* ends, Index const* ring, Index const* members, int size) {
-              own.insert(own.end(), ends, ends + 2);
-              own.insert(own.end(), ring, ring + size + 1);
-              for (int k = 0; k < size; ++k) *element++ = first + members[k];
-              sizes_[static_cast<std::size_t>(p)].push_back(static_cast<unsigned char>(size));
-            });
-      }
+    auto const patches = (elements + patch_size - 1) / patch_size;
+    first_.resize(static_cast<std::size_t>(patches) + 1);
+    for_each_on_host(patches, few_patches, [&](Index p) {
+      Index& corners = first_[static_cast<std::size_t>(p) + 1];
+      for_each_block(
+          p, [&](FanBlock const& own, Index) { corners += static_cast<Index>(own.corners.size()); },
+          [&](FanBlock const&, Index, FanRun const& run) { corners += run.size + 3; });
     });
-    first_.push_back(0);
-    for (auto const& own : corners)
-      first_.push_back(first_.back() + static_cast<Index>(own.size()));
+    for (std::size_t p = 1; p < first_.size(); ++p) first_[p] += first_[p - 1];
     nodes_ = HostArray<Index>::unset(static_cast<std::size_t>(first_.back()));
-    for_each_on_host(static_cast<Index>(patches), few_patches, [&](Index p) {
-      auto const k = static_cast<std::size_t>(p);
-      std::ranges::copy(corners[k], nodes_.data() + first_[k]);
-    });
+    sizes_.resize(static_cast<std::size_t>(patches));
+    for_each_on_host(patches, few_patches, [&](Index p) { fill(p, connectivity); });
     rows_ = PatchRows(
-        nodes_, static_cast<Index>(patches),
+        {nodes_.data(), nodes_.size()}, patches,
         [&](Index p) { return std::ptrdiff_t{first_[static_cast<std::size_t>(p)]}; }, nodes);
-    runs_.resize(patches);
-    bounds_.resize(patches);
+    runs_.resize(static_cast<std::size_t>(patches));
+    bounds_.resize(static_cast<std::size_t>(patches));
   }
 
   /// By corner.
@@ -108,6 +95,58 @@ class Fans {
  private:
   static constexpr Index few_patches = 4;  // worth a thread
 
+  /// Calls whole(block, its first element) for each block that a patch has all of, and cut(block, its first element, run)
+  /// for what it has of the fans of others; corners and elements of the run are the block's.
+  template <class Whole, class Cut>
+  void for_each_block(Index patch, Whole const& whole, Cut const& cut) const {
+    Index const begin = patch * patch_size_,
+                end = std::min(begin + patch_size_, static_cast<Index>(elements_.size()));
+    blocks_.for_each_in(begin, end, [&](FanBlock const& block, Index first) {
+      if (first >= begin && first + static_cast<Index>(block.elements.size()) <= end)
+        return whole(block, first);
+      FanRun run{0, 0, 0, 0};
+      for (int const size : block.sizes) {
+        auto const is_in = [&](int k) {
+          Index const e = first + block.elements[static_cast<std::size_t>(run.elements + k)];
+          return begin <= e && e < end;
+        };
+        for (int from = 0, to = 0; from < size; from = to) {
+          bool const own = is_in(from);
+          while (to < size && is_in(to) == own) ++to;
+          if (own)
+            cut(block, first, FanRun{run.ends, run.ends + 2 + from, run.elements + from, to - from});
+        }
+        run.ends += size + 3;
+        run.elements += size;
+      }
+    });
+  }
+  void fill(Index patch, Index const* connectivity) {
+    Index* node = nodes_.data() + first_[static_cast<std::size_t>(patch)];
+    Index* element = elements_.data() + patch * patch_size_;
+    auto& sizes = sizes_[static_cast<std::size_t>(patch)];
+    for_each_block(
+        patch,
+        [&](FanBlock const& block, Index first) {
+          Index const* const rows = connectivity + std::ptrdiff_t{4} * first;
+          for (Index const corner : block.corners) *node++ = rows[corner];
+          for (Index const e : block.elements) *element++ = first + e;
+          sizes.insert(sizes.end(), block.sizes.begin(), block.sizes.end());
+        },
+        [&](FanBlock const& block, Index first, FanRun const& run) {
+          Index const* const rows = connectivity + std::ptrdiff_t{4} * first;
+          auto const add = [&](Index corner, int count) {
+            for (int k = 0; k < count; ++k)
+              *node++ = rows[block.corners[static_cast<std::size_t>(corner + k)]];
+          };
+          add(run.ends, 2);
+          add(run.ring, run.size + 1);
+          for (int k = 0; k < run.size; ++k)
+            *element++ = first + block.elements[static_cast<std::size_t>(run.elements + k)];
+          sizes.push_back(static_cast<unsigned char>(run.size));
+        });
+  }
+
   template <class Visit>
   void for_each_fan(Index patch, Visit const& visit) const {
     Index corner = first_[static_cast<std::size_t>(patch)], element = patch * patch_size_;
@@ -130,6 +169,7 @@ class Fans {
   }
 
   Index patch_size_ = 1;
+  FanBlocks blocks_;
   std::vector<Index> first_;                       // (patches + 1), corners
   HostArray<Index> nodes_, elements_;              // (corners), (elements)
   std::vector<std::vector<unsigned char>> sizes_;  // of the fans of each patch

@@ -21,10 +21,11 @@ inline constexpr int most_host_fan_elements = 12;
 class HostFanSplitter {
  public:
   /// Calls keep(ends, ring, elements, size) for each fan of `count` elements with the nodes rows[4 · count]: element k of
-  /// it has, up to an even permutation, the nodes ends[0], ends[1], ring[k], ring[k + 1].
+  /// it has, up to an even permutation, the nodes at the places ends[0], ends[1], ring[k], ring[k + 1] of `rows`. All of
+  /// that follows from which nodes are the same, and not from their numbers.
   template <class Keep>
   void split(Index const* rows, int count, Keep const& keep) {
-    rows_ = rows;
+    find_places(rows, count);
     find_edges(count);
     int left = count;
     for (int size = most_host_fan_elements; left > 0; --size)
@@ -44,21 +45,34 @@ class HostFanSplitter {
   static constexpr int most_around = 64;  // an edge; further elements wait for other edges
   struct Member {
     int element;
-    Index begin, end;  // the nodes beside the edge, turning about it one way
+    int begin, end;  // the nodes beside the edge, turning about it one way
   };
   struct Edge {
-    Index low, high;
+    int low, high;  // nodes
     int first, last, count;  // elements
     int head, tail;          // of the list of sides
   };
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+  /// Nodes go by the places where they come first.
+  void find_places(Index const* rows, int count) {
+    auto const slots = std::bit_ceil(static_cast<unsigned>(8 * count));
+    table_.assign(slots, -1);
+    places_.resize(at(4 * count));
+    for (int place = 0; place < 4 * count; ++place) {
+      auto slot = (static_cast<std::uint64_t>(rows[place]) * 0x9E3779B97F4A7C15u >> 40) & (slots - 1);
+      while (table_[slot] >= 0 && rows[table_[slot]] != rows[place]) slot = (slot + 1) & (slots - 1);
+      if (table_[slot] < 0) table_[slot] = place;
+      places_[at(place)] = table_[slot];
+    }
+  }
+
   /// The nodes of an element with those of edge q first, ascending: an even permutation.
-  std::array<Index, 4> turned(int element, int q) const {
+  std::array<int, 4> turned(int element, int q) const {
     static constexpr int corners[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
                                           {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
-    Index const* const row = rows_ + 4 * element;
+    int const* const row = places_.data() + 4 * element;
     auto const& c = corners[q];
     if (row[c[0]] <= row[c[1]]) return {row[c[0]], row[c[1]], row[c[2]], row[c[3]]};
     return {row[c[1]], row[c[0]], row[c[3]], row[c[2]]};
@@ -90,7 +104,7 @@ class HostFanSplitter {
               static_cast<int>(k));
       }
   }
-  Edge& edge_of(Index low, Index high, int element) {
+  Edge& edge_of(int low, int high, int element) {
     auto const mask = table_.size() - 1;
     auto const key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
     for (std::size_t slot = key * 0x9E3779B97F4A7C15u >> 40 & mask;; slot = (slot + 1) & mask) {
@@ -138,7 +152,7 @@ class HostFanSplitter {
     if (start != begin + count) std::iter_swap(begin + first, start);
     int last = first;
     while (last + 1 < count) {
-      Index const end = around_[at(last)].end;
+      int const end = around_[at(last)].end;
       auto const next = std::find_if(begin + last + 1, begin + count,
                                      [&](Member const& m) { return m.begin == end; });
       if (next == begin + count) break;
@@ -149,8 +163,8 @@ class HostFanSplitter {
   /// The fan that was found.
   template <class Keep>
   void take(int e, int size, Keep const& keep) {
-    Index const ends[2] = {edges_[at(e)].low, edges_[at(e)].high};
-    Index ring[most_host_fan_elements + 1], elements[most_host_fan_elements];
+    int const ends[2] = {edges_[at(e)].low, edges_[at(e)].high};
+    int ring[most_host_fan_elements + 1], elements[most_host_fan_elements];
     ring[0] = around_[0].begin;
     for (int k = 0; k < size; ++k) {
       Member const& m = around_[at(k)];
@@ -161,8 +175,9 @@ class HostFanSplitter {
     keep(ends, ring, elements, size);
   }
 
-  Index const* rows_ = nullptr;
-  std::vector<int> table_, next_;  // of edges by a hash of their nodes; (elements, 6)
+  std::vector<int> table_;   // of places by a hash of their nodes, then of edges by one of theirs
+  std::vector<int> places_;  // (elements, 4): the first that has the node
+  std::vector<int> next_;    // (elements, 6)
   std::vector<Edge> edges_;
   std::vector<char> is_taken_;  // (elements)
   std::array<std::vector<int>, most_host_fan_elements + 1>

@@ -21,7 +21,7 @@ class PatchRows {
   PatchRows() = default;
   /// Of places that have the nodes place_nodes; those of patch p are first_place(p) to first_place(p + 1).
   template <class FirstPlace>
-  PatchRows(HostArray<Index> const& place_nodes, Index patches, FirstPlace const& first_place,
+  PatchRows(std::span<Index const> place_nodes, Index patches, FirstPlace const& first_place,
             Index nodes)
       : target_(HostArray<Index>::unset(place_nodes.size())) {
     auto const for_each_place = [&](Index p, auto const& visit) {

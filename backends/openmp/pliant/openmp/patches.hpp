@@ -24,25 +24,24 @@ class Patches {
   static constexpr Index patch_size() { return 2048; }
 
   Patches() = default;
-  Patches(std::vector<std::array<Index, Nodes>> const& connectivity, int groups,
-          std::vector<Tag> const& tags, Index nodes, NodeOrder node_order)
+  /// `before`: the table before a change, which has what was planned for the blocks that stay.
+  Patches(std::vector<std::array<Index, Nodes>> connectivity, int groups,
+          std::vector<Tag> const& tags, Index nodes, NodeOrder node_order,
+          ElementBlocks const& blocks = {}, Patches const* before = nullptr)
       : groups_(groups),
         has_fans_(may_have_fans && node_order == NodeOrder::any_even),
-        connectivity_(HostArray<Index>::unset(connectivity.size() * Nodes)),
+        connectivity_(std::move(connectivity)),
         tags_(std::span<Tag const>(tags)),
         ordered_tags_(std::span<Tag const>(tags)),
         tag_data_(tags_.data()),
-        order_(HostArray<Index>::unset(connectivity.size())) {
-    check_nodes(connectivity, nodes);
-    for_each_on_host(count(), few_elements(Nodes), [&](Index e) {
-      std::ranges::copy(connectivity[static_cast<std::size_t>(e)],
-                        connectivity_.data() + std::ptrdiff_t{Nodes} * e);
-    });
+        order_(HostArray<Index>::unset(connectivity_.size())) {
+    check_nodes(connectivity_, nodes);
     if (has_fans_)
-      fans_ = Fans(connectivity_.data(), count(), patch_size(), nodes);
+      fans_ = Fans(all_nodes(), count(), patch_size(), nodes, blocks,
+                   before == nullptr ? nullptr : &before->fans_);
     else
       rows_ = PatchRows(
-          connectivity_, patch_count(),
+          {all_nodes(), connectivity_.size() * Nodes}, patch_count(),
           [&](Index p) { return std::ptrdiff_t{Nodes} * std::min(count(), p * patch_size()); },
           nodes);
     bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
@@ -57,7 +56,7 @@ class Patches {
   HostArray<Tag> const& tags() const { return tags_; }
   HostArray<Tag> take_tags() { return std::move(tags_); }
 
-  Index const* nodes(Index e) const { return connectivity_.data() + std::ptrdiff_t{Nodes} * e; }
+  Index const* nodes(Index e) const { return connectivity_[static_cast<std::size_t>(e)].data(); }
   bool has_fans() const { return has_fans_; }
   Fans const& fans() const { return fans_; }
   /// The elements of a patch that belong to a group, in ascending order.
@@ -81,6 +80,7 @@ class Patches {
   }
 
  private:
+  Index const* all_nodes() const { return connectivity_.empty() ? nullptr : nodes(0); }
   void order(Index patch) {
     Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
     Index* next = order_.data() + first;
@@ -98,8 +98,8 @@ class Patches {
 
   int groups_ = 1;
   bool has_fans_ = false;
-  HostArray<Index> connectivity_;  // (elements, Nodes)
-  PatchRows rows_;                 // of the connectivity, where there are no fans
+  std::vector<std::array<Index, Nodes>> connectivity_;
+  PatchRows rows_;  // of the connectivity, where there are no fans
   Fans fans_;
   HostArray<Tag> tags_, ordered_tags_;  // as they are, and as the order knows them
   Tag const* tag_data_ = nullptr;       // whoever owns them
