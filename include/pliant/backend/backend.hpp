@@ -46,7 +46,8 @@
 // visitor with `reads_elements = true` gets one more argument before v...: own(field) gives it the
 // values of an ElementField at its element, Vector<S, Components>.
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes, order)
-//                              throws Error where an element has a node outside [0, nodes); order: see NodeOrder
+//                              throws Error where an element has a node outside [0, nodes); order: see NodeOrder;
+//                              two more arguments where a backend plans by blocks: see backend/element_blocks.hpp
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run

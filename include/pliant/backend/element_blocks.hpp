@@ -20,10 +20,8 @@ struct ElementBlocks {
 
 /// Elements of a backend that take blocks, and the table before a change or null, as last arguments.
 template <class Elements, class B>
-concept PlansByBlocks =
-    std::constructible_from<Elements, B const&,
-                            std::vector<std::array<Index, Elements::nodes_per_element>>, int,
-                            std::vector<Tag> const&, Index, NodeOrder, ElementBlocks const&,
-                            Elements const*>;
+concept PlansByBlocks = std::constructible_from<
+    Elements, B const&, std::vector<std::array<Index, Elements::nodes_per_element>>, int,
+    std::vector<Tag> const&, Index, NodeOrder, ElementBlocks const&, Elements const*>;
 
 }  // namespace pliant

@@ -28,8 +28,8 @@ CellOrder first_order(Numbering<Es...> const& numbering) {
   return order;
 }
 
-/// Cells of the first mesh, from which a block of elements is: a tetrahedron's six times 80.
-inline constexpr Index cells_per_block = 480;
+/// Cells of the first mesh, from which a block of elements is: 40 cubes of six tetrahedra.
+inline constexpr Index cells_per_block = 240;
 
 /// The elements of each type by the user's numbers, in the order that a body keeps, and the blocks that they are in.
 template <std::size_t Types>

@@ -127,8 +127,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     OrderedElements<sizeof...(Es)> ordered;
     bool const is_first = !first_order || !topology.tree;
     if (!is_first) ordered = elements_in_order(topology, *first_order, changed);
-    auto numbering = is_first ? Numbering<Es...>(mesh)
-                              : Numbering<Es...>(mesh, std::move(ordered.elements));
+    auto numbering =
+        is_first ? Numbering<Es...>(mesh) : Numbering<Es...>(mesh, std::move(ordered.elements));
     if (is_first) ordered.blocks = first_blocks(mesh);
     if (!first_order)
       first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
@@ -165,8 +165,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
   template <std::size_t I>
   void make_table(B const& backend, Numbering<Es...>& numbering, ElementBlocks const& blocks,
-                  Layout const* before, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-                  std::tuple<Group<Fs>...> const& groups, Index& scratch) {
+                  Layout const* before, Topology<Mesh<Es...>> const& topology,
+                  Elastic const& material, std::tuple<Group<Fs>...> const& groups, Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
     table.user_element = std::move(numbering.user_element[I]);
@@ -180,8 +180,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
                         planned...};
     };
     if constexpr (PlansByBlocks<decltype(table.elements), B>)
-      make_elements(blocks,
-                    before == nullptr ? nullptr : &std::get<I>(before->tables).elements);
+      make_elements(blocks, before == nullptr ? nullptr : &std::get<I>(before->tables).elements);
     else
       make_elements();
     scratch = std::max(scratch, table.elements.scratch_nodes());

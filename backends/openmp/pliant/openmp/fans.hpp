@@ -114,7 +114,8 @@ class Fans {
           bool const own = is_in(from);
           while (to < size && is_in(to) == own) ++to;
           if (own)
-            cut(block, first, FanRun{run.ends, run.ends + 2 + from, run.elements + from, to - from});
+            cut(block, first,
+                FanRun{run.ends, run.ends + 2 + from, run.elements + from, to - from});
         }
         run.ends += size + 3;
         run.elements += size;

@@ -48,7 +48,7 @@ class HostFanSplitter {
     int begin, end;  // the nodes beside the edge, turning about it one way
   };
   struct Edge {
-    int low, high;  // nodes
+    int low, high;           // nodes
     int first, last, count;  // elements
     int head, tail;          // of the list of sides
   };
@@ -61,8 +61,10 @@ class HostFanSplitter {
     table_.assign(slots, -1);
     places_.resize(at(4 * count));
     for (int place = 0; place < 4 * count; ++place) {
-      auto slot = (static_cast<std::uint64_t>(rows[place]) * 0x9E3779B97F4A7C15u >> 40) & (slots - 1);
-      while (table_[slot] >= 0 && rows[table_[slot]] != rows[place]) slot = (slot + 1) & (slots - 1);
+      auto slot =
+          (static_cast<std::uint64_t>(rows[place]) * 0x9E3779B97F4A7C15u >> 40) & (slots - 1);
+      while (table_[slot] >= 0 && rows[table_[slot]] != rows[place])
+        slot = (slot + 1) & (slots - 1);
       if (table_[slot] < 0) table_[slot] = place;
       places_[at(place)] = table_[slot];
     }
