@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <pliant/topology/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -41,9 +42,11 @@ class TouchedElements {
     });
     for (auto const& family : transfer.families())
       for (auto const& member : family.before) types_[member.type].before.push_back(member.element);
-    for (auto& own : types_) {
+    auto const counts = element_counts(before.mesh);
+    for (std::size_t type = 0; type < types_.size(); ++type) {
+      auto& own = types_[type];
       for (auto const& element : own.staying) own.before.push_back(element.before);
-      std::ranges::sort(own.before);
+      own.before = each_once(std::move(own.before), counts[type]);
     }
   }
 

@@ -10,6 +10,7 @@
 
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
+#include <pliant/topology/each_once.hpp>
 #include <pliant/topology/number_table.hpp>
 #include <pliant/topology/shared_list.hpp>
 #include <pliant/topology/tree_cell.hpp>
@@ -92,7 +93,7 @@ class CellTree {
     for (Index const c : cells)
       std::copy_n(cells_[at(c)].edges.begin(), cells_[at(c)].pattern().edges,
                   std::back_inserter(list));
-    return each_once(std::move(list));
+    return detail::each_once(std::move(list), edges_.size());
   }
   /// The sides of solid cells, each once, ascending.
   [[nodiscard]] std::vector<Index> sides_of(std::vector<Index> const& cells) const {
@@ -100,7 +101,7 @@ class CellTree {
     for (Index const c : cells)
       std::copy_n(cells_[at(c)].sides.begin(), cells_[at(c)].pattern().sides,
                   std::back_inserter(list));
-    return each_once(std::move(list));
+    return detail::each_once(std::move(list), sides_.size());
   }
 
   /// Divides a leaf, to be refined one that has no coarser neighbour, and appends the nodes that it makes: the points of
@@ -319,7 +320,7 @@ class CellTree {
     if (c < initial_.cells && cells_[at(c)].has != cells_[at(c)].had) converted_.push_back(c);
   }
   void forget_old_conversions() {
-    converted_ = each_once(std::move(converted_));
+    converted_ = detail::each_once(std::move(converted_));
     std::erase_if(converted_, [&](Index c) { return cells_[at(c)].has == cells_[at(c)].had; });
   }
 
@@ -481,11 +482,6 @@ class CellTree {
     std::erase_if(cells, [&](Index c) { return c >= initial_.cells; });
     return cells;
   }
-  static std::vector<Index> each_once(std::vector<Index> list) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
-  }
 
   /// Takes away what nothing uses any more after `touched` became leaves and their children went, or lost their nodes. What
   /// the initial mesh has stays, and of it only what refined and converted cells have knows of the rest.
@@ -552,7 +548,7 @@ class CellTree {
     };
     auto knowing = initial_of(divided_);
     knowing.insert(knowing.end(), converted_.begin(), converted_.end());
-    knowing = each_once(std::move(knowing));
+    knowing = detail::each_once(std::move(knowing));
     for (Index const c : knowing) move_within_cell(cells_.edit(at(c)));
     for (Index const e : edges_of(knowing)) move_within_edge(edges_.edit(at(e)));
     for (Index const s : sides_of(knowing)) move_within_side(sides_.edit(at(s)));

@@ -10,6 +10,7 @@
 
 #include <pliant/formulation/mass.hpp>
 #include <pliant/topology/cell_changes.hpp>
+#include <pliant/topology/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -160,8 +161,7 @@ class ElementChanges {
     for (auto const& family : families_)
       for (auto const& member : family.before)
         if (member.type == type) leaving.push_back(member.element);
-    std::ranges::sort(leaving);
-    return leaving;
+    return each_once(std::move(leaving), old_cells_[type].size());
   }
   void list_arriving(Index old, int child) {
     arriving_.push_back({changed_.renumbered(old), child, families_.size() - 1, old});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/each_once.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
 // The element types of a mesh, by their place among them.
@@ -86,12 +87,6 @@ template <class M, std::size_t Type>
 struct ElementOfType;
 template <Element... Es, std::size_t Type>
 struct ElementOfType<Mesh<Es...>, Type> : std::tuple_element<Type, std::tuple<Es...>> {};
-
-inline std::vector<Index> each_once(std::vector<Index> list) {
-  std::ranges::sort(list);
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-  return list;
-}
 
 /// How many elements there are, by type.
 template <Element... Es>

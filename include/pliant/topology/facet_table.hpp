@@ -18,7 +18,9 @@ class FacetTable {
  public:
   FacetTable() = default;
   /// For so many facets at most.
-  explicit FacetTable(std::size_t most) : entry_(most == 0 ? 0 : std::bit_ceil(4 * most), -1) {
+  explicit FacetTable(std::size_t most)
+      : entry_(most == 0 ? 0 : std::bit_ceil(4 * most), -1),
+        corners_(most == 0 ? 0 : std::bit_ceil(most)) {
     keys_.reserve(most);
     numbers_.reserve(most);
   }
@@ -29,11 +31,19 @@ class FacetTable {
     entry_[place] = static_cast<Index>(keys_.size());
     keys_.push_back(mesh::key_of(facet));
     numbers_.push_back(number);
+    for (std::size_t k = 0; k < facet.corners(); ++k) word_of(facet[k]) |= bit_of(facet[k]);
   }
   [[nodiscard]] bool empty() const { return keys_.empty(); }
+  /// False for most facets that were not added.
+  [[nodiscard]] bool may_have(Facet<Dim> const& facet) const {
+    if (empty()) return false;
+    for (std::size_t k = 0; k < facet.corners(); ++k)
+      if ((word_of(facet[k]) & bit_of(facet[k])) == 0) return false;
+    return true;
+  }
   /// Of a facet that was added several times the first one.
   [[nodiscard]] std::optional<std::size_t> find(Facet<Dim> const& facet) const {
-    if (empty()) return std::nullopt;
+    if (!may_have(facet)) return std::nullopt;
     auto place = home_of(facet);
     if (entry_[place] < 0) return std::nullopt;
     auto const key = mesh::key_of(facet);
@@ -44,6 +54,16 @@ class FacetTable {
   }
 
  private:
+  /// Of the corners of facets that were added, modulo their count.
+  [[nodiscard]] std::uint64_t& word_of(Index corner) {
+    return corners_[static_cast<std::size_t>(corner) / 64 & (corners_.size() - 1)];
+  }
+  [[nodiscard]] std::uint64_t word_of(Index corner) const {
+    return corners_[static_cast<std::size_t>(corner) / 64 & (corners_.size() - 1)];
+  }
+  static std::uint64_t bit_of(Index corner) {
+    return std::uint64_t{1} << (static_cast<std::size_t>(corner) % 64);
+  }
   /// The same for the corners in any order.
   [[nodiscard]] std::size_t home_of(Facet<Dim> const& facet) const {
     std::uint64_t sum = 0;
@@ -58,6 +78,7 @@ class FacetTable {
   }
 
   std::vector<Index> entry_;                // a power of two; -1: free
+  std::vector<std::uint64_t> corners_;      // a power of two, 64 corners each
   std::vector<std::array<Index, 4>> keys_;  // by the entry
   std::vector<std::size_t> numbers_;
 };

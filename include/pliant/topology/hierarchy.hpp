@@ -14,6 +14,7 @@
 #include <pliant/error.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
+#include <pliant/topology/each_once.hpp>
 #include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -117,7 +118,7 @@ class Hierarchy {
                     cell(c).first_child, " on, or theirs");
       if (cell(c).level < limits.max_level) wanted.push_back(c);
     }
-    sort_and_unify(wanted);
+    wanted = detail::each_once(std::move(wanted), cells().size());
     if (wanted.empty()) return {};
 
     Refinement<Dim> done{
@@ -130,6 +131,7 @@ class Hierarchy {
     made.reserve(needed.nodes);
     for (Index const c : done.parents) tree_.divide(c, Division::refined, made);
     done.new_nodes = add_points(made);
+    done.facets.reserve(whole.size());
     for (Index const s : whole) done.facets.push_back(divided(s));
     leaf_count_ += needed.cells - done.parents.size();
     return done;
@@ -157,7 +159,9 @@ class Hierarchy {
     tree_.take_degree_of_children(parents);
     auto refined = parents;
     std::erase_if(refined, [&](Index c) { return cell(c).is_split(); });
-    for (Index const s : sides_of_no_other(refined)) done.facets.push_back(divided(s));
+    auto const whole = sides_of_no_other(refined);
+    done.facets.reserve(whole.size());
+    for (Index const s : whole) done.facets.push_back(divided(s));
     auto const inside = between_nodes_of(parents, lowered);
     std::size_t children = 0;
     for (Index const c : parents) children += at(cell(c).divided().children);
@@ -229,7 +233,7 @@ class Hierarchy {
       if (!is_leaf(c))
         throw Error("Hierarchy: cannot merge cell ", c, ", which is divided; mark leaves");
     }
-    sort_and_unify(sorted);
+    sorted = detail::each_once(std::move(sorted), cells().size());
     std::vector<Index> parents;
     for (std::size_t i = 0; i < sorted.size();) {
       Index const parent = cell(sorted[i]).parent;
@@ -248,10 +252,6 @@ class Hierarchy {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
-  static void sort_and_unify(std::vector<Index>& list) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
   void check_number(char const* verb, Index c) const {
     if (c < 0 || c >= size(cells()))
       throw Error("Hierarchy: cannot ", verb, " cell ", c, ": cells go from 0 to ",
@@ -344,13 +344,12 @@ class Hierarchy {
   /// The sides of refined cells that have no other refined cell.
   std::vector<Index> sides_of_no_other(std::vector<Index> const& cells) const {
     auto all = sides_of(cells);
-    std::ranges::sort(all);
-    std::vector<Index> own;
-    for (std::size_t i = 0, next = 0; i < all.size(); i = next) {
-      while (next < all.size() && all[next] == all[i]) ++next;
-      if (static_cast<int>(next - i) == refined_cells_at(all[i])) own.push_back(all[i]);
-    }
-    return own;
+    auto const count = Dim == 2 ? tree_.edges().size() : tree_.sides().size();
+    std::vector<bool> once(count, false), twice(count, false);
+    for (Index const s : all) (once[at(s)] ? twice : once)[at(s)] = true;
+    all = detail::each_once(std::move(all), count);
+    std::erase_if(all, [&](Index s) { return (twice[at(s)] ? 2 : 1) != refined_cells_at(s); });
+    return all;
   }
   int refined_cells_at(Index s) const {
     if constexpr (Dim == 2) return tree_.edges()[at(s)].refined;
@@ -389,6 +388,7 @@ class Hierarchy {
   /// A divided side (in the plane, edge) and its parts.
   DividedFacet<Dim> divided(Index s) const {
     DividedFacet<Dim> facet{facet_of(s), {}};
+    facet.parts.reserve(Dim == 2 ? 2 : 4);
     Index const first = first_part(s);
     for (Index part = first; part < first + (Dim == 2 ? 2 : 4); ++part)
       facet.parts.push_back(facet_of(part));
