@@ -55,9 +55,13 @@ Facet<E::dim> side_of(Connectivity<E> const& element, int side) {
 /// The corners of a facet in ascending order: the same for both elements beside it.
 template <int Dim>
 std::array<Index, 4> key_of(Facet<Dim> const& facet) {
-  std::array<Index, 4> key{-1, -1, -1, -1};
-  std::copy_n(facet.begin(), facet.corners(), key.begin());
-  std::sort(key.data(), key.data() + key.size());
+  auto const n = facet.corners();
+  std::array<Index, 4> key{facet[0], facet[1], n > 2 ? facet[2] : -1, n > 3 ? facet[3] : -1};
+  auto const order = [&](std::size_t a, std::size_t b) {
+    auto const [low, high] = std::pair(std::min(key[a], key[b]), std::max(key[a], key[b]));
+    key[a] = low, key[b] = high;
+  };
+  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);  // a sorting network
   return key;
 }
 

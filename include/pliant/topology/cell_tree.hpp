@@ -443,13 +443,13 @@ class CellTree {
   }
   /// The part of a divided side that has the corners of another.
   [[nodiscard]] Index part_of_side(Index s, TreeSide const& wanted) const {
-    auto const sorted = [](std::array<Index, 4> nodes) {
-      std::ranges::sort(nodes);
-      return nodes;
-    };
-    auto const corners = sorted(wanted.nodes);
     Index part = sides_[at(s)].first_child;
-    while (sorted(sides_[at(part)].nodes) != corners) ++part;
+    auto const has_all = [&](std::array<Index, 4> const& nodes) {
+      return std::ranges::all_of(wanted.nodes, [&](Index node) {
+        return (node == nodes[0]) | (node == nodes[1]) | (node == nodes[2]) | (node == nodes[3]);
+      });
+    };
+    while (!has_all(sides_[at(part)].nodes)) ++part;
     return part;
   }
 

@@ -110,12 +110,15 @@ class ElementChanges {
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   /// The element that a cell was before.
-  Member old_element(Index cell) const {
+  Member old_element(Index cell) {
     auto const& own = before_.cell(cell);
     auto const type = static_cast<std::size_t>(
         std::ranges::find(types_, std::pair(own.kind, own.has)) - types_.begin());
     auto const& cells = old_cells_[type];
-    return {type, static_cast<Index>(std::ranges::lower_bound(cells, cell) - cells.begin())};
+    auto next = at(last_.element) + 1;  // most cells that are asked for follow each other
+    if (last_.type != type || next >= cells.size() || cells[next] != cell)
+      next = static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin());
+    return last_ = {type, static_cast<Index>(next)};
   }
   Family& add_family(TreeCell const& whole) {
     auto& family = families_.emplace_back();
@@ -211,6 +214,7 @@ class ElementChanges {
   std::vector<std::pair<CellKind, CellNodes>> types_;
   std::vector<Family> families_;    // merged cells, converted ones, refined ones, split ones
   std::vector<Arriving> arriving_;  // merged and converted cells
+  Member last_{};                   // that old_element found
   std::size_t first_divided_ = 0;   // of the families
   std::vector<Index> old_numbers_;  // of cells; empty until one is asked for that changed
 };
