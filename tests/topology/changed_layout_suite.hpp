@@ -78,4 +78,54 @@ TEST_CASE("a layout that was changed is what a new one would be", "[topology]") 
   });
 }
 
+/// By the new number of each element the old one of those that stay, -1 for others.
+template <class M>
+std::vector<Index> old_elements(TopologyChange<M> const& change) {
+  std::vector<Index> old;
+  for (auto const& origin : change.transfer.origins())
+    for (Index k = 0; k < origin.count; ++k)
+      old.push_back(origin.child == Transfer<M::dim>::Origin::same ? origin.element + k : -1);
+  return old;
+}
+
+TEST_CASE("blocks that are said to stay have the elements that they had", "[topology]") {
+  using Own = Mesh<Tet4>;
+  Body body{Reference<double>{}, mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {7, 7, 7}}), soft,
+            Group<Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>>{}};
+  CellOrder const first = *body.parts().layout.first_order;
+  int stay = 0, change = 0;
+  body.on_change([&](TopologyChange<Own> const& made) {
+    if (!made.before.tree) return;
+    auto const before = elements_in_order(made.before, first, {});
+    auto const after = elements_in_order(made.after, first,
+                                         changed_cells(made.after, first.size(), made.transfer));
+    auto const& [now, then] = std::pair(after.blocks[0], before.blocks[0]);
+    auto const old = old_elements(made);
+    REQUIRE(now.first.size() == then.first.size());
+    for (std::size_t b = 0; b < now.stays.size(); ++b) {
+      bool same = now.first[b + 1] - now.first[b] == then.first[b + 1] - then.first[b];
+      for (Index k = 0; same && k < now.first[b + 1] - now.first[b]; ++k)
+        same = old[static_cast<std::size_t>(
+                   after.elements[0][static_cast<std::size_t>(now.first[b] + k)])] ==
+               before.elements[0][static_cast<std::size_t>(then.first[b] + k)];
+      CHECK((now.stays[b] != 0) == same);
+      ++(same ? stay : change);
+    }
+  });
+  Random random(3);
+  for (int i = 0; i < 8; ++i) {
+    std::vector<Index> marked;
+    auto const levels = refinement_levels<Tet4>(body);
+    for (std::size_t e = 0; e < levels.size(); ++e)
+      if (i % 3 == 2 ? levels[e] > 0 : random.below(1000) == 0)
+        marked.push_back(static_cast<Index>(e));
+    if (i % 3 == 2)
+      coarsen(body, {marked});
+    else
+      refine(body, {marked});
+  }
+  CHECK(stay > 0);
+  CHECK(change > 0);
+}
+
 }  // namespace pliant::test::changed_layout_suite

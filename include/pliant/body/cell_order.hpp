@@ -104,7 +104,8 @@ OrderedElements<sizeof...(Es)> elements_in_order(Topology<Mesh<Es...>> const& to
   // By the cell: the place of its element among those of all types.
   std::vector<Index> place(topology.tree->cells().size(), -1);
   OrderedElements<sizeof...(Es)> ordered;
-  auto& [elements, blocks] = ordered;
+  auto& elements = ordered.elements;
+  auto& blocks = ordered.blocks;
   std::array<Index, sizeof...(Es) + 1> begin{};
   for (std::size_t type = 0; type < elements.size(); ++type) {
     auto const& cells = topology.cells[type];
