@@ -445,9 +445,8 @@ class CellTree {
   [[nodiscard]] Index part_of_side(Index s, TreeSide const& wanted) const {
     Index part = sides_[at(s)].first_child;
     auto const has_all = [&](std::array<Index, 4> const& nodes) {
-      return std::ranges::all_of(wanted.nodes, [&](Index node) {
-        return (node == nodes[0]) | (node == nodes[1]) | (node == nodes[2]) | (node == nodes[3]);
-      });
+      return std::ranges::all_of(
+          wanted.nodes, [&](Index node) { return std::ranges::find(nodes, node) != nodes.end(); });
     };
     while (!has_all(sides_[at(part)].nodes)) ++part;
     return part;
