@@ -28,7 +28,10 @@ std::vector<std::pair<Index, double>> shape_weights(CellNodeList const& nodes,
   Vector<double, E::dim> xi;
   for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
   auto const shape = E::shape(xi);
+  std::size_t count = 0;
+  for (int a = 0; a < E::nodes; ++a) count += shape[a] != 0;
   std::vector<std::pair<Index, double>> list;
+  list.reserve(count);
   for (int a = 0; a < E::nodes; ++a)
     if (shape[a] != 0) list.emplace_back(nodes[static_cast<std::size_t>(a)], shape[a]);
   return list;

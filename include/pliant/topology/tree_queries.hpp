@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/topology/cell_tree.hpp>
+#include <pliant/topology/each_once.hpp>
 
 namespace pliant {
 
@@ -21,10 +22,13 @@ class TreeQueries {
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
   /// one at most across edges and sides: coarser ones first, then ascending.
   [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
-    std::unordered_set<Index> seen(leaves.begin(), leaves.end());
+    std::vector<bool> seen(cells_.size(), false);
+    for (Index const c : leaves) seen[at(c)] = true;
     std::optional<std::vector<std::pair<Index, Index>>> on_edge;
     auto const want = [&](Index c) {
-      if (c >= 0 && tree_.is_leaf(c) && seen.insert(c).second) leaves.push_back(c);
+      if (c < 0 || !tree_.is_leaf(c) || seen[at(c)]) return;
+      seen[at(c)] = true;
+      leaves.push_back(c);
     };
     for (std::size_t i = 0; i < leaves.size(); ++i) {
       auto const cell = cells_[at(leaves[i])];
@@ -80,12 +84,13 @@ class TreeQueries {
   /// How many nodes it takes to refine all of these leaves.
   [[nodiscard]] std::size_t count_new_nodes(std::vector<Index> const& leaves) const {
     std::size_t nodes = 0;
-    std::unordered_set<Index> without_middle, bisected, without_centre, divided;
+    std::vector<Index> without_middle, without_centre;
+    std::unordered_set<Index> bisected, divided;
     auto const needs_middle = [&](Index e) {
-      if (edges_[at(e)].middle < 0) without_middle.insert(e);
+      if (edges_[at(e)].middle < 0) without_middle.push_back(e);
     };
     auto const needs_centre = [&](Index s) {
-      if (sides_[at(s)].centre < 0 && sides_[at(s)].corners() == 4) without_centre.insert(s);
+      if (sides_[at(s)].centre < 0 && sides_[at(s)].corners() == 4) without_centre.push_back(s);
     };
     for (Index const c : leaves) {
       auto const& cell = cells_[at(c)];
@@ -113,7 +118,8 @@ class TreeQueries {
       nodes += quadratic ? at(p.inner_edges) : 0;
       if (all && p.centre >= 0) nodes += at(p.inner_sides + p.children);
     }
-    return nodes + without_middle.size() + without_centre.size();
+    return nodes + detail::each_once(std::move(without_middle), edges_.size()).size() +
+           detail::each_once(std::move(without_centre), sides_.size()).size();
   }
 
   /// How many nodes it takes to give leaves other degrees.
