@@ -101,6 +101,24 @@ std::vector<Index> lost_nodes(ChangedCells<Dim> const& changed, KeptParts<Dim> c
   return lost;
 }
 
+/// Those of which a part has no corners but such of kept facets: most merged facets have none, and need no look.
+template <int Dim>
+std::vector<DividedFacet<Dim>> with_kept_nodes(std::vector<DividedFacet<Dim>> const& merged,
+                                               std::size_t nodes, KeptParts<Dim> const& kept) {
+  std::vector<bool> is_kept(nodes, false);
+  for (auto const* list : kept.facets)
+    for (auto const& facet : *list)
+      for (Index const node : facet) is_kept[static_cast<std::size_t>(node)] = true;
+  std::vector<DividedFacet<Dim>> found;
+  std::ranges::copy_if(merged, std::back_inserter(found), [&](DividedFacet<Dim> const& own) {
+    return std::ranges::any_of(own.parts, [&](Facet<Dim> const& part) {
+      return std::all_of(part.begin(), part.begin() + part.corners(),
+                         [&](Index node) { return is_kept[static_cast<std::size_t>(node)]; });
+    });
+  });
+  return found;
+}
+
 /// Of the families that a change merges, those that have to stay: which a refinement beside them would divide again, that
 /// lose a node that must stay, or of whose facets some list names a part of the whole only.
 template <int Dim>
@@ -111,7 +129,8 @@ std::vector<Index> families_to_keep(Hierarchy<Dim> const& before,
   auto const lost = lost_nodes(changed, kept);
   std::vector<Facet<Dim>> cut;
   if (!kept.facets.empty()) {
-    Transfer<Dim> const facets({.merged = changed.coarsening.facets});
+    Transfer<Dim> const facets(
+        {.merged = with_kept_nodes(changed.coarsening.facets, before.points().size(), kept)});
     for (auto const* list : kept.facets) {
       auto const own = facets.cut_facets(*list);
       cut.insert(cut.end(), own.begin(), own.end());
