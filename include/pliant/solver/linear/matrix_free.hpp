@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/solver/linear/gradient_steps.hpp>
@@ -63,6 +64,23 @@ class MatrixFreeSystem {
       begin<Iteration>();
     }
   }
+  /// By MINRES, whose recursion does not know how x was rounded: goes on from x while b − A x itself is above the tolerance,
+  /// as long as that halves it.
+  void iterate_minres() {
+    MinresIteration<Parts> const keeper(fields_, nullptr);
+    keeper.keep_right_hand_side();
+    for (double before = std::numeric_limits<double>::infinity();;) {
+      iterate<MinresIteration>();
+      bool const claims = values_[Scalars::rr] <= values_[Scalars::enough];
+      keeper.find_residual();
+      values_ = download<double>(arrays_.scalars);
+      double const left = values_[Scalars::rr];
+      if (!claims || left <= values_[Scalars::enough] || !(left < before / 4) ||
+          values_[Scalars::iterations] >= values_[Scalars::most])
+        return;
+      before = left;
+    }
+  }
   /// |b − A x| / |b|.
   double share() const { return std::sqrt(values_[Scalars::rr] / size_); }
   KrylovReport report() const {
@@ -116,7 +134,7 @@ class MatrixFreeSystem {
 
 /// Solves A x = b for x in arrays.solution, from 0, until |b − A x| ≤ tolerance |b|, with sums in double precision, by
 /// conjugate gradients or MINRES, preconditioned. b stands in arrays.residual, zero at what is no unknown, and is lost.
-/// Automatic: MINRES solves it where the first direction of conjugate gradients has no positive curvature.
+/// MINRES has converged where b − A x, computed anew, is that small. Automatic: it solves where the first direction of conjugate gradients has no positive curvature.
 template <class Parts>
 KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backend_type>& arrays,
                                ShiftedTangent<Parts> const& a, double tolerance, int max_iterations,
@@ -128,7 +146,7 @@ KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backen
   bool const has_no_way = method == KrylovMethod::automatic && system.ended_at_once();
   if (method == KrylovMethod::minres || has_no_way) {
     by.note_minres();
-    system.template iterate<MinresIteration>();
+    system.iterate_minres();
   }
   auto const report = system.report();
   by.end(report.iterations, system.share());
