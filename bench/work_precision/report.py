@@ -197,6 +197,16 @@ def step_rows(problem):
             yield [problem.name, contestant, time(row["seconds"]), f"{row['seconds'] / reference:.2f}", percent(row["error"])]
 
 
+def motion_rows(problem):
+    """Every run; those that no other one of the problem beats in both time and error are on the front."""
+    for contestant in problem.contestants:
+        for row in problem.of(contestant):
+            beaten = any(r["seconds"] < row["seconds"] and r["error"] <= row["error"]
+                         for c in problem.contestants for r in problem.of(c) if r["error"] is not None)
+            yield [problem.name, contestant, row["n"], row["unknowns"], time(row["seconds"]), percent(row["error"]),
+                   "" if beaten else "front"]
+
+
 def report(data):
     problems = [Problem(name, data["rows"]) for name in dict.fromkeys(r["problem"] for r in data["rows"])]
     static = [p for p in problems if any(p.kind(c) == "adaptive" for c in p.contestants)]
@@ -241,6 +251,13 @@ def report(data):
                  "The error is that of the history of a corner, beside global steps a quarter as long.", "",
                  markdown(["problem", "integrator", "time", "over global at 0.9", "error"],
                           [row for p in steps for row in step_rows(p)]), ""]
+    motion = [p for p in problems if p not in static + laws + steps]
+    if motion:
+        text += ["## Bodies that move", "",
+                 "Explicit steps unless said; errors are those of displacements at equal times, over all that is compared. *Front*:",
+                 "no other run of the problem is faster and as good.", "",
+                 markdown(["problem", "contestant", "cells", "unknowns", "time", "error", ""],
+                          [row for p in motion for row in motion_rows(p)]), ""]
     failed = [[r["problem"], r["contestant"], r["n"], r["failed"]] for r in data["rows"] if r["failed"]]
     if failed:
         text += ["## Failed", "", markdown(["problem", "contestant", "n", "why"], failed), ""]
