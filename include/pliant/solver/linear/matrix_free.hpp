@@ -134,7 +134,8 @@ class MatrixFreeSystem {
 
 /// Solves A x = b for x in arrays.solution, from 0, until |b − A x| ≤ tolerance |b|, with sums in double precision, by
 /// conjugate gradients or MINRES, preconditioned. b stands in arrays.residual, zero at what is no unknown, and is lost.
-/// MINRES has converged where b − A x, computed anew, is that small. Automatic: it solves where the first direction of conjugate gradients has no positive curvature.
+/// MINRES has converged where b − A x, computed anew, is that small. Automatic: MINRES solves it where the first direction of
+/// conjugate gradients has no positive curvature.
 template <class Parts>
 KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backend_type>& arrays,
                                ShiftedTangent<Parts> const& a, double tolerance, int max_iterations,
