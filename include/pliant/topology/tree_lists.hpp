@@ -1,0 +1,121 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/topology/each_once.hpp>
+#include <pliant/topology/shared_list.hpp>
+#include <pliant/topology/tree_cell.hpp>
+
+namespace pliant {
+
+/// What a CellTree holds, and how many cells use each edge and side. Copies share what neither changes.
+struct TreeLists {
+  SharedList<TreeCell> cells;
+  SharedList<TreeEdge> edges;
+  SharedList<TreeSide> sides;
+  std::vector<Index> divided;  ///< cells, each once
+  std::vector<Index>
+      converted;  ///< cells of the initial mesh that have not what they had there: each once
+  Index linear_leaves = 0, quadratic_leaves = 0;  ///< with corners only, and others
+  TreeSizes initial;                              ///< of the initial mesh
+  Index nodes = 0;
+
+  [[nodiscard]] bool is_leaf(Index c) const { return cells[at(c)].first_child < 0; }
+
+  /// The edges of cells, each once, ascending.
+  [[nodiscard]] std::vector<Index> edges_of(std::vector<Index> const& chosen) const {
+    std::vector<Index> list;
+    for (Index const c : chosen)
+      std::copy_n(cells[at(c)].edges.begin(), cells[at(c)].pattern().edges,
+                  std::back_inserter(list));
+    return detail::each_once(std::move(list), edges.size());
+  }
+  /// The sides of solid cells, each once, ascending.
+  [[nodiscard]] std::vector<Index> sides_of(std::vector<Index> const& chosen) const {
+    std::vector<Index> list;
+    for (Index const c : chosen)
+      std::copy_n(cells[at(c)].sides.begin(), cells[at(c)].pattern().sides,
+                  std::back_inserter(list));
+    return detail::each_once(std::move(list), sides.size());
+  }
+
+  /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
+  [[nodiscard]] CellNodeList nodes_of(Index c) const {
+    auto const& cell = cells[at(c)];
+    auto const& p = cell.pattern();
+    CellNodeList list;
+    for (std::size_t a = 0; a < at(p.corners); ++a) list.push_back(cell.nodes[a]);
+    if (cell.has == CellNodes::corners) return list;
+    for (std::size_t e = 0; e < at(p.edges); ++e) list.push_back(edges[at(cell.edges[e])].middle);
+    if (cell.has != CellNodes::all) return list;
+    for (std::size_t s = 0; s < at(p.sides); ++s)
+      if (p.side_centre[s] >= 0) list.push_back(sides[at(cell.sides[s])].centre);
+    if (p.centre >= 0) list.push_back(cell.centre);
+    return list;
+  }
+
+  /// Counts a cell at its edges and sides, as the leaf or divided cell that it is.
+  void attach(Index c) { count_uses(c, 1); }
+  /// Counts it no more: before it changes.
+  void detach(Index c) { count_uses(c, -1); }
+
+  /// Side s of a cell, as the cell sees it.
+  static TreeSide side_of(TreeCell const& cell, std::size_t s) {
+    auto const& p = cell.pattern();
+    TreeSide side{.level = cell.level};
+    for (std::size_t k = 0; k < at(p.corners_of_side(static_cast<int>(s))); ++k) {
+      side.nodes[k] = cell.nodes[at(p.side[s][k])];
+      side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
+    }
+    return side;
+  }
+
+  template <class Visit, class... R>
+  static void for_each_member(Visit const& visit, R&... r) {
+    visit("cells", r.cells...);
+    visit("edges", r.edges...);
+    visit("sides", r.sides...);
+    visit("divided cells", r.divided...);
+    visit("cells of other degrees", r.converted...);
+    visit("leaves with corners only", r.linear_leaves...);
+    visit("other leaves", r.quadratic_leaves...);
+    visit("initial mesh", r.initial...);
+    visit("number of nodes", r.nodes...);
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  void count_uses(Index c, int by) {
+    auto const& cell = cells[at(c)];
+    if (cell.is_split()) {  // its children have its edges and sides, but for one that is divided
+      if (int const s = cell.divided().halved_side; s >= 0) count_use(cell.sides[at(s)], c, by);
+      return;
+    }
+    auto const& p = cell.pattern();
+    for (std::size_t e = 0; e < at(p.edges); ++e) {
+      auto& edge = edges.edit(at(cell.edges[e]));
+      (cell.first_child < 0 ? edge.leaves : edge.refined) += by;
+      if (cell.first_child < 0 && cell.has == CellNodes::corners) edge.linear += by;
+    }
+    if (cell.first_child < 0)
+      (cell.has == CellNodes::corners ? linear_leaves : quadratic_leaves) += by;
+    for (std::size_t s = 0; s < at(p.sides); ++s) count_use(cell.sides[s], c, by);
+  }
+  void count_use(Index side, Index c, int by) {
+    auto& known = sides.edit(at(side)).cells;
+    if (by > 0) {
+      known[known[0] < 0 ? 0 : 1] = c;
+    } else {
+      if (known[0] == c) known[0] = known[1];
+      known[1] = -1;
+    }
+  }
+};
+
+}  // namespace pliant
