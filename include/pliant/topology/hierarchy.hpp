@@ -16,8 +16,11 @@
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/each_once.hpp>
 #include <pliant/topology/hanging_nodes.hpp>
+#include <pliant/topology/nodes_between.hpp>
+#include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
+#include <pliant/topology/tree_facets.hpp>
 #include <pliant/topology/tree_queries.hpp>
 
 namespace pliant {
@@ -27,37 +30,6 @@ template <class E>
 concept Refinable = Element<E> && has_pattern<typename E::cell> &&
                     (std::derived_from<E, LinearElement<typename E::cell>> || CurvedSimplex<E> ||
                      (TensorCell<typename E::cell> && E::degree == 2));
-
-/// What a call of Hierarchy::refine did.
-template <int Dim>
-struct Refinement {
-  std::vector<Index> parents;             ///< refined cells, closure included, coarser ones first
-  std::vector<NewNode> new_nodes;         ///< ascending; they follow the nodes that were there
-  std::vector<DividedFacet<Dim>> facets;  ///< sides that were divided, in the plane edges
-};
-
-/// What a call of Hierarchy::raise or split did.
-struct AddedNodes {
-  std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
-};
-
-/// What a call of Hierarchy::coarsen or merge did.
-template <int Dim>
-struct Coarsening {
-  std::vector<Index> parents;  ///< cells that are leaves again, by their new number, ascending
-  Renumbering renumbered;      ///< nodes and cells
-  std::vector<NewNode> gone;  ///< nodes that went, and between which nodes that stayed; old numbers
-  std::vector<DividedFacet<Dim>> facets;  ///< sides that are whole again; old numbers
-};
-
-/// Beyond what Hierarchy::refine throws Error, or leaves cells alone.
-struct RefinementLimits {
-  std::size_t nodes = std::numeric_limits<std::size_t>::max();   ///< most nodes in all
-  std::size_t leaves = std::numeric_limits<std::size_t>::max();  ///< most leaves in all
-  /// Marked cells of this level are left alone. Beyond some 40 levels double coordinates of order
-  /// one no longer tell nodes apart.
-  int max_level = 30;
-};
 
 /// The refinement tree of a mesh, plane or solid, of elements of degree one or two, as RefinementPattern divides
 /// their cells, into smaller ones or between their corners. Levels differ by one at most across edges and sides; nodes that hang there are slaves of the
@@ -125,14 +97,12 @@ class Hierarchy {
         .parents = TreeQueries(tree_).closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
     auto const needed = TreeQueries(tree_).needed(done.parents);
     check_room("refine", done.parents.size(), needed, limits);
-    auto whole = Dim == 2 ? tree_.edges_of(done.parents) : tree_.sides_of(done.parents);
-    std::erase_if(whole, [&](Index s) { return first_part(s) >= 0; });
+    auto const whole = TreeFacets(tree_).whole_sides_of(done.parents);
     std::vector<PlacedNode> made;
     made.reserve(needed.nodes);
     for (Index const c : done.parents) tree_.divide(c, Division::refined, made);
     done.new_nodes = add_points(made);
-    done.facets.reserve(whole.size());
-    for (Index const s : whole) done.facets.push_back(divided(s));
+    done.facets = TreeFacets(tree_).divided(whole);
     leaf_count_ += needed.cells - done.parents.size();
     return done;
   }
@@ -159,10 +129,9 @@ class Hierarchy {
     tree_.take_degree_of_children(parents);
     auto refined = parents;
     std::erase_if(refined, [&](Index c) { return cell(c).is_split(); });
-    auto const whole = sides_of_no_other(refined);
-    done.facets.reserve(whole.size());
-    for (Index const s : whole) done.facets.push_back(divided(s));
-    auto const inside = between_nodes_of(parents, lowered);
+    TreeFacets const facets(tree_);
+    done.facets = facets.divided(facets.sides_of_no_other(refined));
+    auto const inside = detail::nodes_between(tree_, parents, lowered);
     std::size_t children = 0;
     for (Index const c : parents) children += at(cell(c).divided().children);
     done.renumbered = tree_.merge(parents, lowered);
@@ -204,10 +173,7 @@ class Hierarchy {
   /// The whole sides of leaves (in the plane, edges), as facets with the nodes that they have now.
   [[nodiscard]] std::vector<DividedFacet<Dim>> whole_facets(
       std::vector<Index> const& leaves) const {
-    std::vector<DividedFacet<Dim>> facets;
-    for (Index const s : Dim == 2 ? tree_.edges_of(leaves) : tree_.sides_of(leaves))
-      if (first_part(s) < 0) facets.push_back({facet_of(s), {facet_of(s)}});
-    return facets;
+    return TreeFacets(tree_).whole(leaves);
   }
 
   /// Every hanging node, ascending, with its free masters. Weights sum to one. They make the displacement
@@ -329,128 +295,6 @@ class Hierarchy {
     if (equal)
       for (double& x : sum) x /= static_cast<double>(n.parents.size());
     return sum;
-  }
-
-  /// The sides of cells, in the plane their edges: as often as cells have them.
-  std::vector<Index> sides_of(std::vector<Index> const& cells) const {
-    std::vector<Index> list;
-    for (Index const c : cells) {
-      auto const& own = cell(c);
-      for (std::size_t s = 0; s < at(Dim == 2 ? own.pattern().edges : own.pattern().sides); ++s)
-        list.push_back(Dim == 2 ? own.edges[s] : own.sides[s]);
-    }
-    return list;
-  }
-  /// The sides of refined cells that have no other refined cell.
-  std::vector<Index> sides_of_no_other(std::vector<Index> const& cells) const {
-    auto all = sides_of(cells);
-    auto const count = Dim == 2 ? tree_.edges().size() : tree_.sides().size();
-    std::vector<bool> once(count, false), twice(count, false);
-    for (Index const s : all) (once[at(s)] ? twice : once)[at(s)] = true;
-    all = detail::each_once(std::move(all), count);
-    std::erase_if(all, [&](Index s) { return (twice[at(s)] ? 2 : 1) != refined_cells_at(s); });
-    return all;
-  }
-  int refined_cells_at(Index s) const {
-    if constexpr (Dim == 2) return tree_.edges()[at(s)].refined;
-    int count = 0;
-    for (Index c : tree_.sides()[at(s)].cells) count += c >= 0 && !is_leaf(c);
-    return count;
-  }
-  /// Of the parts of a side; −1 while it is whole.
-  Index first_part(Index s) const {
-    return Dim == 2 ? tree_.edges()[at(s)].first_half : tree_.sides()[at(s)].first_child;
-  }
-  /// With the nodes of the leaves beside it, of the highest degree.
-  Facet<Dim> facet_of(Index s) const {
-    Facet<Dim> facet;
-    auto const& edges = tree_.edges();
-    if constexpr (Dim == 2) {
-      auto const& edge = edges[at(s)];
-      for (Index node : edge.nodes) facet.push_back(node);
-      bool quadratic = edge.leaves > edge.linear;
-      for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
-        quadratic = quadratic || edges[at(half)].leaves > edges[at(half)].linear;
-      if (quadratic) facet.push_back(edge.middle);
-    } else {
-      auto const& side = tree_.sides()[at(s)];
-      auto has = CellNodes::corners;
-      for (Index const c : side.cells)
-        if (c >= 0) has = std::max(has, cell(c).has);
-      for (std::size_t k = 0; k < side.corners(); ++k) facet.push_back(side.nodes[k]);
-      if (has == CellNodes::corners) return facet;
-      for (std::size_t k = 0; k < side.corners(); ++k)
-        facet.push_back(edges[at(side.edges[k])].middle);
-      if (has == CellNodes::all && side.corners() == 4) facet.push_back(side.centre);
-    }
-    return facet;
-  }
-  /// A divided side (in the plane, edge) and its parts.
-  DividedFacet<Dim> divided(Index s) const {
-    DividedFacet<Dim> facet{facet_of(s), {}};
-    facet.parts.reserve(Dim == 2 ? 2 : 4);
-    Index const first = first_part(s);
-    for (Index part = first; part < first + (Dim == 2 ? 2 : 4); ++part)
-      facet.parts.push_back(facet_of(part));
-    return facet;
-  }
-
-  /// The nodes of refined cells' children that the cells themselves have not, as they lie between nodes of
-  /// the cells, and those between the corners of leaves: each once, ascending.
-  std::vector<NewNode> between_nodes_of(std::vector<Index> const& parents,
-                                        std::vector<Index> const& lowered) const {
-    std::vector<NewNode> found;
-    std::vector<bool> seen(points_.size(), false);
-    for (Index const c : lowered) {
-      auto const nodes = tree_.nodes_of(c);
-      auto const places = places_of(cell(c));
-      for (std::size_t a = cell(c).corners(); a < nodes.count; ++a) {
-        if (seen[at(nodes[a])]) continue;
-        seen[at(nodes[a])] = true;
-        NewNode node{nodes[a], {}};
-        for (std::size_t b = 0; b < cell(c).corners(); ++b)
-          if (places[a][b] != 0) node.parents.emplace_back(nodes[b], places[a][b]);
-        found.push_back(std::move(node));
-      }
-    }
-    for (Index const c : parents) {
-      auto const& own = cell(c);
-      auto const& p = own.divided();
-      auto const nodes = tree_.nodes_of(c);
-      for (Index child = own.first_child; child < own.first_child + p.children; ++child) {
-        auto const& corners = p.child[at(child - own.first_child)];
-        auto const list = tree_.nodes_of(child);
-        auto const places = places_of(cell(child));
-        for (std::size_t a = 0; a < list.count; ++a) {
-          if (seen[at(list[a])] || std::ranges::find(nodes, list[a]) != nodes.end()) continue;
-          seen[at(list[a])] = true;
-          std::array<double, 3> place{};
-          for (std::size_t b = 0; b < cell(child).corners(); ++b)
-            for (std::size_t k = 0; k < 3; ++k)
-              place[k] += places[a][b] * p.place[at(corners[b])][k];
-          found.push_back({list[a], detail::shape_weights<Dim>(own.kind, own.has, nodes, place)});
-        }
-      }
-    }
-    std::ranges::sort(found, {}, &NewNode::node);
-    return found;
-  }
-  /// Where the nodes of an element lie between the corners of its cell: the corners' weights.
-  static std::array<std::array<double, 8>, 27> places_of(TreeCell const& cell) {
-    auto const& p = cell.pattern();
-    std::array<std::array<double, 8>, 27> places{};
-    std::size_t next = 0;
-    for (; next < at(p.corners); ++next) places[next][next] = 1;
-    for (std::size_t e = 0; e < at(p.edges); ++e, ++next)
-      for (int corner : p.edge[e]) places[next][at(corner)] = 0.5;
-    for (std::size_t s = 0; s < at(p.sides); ++s) {
-      if (p.side_centre[s] < 0) continue;
-      for (int corner : p.side[s]) places[next][at(corner)] = 0.25;
-      ++next;
-    }
-    if (p.centre >= 0)
-      for (std::size_t a = 0; a < at(p.corners); ++a) places[next][a] = 1.0 / p.corners;
-    return places;
   }
 
   std::vector<Point<Dim>> points_;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <pliant/config.hpp>
+#include <pliant/topology/transfer.hpp>
+#include <pliant/topology/tree_cell.hpp>
+
+// What changes of a Hierarchy did, and how far they may go.
+namespace pliant {
+
+/// What a call of Hierarchy::refine did.
+template <int Dim>
+struct Refinement {
+  std::vector<Index> parents;             ///< refined cells, closure included, coarser ones first
+  std::vector<NewNode> new_nodes;         ///< ascending; they follow the nodes that were there
+  std::vector<DividedFacet<Dim>> facets;  ///< sides that were divided, in the plane edges
+};
+
+/// What a call of Hierarchy::raise or split did.
+struct AddedNodes {
+  std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
+};
+
+/// What a call of Hierarchy::coarsen or merge did.
+template <int Dim>
+struct Coarsening {
+  std::vector<Index> parents;  ///< cells that are leaves again, by their new number, ascending
+  Renumbering renumbered;      ///< nodes and cells
+  std::vector<NewNode> gone;  ///< nodes that went, and between which nodes that stayed; old numbers
+  std::vector<DividedFacet<Dim>> facets;  ///< sides that are whole again; old numbers
+};
+
+/// Beyond what Hierarchy::refine throws Error, or leaves cells alone.
+struct RefinementLimits {
+  std::size_t nodes = std::numeric_limits<std::size_t>::max();   ///< most nodes in all
+  std::size_t leaves = std::numeric_limits<std::size_t>::max();  ///< most leaves in all
+  /// Marked cells of this level are left alone. Beyond some 40 levels double coordinates of order
+  /// one no longer tell nodes apart.
+  int max_level = 30;
+};
+
+}  // namespace pliant
