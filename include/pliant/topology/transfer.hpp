@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <optional>
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <pliant/error.hpp>
 #include <pliant/mesh/mesh.hpp>
-#include <pliant/mesh/sides.hpp>
-#include <pliant/topology/facet_table.hpp>
+#include <pliant/topology/facet_transfer.hpp>
 #include <pliant/topology/refinement_pattern.hpp>
 
 namespace pliant {
@@ -19,15 +18,6 @@ namespace pliant {
 struct NewNode {
   Index node = -1;
   std::vector<std::pair<Index, double>> parents;  ///< (node, weight); weights add up to one
-};
-
-/// A facet of the boundary and the parts into which it is divided: part k at its corner k, then that in the
-/// middle of a triangle. Parts run round as the whole does, in 3D from that corner. One part: the facet stays, with
-/// other nodes between its corners.
-template <int Dim>
-struct DividedFacet {
-  Facet<Dim> whole;
-  std::vector<Facet<Dim>> parts;
 };
 
 /// What a change of topology means for fields: where new nodes, elements and facets come from, and what
@@ -75,14 +65,8 @@ class Transfer {
     std::vector<DividedFacet<Dim>> merged{};   ///< by old numbers
   };
 
-  explicit Transfer(Parts parts) : p_(std::move(parts)) {
-    divided_ = FacetTable<Dim>(p_.divided.size());
-    for (std::size_t i = 0; i < p_.divided.size(); ++i) divided_.add(p_.divided[i].whole, i);
-    std::size_t parts_of_merged = 0;
-    for (auto const& merged : p_.merged) parts_of_merged += merged.parts.size();
-    merged_ = FacetTable<Dim>(parts_of_merged);
-    for (std::size_t i = 0; i < p_.merged.size(); ++i)
-      for (auto const& part : p_.merged[i].parts) merged_.add(part, i);
+  explicit Transfer(Parts parts)
+      : p_(std::move(parts)), facets_(std::move(p_.divided), std::move(p_.merged)) {
     stay_ = p_.old_nodes;
     if (!p_.renumbered.empty())
       stay_ = static_cast<Index>(
@@ -182,40 +166,13 @@ class Transfer {
   /// Facets of the boundary on the new mesh: a facet that was divided gives way to its parts, and parts that were
   /// merged to the whole, in the place of the first. Throws Error where not all of them are there.
   std::vector<Facet<Dim>> carry_facets(std::vector<Facet<Dim>> const& facets) const {
-    if (std::vector<Facet<Dim>> const cut = cut_facets(facets); !cut.empty())
-      throw Error(
-          "transfer: of the ", cut.size(), " facets that were merged, the one with the nodes ",
-          cut[0][0], " and ", cut[0][1],
-          " among them, not all are listed; list all, or keep the elements there from being "
-          "merged");
-    std::vector<Facet<Dim>> carried;
-    carried.reserve(facets.size());
-    std::vector<bool> done(p_.merged.size(), false);
-    for (auto const& facet : facets) {
-      auto const whole = merged_.find(facet);
-      if (!whole) {
-        if (p_.renumbered.empty())
-          add_parts(facet, carried);
-        else
-          add_parts(new_numbers(facet), carried);
-      } else if (!done[*whole]) {
-        done[*whole] = true;
-        add_parts(new_numbers(whole_of(p_.merged[*whole], facet)), carried);
-      }
-    }
-    return carried;
+    return facets_.carry(facets, [&](Facet<Dim> const& facet) {
+      return p_.renumbered.empty() ? facet : new_numbers(facet);
+    });
   }
   /// Those of the facets that are merged while others of their whole are not among them.
   std::vector<Facet<Dim>> cut_facets(std::vector<Facet<Dim>> const& facets) const {
-    if (merged_.empty()) return {};
-    std::map<std::size_t, std::size_t> parts;  // by whole
-    for (auto const& facet : facets)
-      if (auto const whole = merged_.find(facet)) ++parts[*whole];
-    std::vector<Facet<Dim>> cut;
-    for (auto const& [whole, count] : parts)
-      if (count < p_.merged[whole].parts.size())
-        cut.insert(cut.end(), p_.merged[whole].parts.begin(), p_.merged[whole].parts.end());
-    return cut;
+    return facets_.cut(facets);
   }
 
  private:
@@ -311,56 +268,9 @@ class Transfer {
     for (Index& node : facet) node = renumbered(node);
     return facet;
   }
-  /// A facet, or the same the other way round: in 2D from its other end, in 3D from the same corner.
-  static Facet<Dim> turned(Facet<Dim> const& facet, bool backwards) {
-    if (!backwards) return facet;
-    auto const n = facet.corners();
-    Facet<Dim> other = facet;
-    if constexpr (Dim == 2) {
-      std::swap(other.begin()[0], other.begin()[1]);
-    } else {
-      std::reverse(other.begin() + 1, other.begin() + n);
-      if (facet.size() >= 2 * n) std::reverse(other.begin() + n, other.begin() + 2 * n);
-    }
-    return other;
-  }
-  /// The whole of which `part` is one, running round as that does.
-  static Facet<Dim> whole_of(DividedFacet<Dim> const& divided, Facet<Dim> const& part) {
-    for (auto const& own : divided.parts)
-      if (mesh::key_of(own) == mesh::key_of(part))
-        return turned(divided.whole, runs_backwards(own, part));
-    return divided.whole;
-  }
-  /// Whether two facets with the same corners run round in opposite directions.
-  static bool runs_backwards(Facet<Dim> const& one, Facet<Dim> const& other) {
-    auto const n = one.corners();
-    std::size_t at = 0;
-    while (other[at] != one[0]) ++at;
-    return Dim == 2 ? at != 0 : other[(at + 1) % n] != one[1];
-  }
-  void add_parts(Facet<Dim> const& facet, std::vector<Facet<Dim>>& parts) const {
-    auto const found = divided_.find(facet);
-    if (!found) {
-      parts.push_back(facet);
-      return;
-    }
-    auto const& [whole, own] = p_.divided[*found];
-    bool const backwards = runs_backwards(whole, facet);
-    if (own.size() == 1) {
-      parts.push_back(turned(own[0], backwards));
-      return;
-    }
-    for (std::size_t k = 0; k < facet.corners(); ++k) {
-      std::size_t corner = 0;
-      while (whole[corner] != facet[k]) ++corner;
-      add_parts(turned(own[corner], backwards), parts);
-    }
-    if (own.size() > facet.corners()) add_parts(turned(own.back(), backwards), parts);
-  }
-
   Parts p_;
   Index stay_ = 0;
-  FacetTable<Dim> divided_, merged_;
+  FacetTransfer<Dim> facets_;
 };
 
 }  // namespace pliant
