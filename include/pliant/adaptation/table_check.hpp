@@ -2,6 +2,8 @@
 
 #include <pliant/adaptation/decision.hpp>
 #include <pliant/adaptation/element_check.hpp>
+#include <pliant/adaptation/gradient_range.hpp>
+#include <pliant/adaptation/mesh_lists.hpp>
 #include <pliant/adaptation/move_where_noted.hpp>
 #include <pliant/adaptation/ranking.hpp>
 #include <pliant/adaptation/refinement.hpp>
@@ -150,51 +152,16 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (switches) this->count_those_stiffened(allowance);
   }
 
-  /// Adds lists of the elements that rules want changed, by the user's number: what is refined, else raised, else split,
-  /// else merged or lowered. `max_level` grows to the rules'.
+  /// Adds lists of the elements that rules want changed: see MeshLists.
   void mark(MarkedElements& marked, int& max_level) const {
-    std::array const lists{&marked.refine,  &marked.raise, &marked.split, &marked.split_in_two,
-                           &marked.coarsen, &marked.lower, &marked.merge};
-    constexpr std::size_t first_of_last = 4;  // an element can be in more than one of these
-    for (auto* list : lists) list->emplace_back();
+    MeshLists<Rules...> lists(rules_.rules, marked, max_level);
     if constexpr (changes_mesh) {
       auto const decision = this->decision();
       if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return MeshRule<R>; });
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
-      std::array<std::uint32_t, lists.size()> rules{};  // bits of those of each list
-      int r = 0;
-      auto const look_at = [&]<class R>(R const& rule) {
-        auto const add_to = [&](auto const& list) {
-          for (std::size_t l = 0; l < lists.size(); ++l)
-            if (lists[l] == &list) rules[l] |= std::uint32_t{1} << r;
-        };
-        if constexpr (RefiningRule<R>) {
-          add_to(marked.refine);
-          max_level = std::max(max_level, rule.options.max_level);
-        } else if constexpr (CoarseningRule<R>) {
-          add_to(marked.coarsen);
-        } else if constexpr (RaisingRule<R>) {
-          add_to(marked.raise);
-          marked.raised_rings = std::max(marked.raised_rings, rule.options.ring);
-        } else if constexpr (LoweringRule<R>) {
-          add_to(marked.lower);
-        } else if constexpr (SplittingRule<R>) {
-          add_to(rule.options.triangles == 2 ? marked.split_in_two : marked.split);
-        } else if constexpr (MergingRule<R>) {
-          add_to(marked.merge);
-        }
-        ++r;
-      };
-      std::apply([&](auto const&... rule) { (look_at(rule), ...); }, rules_.rules);
       auto const masks = download<std::uint32_t>(workspace().mesh_marks);
-      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e) {
-        if (masks[e] == 0) continue;
-        for (std::size_t l = 0; l < lists.size(); ++l) {
-          if ((masks[e] & rules[l]) == 0) continue;
-          lists[l]->back().push_back(table_.user_element[e]);
-          if (l < first_of_last) break;
-        }
-      }
+      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
+        if (masks[e] != 0) lists.add(table_.user_element[e], masks[e]);
     }
   }
   /// Keeps what `act` changes, and puts it back.
@@ -293,6 +260,11 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     }(std::make_integer_sequence<int, Table::groups>());
     return d;
   }
+  /// H:H between which elements of group G may act: see Screen.
+  template <int G>
+  std::array<T, 2> range() const {
+    return gradient_range<Table, G, T, Parts::dim>(rules_.rules);
+  }
   /// See Decision::quiet.
   template <int G>
   T quiet() const {
@@ -302,30 +274,6 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
       return T(-1);  // values are kept, and compared
     else
       return range<G>()[0];
-  }
-  /// H:H between which elements of group G may act: see Screen.
-  template <int G>
-  std::array<T, 2> range() const {
-    constexpr double infinite = std::numeric_limits<double>::infinity(), rounding = 1e-3;
-    double least = infinite, most = -infinite;
-    auto const add = [&]<class R>(R const& rule) {
-      if constexpr (Table::template group_of<typename R::from> == G) {
-        auto const threshold = static_cast<double>(rule.marking.template beyond<T>());
-        if (!rule.marking.below()) {
-          least = std::min(least, rule.criterion.least_gradient(threshold, Parts::dim));
-          most = infinite;
-        } else if constexpr (BoundedBelowCriterion<decltype(R::criterion)>) {
-          least = -infinite;
-          most = std::max(most, rule.criterion.most_gradient(-threshold, Parts::dim));
-        } else {
-          least = -infinite;
-          most = infinite;
-        }
-      }
-    };
-    std::apply([&](auto const&... rule) { (add(rule), ...); }, rules_.rules);
-    return {least > 0 ? static_cast<T>(square((1 - rounding) * least)) : T(-1),
-            most > 0 ? static_cast<T>(square((1 + rounding) * most)) : T(-1)};
   }
   template <class TheDecision, class Chosen>
   void find_cuts(TheDecision const& decision, Chosen const& chosen) const {

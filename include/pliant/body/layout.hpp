@@ -11,10 +11,9 @@
 #include <pliant/body/motion.hpp>
 #include <pliant/body/numbering.hpp>
 #include <pliant/body/state.hpp>
+#include <pliant/body/straight.hpp>
 #include <pliant/body/touched_elements.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
-#include <pliant/formulation/affine.hpp>
-#include <pliant/mesh/bounding_box.hpp>
 
 namespace pliant {
 
@@ -67,7 +66,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
          std::tuple<Group<Fs>...> const& groups, std::shared_ptr<CellOrder const> first = nullptr)
       : first_order(std::move(first)) {
     make(backend, topology, material, groups, {}, nullptr,
-         [&] { add_all_masses(topology.mesh, material.density); });
+         [&] { return detail::lumped_masses(topology.mesh, material.density); });
   }
   /// The same from the layout before a change.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
@@ -76,7 +75,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       : first_order(before.first_order) {
     auto const changed = changed_cells(topology, first_order->size(), transfer);
     make(backend, topology, material, groups, changed, &before, [&] {
-      change_masses(topology.mesh, material.density, before.own_masses, transfer, touched);
+      return detail::changed_masses(topology.mesh, material.density, before.own_masses, transfer,
+                                    touched);
     });
   }
 
@@ -117,7 +117,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
  private:
   static constexpr Index few_nodes = 16384;
 
-  /// find_own_masses() fills own_masses. `changed`: see elements_in_order; `before`: the layout before a change, or null.
+  /// find_own_masses() gives own_masses. `changed`: see elements_in_order; `before`: the layout before a change, or null.
   template <class FindOwnMasses>
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
             std::tuple<Group<Fs>...> const& groups, std::vector<char> const& changed,
@@ -155,7 +155,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       for (auto& [master, weight] : slave.masters) master = internal_of(master);
     }
     interpolation = InterpolationOn<B>(backend, Interpolation(std::move(internal)));
-    find_own_masses();
+    own_masses = find_own_masses();
     mass_list = own_masses;
     topology.interpolation.hand_masses(
         [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
@@ -184,7 +184,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     else
       make_elements();
     scratch = std::max(scratch, table.elements.scratch_nodes());
-    table.straight = is_straight<typename TableType::element>(topology.mesh);
+    table.straight = detail::is_straight<typename TableType::element, T>(topology.mesh);
     table.values = upload(backend, table.in_internal_order(topology.element_values[I]));
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((std::get<G>(table.laws.laws) =
@@ -195,60 +195,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     }(std::make_integer_sequence<int, TableType::groups>());
   }
 
-  /// The box around the body: its middle, and how far it reaches from there.
-  struct Extent {
-    Point<dim> middle;
-    double reach = 0;
-  };
-  static Extent extent(Mesh<Es...> const& mesh) {
-    BoundingBox<dim> const bounds{std::span<Point<dim> const>(mesh.nodes)};
-    Extent box;
-    for (std::size_t k = 0; k < dim; ++k) {
-      box.middle[k] = (bounds.low[k] + bounds.high[k]) / 2;
-      box.reach = std::max(box.reach, (bounds.high[k] - bounds.low[k]) / 2);
-    }
-    return box;
-  }
-
-  /// Whether the nodes between corners lie in the middle, as far as T tells.
-  template <Element E>
-  static bool is_straight(Mesh<Es...> const& mesh) {
-    if constexpr (CurvedSimplex<E>) {
-      auto const& elements = mesh.template elements<E>();
-      detail::HostParts const parts(static_cast<Index>(elements.size()),
-                                    detail::few_elements(E::nodes));
-      std::vector<double> of_parts(static_cast<std::size_t>(parts.count()), 0.0);
-      parts([&](Index first, Index last, int part) {
-        double most = 0;
-        for (Index e = first; e < last; ++e)
-          most = std::max(most, bend<E>(nodal(mesh, elements[static_cast<std::size_t>(e)])));
-        of_parts[static_cast<std::size_t>(part)] = most;
-      });
-      double const furthest = *std::ranges::max_element(of_parts);
-      auto const box = extent(mesh);
-      double distance = 0;  // of the body from the origin: its mesh is rounded there
-      for (double x : box.middle) distance = std::max(distance, std::abs(x));
-      return furthest <= 8 * (double{std::numeric_limits<T>::epsilon()} * box.reach +
-                              std::numeric_limits<double>::epsilon() * distance);
-    }
-    return false;
-  }
-
-  /// How far, along an axis, a node between corners is from the middle of its edge, at most.
-  template <Element E>
-  static double bend(Nodal<E, double> const& x) {
-    constexpr auto edges = E::edges();
-    double furthest = 0;
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      for (int k = 0; k < dim; ++k)
-        furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
-                                               (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
-    return furthest;
-  }
-
   /// Positions relative to the middle of the body: single precision keeps its digits.
   void upload_rest(B const& backend, Mesh<Es...> const& mesh) {
-    auto const box = extent(mesh);
+    auto const box = detail::extent(mesh);
     middle = box.middle;
     std::vector<Point<dim>> relative = mesh.nodes;
     detail::for_each_on_host(nodes, few_nodes, [&](Index i) {
@@ -264,42 +213,6 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     rest = upload(backend, places);
   }
 
-  void add_all_masses(Mesh<Es...> const& mesh, double density) {
-    own_masses.assign(mesh.nodes.size(), 0.0);
-    (add_mass<Es>(mesh, density), ...);
-  }
-  /// Sums anew what nodes have around which elements come or go, in the same order.
-  void change_masses(Mesh<Es...> const& mesh, double density, std::vector<double> const& before,
-                     Transfer<dim> const& transfer,
-                     detail::TouchedElements<Mesh<Es...>> const& touched) {
-    own_masses = transfer.carry_sums(before);
-    for (Index node = 0; node < nodes; ++node)
-      if (touched.changes_elements(node)) own_masses[static_cast<std::size_t>(node)] = 0;
-    detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-      for (Index const e : touched.of_type(type).after) {
-        auto const& element = mesh.template elements<E>()[static_cast<std::size_t>(e)];
-        auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
-        for (std::size_t a = 0; a < E::nodes; ++a)
-          if (touched.changes_elements(element[a]))
-            own_masses[static_cast<std::size_t>(element[a])] += share[static_cast<int>(a)];
-      }
-    });
-  }
-  template <Element E>
-  void add_mass(Mesh<Es...> const& mesh, double density) {
-    auto const& elements = mesh.template elements<E>();
-    auto const add = [&](std::size_t node, double share) { own_masses[node] += share; };
-    detail::HostParts const parts(static_cast<Index>(elements.size()),
-                                  detail::few_elements(E::nodes));
-    if (parts.count() > 1 && detail::has_many_host_threads() &&
-        elements.size() <= std::numeric_limits<Index>::max() / E::nodes)
-      return detail::add_in_order<E>(mesh, density, add);
-    for (auto const& element : elements) {
-      auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
-      for (std::size_t a = 0; a < E::nodes; ++a)
-        add(static_cast<std::size_t>(element[a]), share[static_cast<int>(a)]);
-    }
-  }
   /// In internal order. Throws Error where T cannot hold one.
   std::vector<T> internal_masses(double density) const {
     std::vector<T> masses(mass_list.size());

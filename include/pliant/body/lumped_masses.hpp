@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
+#include <pliant/body/touched_elements.hpp>
 #include <pliant/formulation/affine.hpp>
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
@@ -43,6 +46,51 @@ void add_in_order(M const& mesh, double density, Add const& add) {
       add(static_cast<std::size_t>(node(place)), shares[place]);
     }
   });
+}
+
+/// Adds the lumped masses of a type's elements to their nodes', kg.
+template <Element E, class M>
+void add_masses(M const& mesh, double density, std::vector<double>& masses) {
+  auto const& elements = mesh.template elements<E>();
+  auto const add = [&](std::size_t node, double share) { masses[node] += share; };
+  HostParts const parts(static_cast<Index>(elements.size()), few_elements(E::nodes));
+  if (parts.count() > 1 && has_many_host_threads() &&
+      elements.size() <= std::numeric_limits<Index>::max() / E::nodes)
+    return add_in_order<E>(mesh, density, add);
+  for (auto const& element : elements) {
+    auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      add(static_cast<std::size_t>(element[a]), share[static_cast<int>(a)]);
+  }
+}
+
+/// The lumped masses of a mesh's nodes, kg, slaves' with them.
+template <Element... Es>
+std::vector<double> lumped_masses(Mesh<Es...> const& mesh, double density) {
+  std::vector<double> masses(mesh.nodes.size(), 0.0);
+  (add_masses<Es>(mesh, density, masses), ...);
+  return masses;
+}
+/// The same by those `before` a change of the mesh: summed anew where nodes have elements that came or went, in the same
+/// order.
+template <Element... Es>
+std::vector<double> changed_masses(Mesh<Es...> const& mesh, double density,
+                                   std::vector<double> const& before,
+                                   Transfer<Mesh<Es...>::dim> const& transfer,
+                                   TouchedElements<Mesh<Es...>> const& touched) {
+  auto masses = transfer.carry_sums(before);
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    if (touched.changes_elements(static_cast<Index>(i))) masses[i] = 0;
+  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+    for (Index const e : touched.of_type(type).after) {
+      auto const& element = mesh.template elements<E>()[static_cast<std::size_t>(e)];
+      auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
+      for (std::size_t a = 0; a < E::nodes; ++a)
+        if (touched.changes_elements(element[a]))
+          masses[static_cast<std::size_t>(element[a])] += share[static_cast<int>(a)];
+    }
+  });
+  return masses;
 }
 
 }  // namespace pliant::detail

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <pliant/backend/host_threads.hpp>
+#include <pliant/element/quadratic_simplex.hpp>
+#include <pliant/mesh/bounding_box.hpp>
+#include <pliant/mesh/mesh.hpp>
+
+namespace pliant::detail {
+
+/// The box around a mesh: its middle, and how far it reaches from there, m.
+template <int Dim>
+struct Extent {
+  Point<Dim> middle;
+  double reach = 0;
+};
+template <class M>
+Extent<M::dim> extent(M const& mesh) {
+  BoundingBox<M::dim> const bounds{std::span<Point<M::dim> const>(mesh.nodes)};
+  Extent<M::dim> box;
+  for (std::size_t k = 0; k < M::dim; ++k) {
+    box.middle[k] = (bounds.low[k] + bounds.high[k]) / 2;
+    box.reach = std::max(box.reach, (bounds.high[k] - bounds.low[k]) / 2);
+  }
+  return box;
+}
+
+/// How far, along an axis, a node between corners is from the middle of its edge, at most.
+template <Element E>
+double bend(Nodal<E, double> const& x) {
+  constexpr auto edges = E::edges();
+  double furthest = 0;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    for (int k = 0; k < E::dim; ++k)
+      furthest = std::max(furthest, std::abs(x(E::cell::corners + static_cast<int>(e), k) -
+                                             (x(edges[e][0], k) + x(edges[e][1], k)) / 2));
+  return furthest;
+}
+
+/// Whether the nodes between the corners of a mesh's elements lie in the middle, as far as T tells.
+template <Element E, class T, class M>
+bool is_straight(M const& mesh) {
+  if constexpr (CurvedSimplex<E>) {
+    auto const& elements = mesh.template elements<E>();
+    HostParts const parts(static_cast<Index>(elements.size()), few_elements(E::nodes));
+    std::vector<double> of_parts(static_cast<std::size_t>(parts.count()), 0.0);
+    parts([&](Index first, Index last, int part) {
+      double most = 0;
+      for (Index e = first; e < last; ++e)
+        most = std::max(most, bend<E>(nodal(mesh, elements[static_cast<std::size_t>(e)])));
+      of_parts[static_cast<std::size_t>(part)] = most;
+    });
+    double const furthest = *std::ranges::max_element(of_parts);
+    auto const box = extent(mesh);
+    double distance = 0;  // of the body from the origin: its mesh is rounded there
+    for (double x : box.middle) distance = std::max(distance, std::abs(x));
+    return furthest <= 8 * (double{std::numeric_limits<T>::epsilon()} * box.reach +
+                            std::numeric_limits<double>::epsilon() * distance);
+  }
+  return false;
+}
+
+}  // namespace pliant::detail
