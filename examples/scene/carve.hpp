@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pliant/mesh/sides.hpp>
+#include <pliant/mesh/outer_sides.hpp>
 #include <pliant/pliant.hpp>
 
 namespace scene {

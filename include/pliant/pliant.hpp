@@ -51,6 +51,7 @@
 #include <pliant/law/yeoh.hpp>
 #include <pliant/mesh/box.hpp>
 #include <pliant/mesh/loads.hpp>
+#include <pliant/mesh/outer_sides.hpp>
 #include <pliant/mesh/rectangle.hpp>
 #include <pliant/mesh/with_types.hpp>
 #include <pliant/quadrature/by_need.hpp>

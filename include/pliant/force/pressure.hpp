@@ -14,7 +14,7 @@
 #include <pliant/element/quadratic_tensor.hpp>
 #include <pliant/force/connected_term.hpp>
 #include <pliant/formulation/physics.hpp>
-#include <pliant/mesh/sides.hpp>
+#include <pliant/mesh/outer_sides.hpp>
 
 namespace pliant {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <pliant/mesh/sides.hpp>
+#include <pliant/mesh/outer_sides.hpp>
 
 // Nodes that hang on the boundary's edges and flat sides.
 namespace pliant::detail {

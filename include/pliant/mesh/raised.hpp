@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/sides.hpp>
 
 namespace pliant::mesh {
