@@ -37,11 +37,12 @@ share(shared/switching
       adaptation/refinement_internal_variables adaptation/stiffening adaptation/switching body/groups body/state)
 share(shared/groups
       adaptation/bounded_criteria adaptation/ledger adaptation/switching_agreement
-      adaptation/switching_statistics body/embedding body/internal_variables law/user_law)
+      adaptation/switching_statistics body/embedding body/internal_variables body/joined_bodies
+      law/user_law)
 share(shared/elements
       adaptation/discrepancies adaptation/other_elements adaptation/own_actions
       adaptation/recovered_stress_of_elements body/element_values element/shape_functions
-      formulation/coefficients mesh/check mesh/generators mesh/loads mesh/middles
+      formulation/coefficients mesh/check mesh/generators mesh/joined mesh/loads mesh/middles
       topology/transfer)
 share(shared/statics
       body/pressure solver/assemble solver/equilibrium_path solver/load_steps solver/static solver/static_loads solver/static_report)

@@ -50,6 +50,7 @@
 #include <pliant/law/stable_neo_hookean.hpp>
 #include <pliant/law/yeoh.hpp>
 #include <pliant/mesh/box.hpp>
+#include <pliant/mesh/joined.hpp>
 #include <pliant/mesh/loads.hpp>
 #include <pliant/mesh/outer_sides.hpp>
 #include <pliant/mesh/rectangle.hpp>

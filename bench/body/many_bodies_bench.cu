@@ -1,0 +1,6 @@
+#include "body/many_bodies_suite.hpp"
+#include "support/program.hpp"
+
+int main(int argc, char** argv) {
+  return pliant::bench::run(argc, argv, pliant::bench::add_many_bodies);
+}
