@@ -19,14 +19,26 @@ void add_named(std::string const& name, Run run) {
       ->Unit(benchmark::kMicrosecond);
 }
 
-/// The same under what/element/law/precision/backend/elements.
+/// what/element/law/precision/backend/elements.
+template <class F, class T>
+std::string name_of(std::string const& what, std::string const& backend, int cells) {
+  using E = typename F::element;
+  return what + "/" + E::name() + "/" + law_name<F>() + "/" + precision_name<T>() + "/" + backend +
+         "/" + std::to_string(element_count<E>(cells));
+}
+/// Registers it under that name.
 template <class F, class T, class Run>
 void add(std::string const& what, std::string const& backend, int cells, Run run) {
-  using E = typename F::element;
-  std::string const name = what + "/" + E::name() + "/" + law_name<F>() + "/" +
-                           precision_name<T>() + "/" + backend + "/" +
-                           std::to_string(element_count<E>(cells));
-  add_named(name, std::move(run));
+  add_named(name_of<F, T>(what, backend, cells), std::move(run));
+}
+
+/// The same for what is measured once.
+template <class F, class T, class Run>
+void add_once(std::string const& what, std::string const& backend, int cells, Run run) {
+  benchmark::RegisterBenchmark(name_of<F, T>(what, backend, cells).c_str(), std::move(run))
+      ->UseManualTime()
+      ->Iterations(1)
+      ->Unit(benchmark::kMillisecond);
 }
 
 /// The cells along an edge of the usual mesh: large enough to leave the caches, and to fill a GPU.

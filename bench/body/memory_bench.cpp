@@ -1,0 +1,6 @@
+#include "body/memory_suite.hpp"
+#include "support/program.hpp"
+
+int main(int argc, char** argv) {
+  return pliant::bench::run(argc, argv, pliant::bench::add_memory);
+}
