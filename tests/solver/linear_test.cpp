@@ -191,6 +191,39 @@ TEST_CASE("MINRES tells what has no solution, and what does not precondition", "
   CHECK(x == Eigen::VectorXd::Zero(4));
 }
 
+TEST_CASE("Krylov methods have converged where the residual is small, not their recursion",
+          "[solver]") {
+  constexpr Eigen::Index n = 40;
+  Random random(9);
+  Eigen::MatrixXd any(n, n);
+  for (double& x : any.reshaped()) x = random();
+  Eigen::MatrixXd const q = Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ();
+  // A solution so large that its rounding is 1e-9 of b.
+  Eigen::VectorXd values(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    values[i] = std::pow(10, -8 * static_cast<double>(i) / (n - 1));
+  Eigen::MatrixXd const a = q * values.asDiagonal() * q.transpose();
+  Eigen::VectorXd const b = q * Eigen::VectorXd::Ones(n);
+  auto const apply_a = [&](auto const& v, auto& out) { out = a * v; };
+  auto const by_nothing = [](auto const& r, auto& z) { z = r; };
+  auto const check = [&](auto const& solve) {
+    for (double tolerance : {1e-4, 1e-7, 1e-13}) {
+      Eigen::VectorXd x;
+      KrylovReport const found = solve(x, tolerance);
+      double const left = (b - a * x).norm();
+      CHECK(found.residual == Approx(left));
+      CHECK(found.converged == (left <= tolerance * b.norm()));
+      CHECK(found.converged == (tolerance > 1e-10));
+    }
+  };
+  check([&](auto& x, double tolerance) {
+    return conjugate_gradients(apply_a, by_nothing, b, x, tolerance, 20000);
+  });
+  check([&](auto& x, double tolerance) {
+    return minres(apply_a, by_nothing, b, x, tolerance, 20000);
+  });
+}
+
 template <class F>
 auto block_of(Index n, double poisson = 0.3, double push = 0.2) {
   constexpr std::size_t dim = F::dim;

@@ -7,17 +7,14 @@
 
 #include <Eigen/Core>
 
-#include <pliant/solver/linear/krylov_report.hpp>
+#include <pliant/solver/linear/true_residual.hpp>
 
 namespace pliant::detail {
 
-/// Solves A x = b for a symmetric positive definite A, from x = 0, until |b − A x| ≤ tolerance |b|, and the same holds of the
-/// error in the norm of A, as far as the last few steps tell it (Hestenes and Stiefel 1952; Strakoš and Tichý, Electronic
-/// Transactions on Numerical Analysis 13 (2002) 56). apply_a(v, out) sets out = A v, apply_m(r, out) an approximation of A⁻¹ r
-/// that is symmetric positive definite.
+/// The steps of conjugate_gradients, until their recursion claims that it is done.
 template <class A, class M>
-KrylovReport conjugate_gradients(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b,
-                                 Eigen::VectorXd& x, double tolerance, int max_iterations) {
+KrylovReport gradient_recursion(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b,
+                                Eigen::VectorXd& x, double tolerance, int max_iterations) {
   constexpr int few = 3;
   KrylovReport report;
   Eigen::VectorXd q, z, r = b, p;
@@ -47,6 +44,20 @@ KrylovReport conjugate_gradients(A const& apply_a, M const& apply_m, Eigen::Vect
     r -= alpha * q;
     all += gained[static_cast<std::size_t>(report.iterations % few)] = alpha * rz;
   }
+}
+
+/// Solves A x = b for a symmetric positive definite A, from x = 0, until |b − A x| ≤ tolerance |b|, computed from x, and the
+/// same holds of the error in the norm of A, as far as the last few steps tell it (Hestenes and Stiefel 1952; Strakoš and Tichý,
+/// Electronic Transactions on Numerical Analysis 13 (2002) 56). apply_a(v, out) sets out = A v, apply_m(r, out) an
+/// approximation of A⁻¹ r that is symmetric positive definite.
+template <class A, class M>
+KrylovReport conjugate_gradients(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b,
+                                 Eigen::VectorXd& x, double tolerance, int max_iterations) {
+  return solve_to_true_residual(
+      apply_a, b, x, tolerance, max_iterations,
+      [&](Eigen::VectorXd const& r, Eigen::VectorXd& change, double share, int most) {
+        return gradient_recursion(apply_a, apply_m, r, change, share, most);
+      });
 }
 
 }  // namespace pliant::detail

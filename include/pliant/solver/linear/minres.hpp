@@ -6,18 +6,15 @@
 
 #include <Eigen/Core>
 
-#include <pliant/solver/linear/krylov_report.hpp>
 #include <pliant/solver/linear/minres_numbers.hpp>
+#include <pliant/solver/linear/true_residual.hpp>
 
 namespace pliant::detail {
 
-/// Solves A x = b for a symmetric A, from x = 0, until |b − A x| ≤ tolerance |b| (Paige and Saunders, SIAM Journal on Numerical
-/// Analysis 12 (1975) 617; preconditioned as in Elman, Silvester and Wathen, Finite Elements and Fast Iterative Solvers, 2014,
-/// algorithm 4.1). apply_a(v, out) sets out = A v, apply_m(r, out) an approximation of |A|⁻¹ r that is symmetric positive
-/// definite. A may be singular where b is an image of it; where it is not, the iteration ends without having converged.
+/// The steps of minres, until their recursion claims that it is done.
 template <class A, class M>
-KrylovReport minres(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b,
-                    Eigen::VectorXd& x, double tolerance, int max_iterations) {
+KrylovReport minres_recursion(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b,
+                              Eigen::VectorXd& x, double tolerance, int max_iterations) {
   using Vector = Eigen::VectorXd;
   Vector const zero = Vector::Zero(b.size());
   Vector r = b, v = b, v_before = zero, w = zero, w_before = zero, z, q;
@@ -47,6 +44,21 @@ KrylovReport minres(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b
     x += k.ahead * w;
     r = k.kept * r - k.taken * v;
   }
+}
+
+/// Solves A x = b for a symmetric A, from x = 0, until |b − A x| ≤ tolerance |b|, computed from x (Paige and Saunders, SIAM
+/// Journal on Numerical Analysis 12 (1975) 617; preconditioned as in Elman, Silvester and Wathen, Finite Elements and Fast
+/// Iterative Solvers, 2014, algorithm 4.1). apply_a(v, out) sets out = A v, apply_m(r, out) an approximation of |A|⁻¹ r that is
+/// symmetric positive definite. A may be singular where b is an image of it; where it is not, the iteration ends without
+/// having converged.
+template <class A, class M>
+KrylovReport minres(A const& apply_a, M const& apply_m, Eigen::VectorXd const& b,
+                    Eigen::VectorXd& x, double tolerance, int max_iterations) {
+  return solve_to_true_residual(
+      apply_a, b, x, tolerance, max_iterations,
+      [&](Eigen::VectorXd const& r, Eigen::VectorXd& change, double share, int most) {
+        return minres_recursion(apply_a, apply_m, r, change, share, most);
+      });
 }
 
 }  // namespace pliant::detail
