@@ -79,10 +79,11 @@ inline void add_many_bodies() {
     using T = typename B::scalar;
     if (role == Role::scalar) return;
     int const cells = usual_cells<Tet4, B>();
-    for (std::string const what : {"steps", "looks", "sleep"})
+    for (char const* const what : {"steps", "looks", "sleep"})
       for (bool const many : {false, true}) {
-        if (what == "sleep" && !many) continue;  // a body that is shaken everywhere does not
-        add<Small, T>(what + (many ? " of many bodies" : " of one body"), name, cells,
+        if (std::string_view(what) == "sleep" && !many)
+          continue;  // a body that is shaken everywhere does not
+        add<Small, T>(std::string(what) + (many ? " of many bodies" : " of one body"), name, cells,
                       [backend, cells, many, what](benchmark::State& state) {
                         time_many(state, backend, cells, many, what);
                       });
