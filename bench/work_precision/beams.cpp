@@ -32,7 +32,7 @@ struct Hanging {
     return mesh;
   }
   inline static double reference = 0;
-  template <Element E, class TheBody>
+  template <Element... Es, class TheBody>
   static double error(TheBody const&, NewtonReport const& report) {
     return error_of(report.energy, reference);
   }
@@ -67,7 +67,7 @@ struct Cantilever {
     return mesh;
   }
   inline static double reference = 0;
-  template <Element E, class TheBody>
+  template <Element... Es, class TheBody>
   static double error(TheBody const&, NewtonReport const& report) {
     return error_of(report.energy, reference);
   }

@@ -38,19 +38,14 @@ class Swing {
 
  public:
   explicit Swing(Options const& options) : options_(options) {
-    auto const history = [&](int n) {
+    auto const found = [&](int n) {
       auto body = make<double, F<Quad9>>(n, options_.threads);
-      auto advance = samples_.explicit_steps(0.5)(body);
-      std::vector<Point<2>> found;
-      for (int sample = 0; sample < samples_.count; ++sample) {
-        advance(body);
-        found.push_back(tip(body));
-      }
-      return found;
+      return history(samples_, body, samples_.explicit_steps(0.5),
+                     [](auto const& now) { return tip(now); });
     };
     int const n = options.quick ? 4 : 8;
-    *truth_ = history(n);
-    auto const coarse = history(n / 2);
+    *truth_ = found(n);
+    auto const coarse = found(n / 2);
     Apart apart;
     for (std::size_t k = 0; k < coarse.size(); ++k) apart.add(coarse[k], (*truth_)[k]);
     std::fprintf(stderr, "bending beam: half as many cells of Quad9 are off by %.1e\n",

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <functional>
 #include <limits>
@@ -33,31 +33,43 @@ struct Contestant {
   std::function<std::vector<Answer>(bool with_errors)> run;
 };
 
-/// Sums the time between start() and stop().
+/// Adds the time that it lives to a sum.
 class Stopwatch {
  public:
-  explicit Stopwatch(double& sum) : sum_(sum), started_(Clock::now()) {}
+  explicit Stopwatch(double& sum) : sum_(sum), started_(now()) {}
   Stopwatch(Stopwatch const&) = delete;
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(Clock::now() - started_).count(); }
+  ~Stopwatch() { sum_ += now() - started_; }
+
+  /// The processor's time, in which other programs on the machine have no part; else that of the clock on the wall. Set before
+  /// measurements.
+  inline static bool of_the_processor = false;
 
  private:
-  using Clock = std::chrono::steady_clock;
+  static double now() {
+    timespec time;
+    clock_gettime(of_the_processor ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
   double& sum_;
-  Clock::time_point started_;
+  double started_;
 };
 
-/// Options of all programs: --quick, --threads N.
+/// Options of all programs: --quick, --threads N; --reference where answers were found beforehand: how.
 struct Options {
-  bool quick = false;
+  bool quick = false, reference = false;
   int threads = 1, rounds = 5;
 
   Options(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
       std::string_view const option = argv[i];
       if (option == "--quick") quick = true;
+      if (option == "--reference") reference = true;
       if (option == "--threads" && i + 1 < argc) threads = std::atoi(argv[++i]);
     }
     if (quick) rounds = 3;
+#if !defined(__CUDACC__)
+    Stopwatch::of_the_processor = threads == 1;
+#endif
   }
 };
 

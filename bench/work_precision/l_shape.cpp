@@ -29,7 +29,7 @@ struct LShape {
   static double error(TheBody const& body, NewtonReport const&) {
     auto const law = Hooke<double>::from(material());
     double const energy =
-        (energy_of_error<Es>(body, law, verification::gradient_in_l_shape, {0, 0}) + ...);
+        (energy_of_error<Es>(body, law, verification::gradient_in_l_shape, Point<2>{0, 0}) + ...);
     return std::sqrt(energy / 2.054512443695e-4);
   }
 };

@@ -71,6 +71,8 @@ class Cube {
       }
       history.push_back(body.displacements()[corner]);
     }
+    if (std::abs(body.time() - samples_ * apart_) > 1e-9 * apart_)
+      throw Error("the integrator went back, and did not reach the last sample");
     return history;
   }
   template <class T, class Run>

@@ -62,6 +62,43 @@ struct Samples {
   }
 };
 
+/// Advances a body by what begin(body) makes, calls see(body, sample) at each sample, and adds the time between them to `seconds`.
+/// Throws Error where the integrator went back and did not come to the last.
+template <class TheBody, class Begin, class See>
+void advance_through(Samples const& samples, TheBody& body, Begin const& begin, See const& see,
+                     double& seconds) {
+  auto advance = begin(body);
+  for (int sample = 0; sample < samples.count; ++sample) {
+    {
+      Stopwatch const watch(seconds);
+      advance(body);
+      body.parts().backend.synchronize();
+    }
+    see(std::as_const(body), sample);
+  }
+  if (std::abs(body.time() - samples.count * samples.apart) > 1e-9 * samples.apart)
+    throw Error("the integrator went back, and did not reach the last sample");
+}
+/// What probe(body) says at each sample of such a run: a trusted history.
+template <class TheBody, class Begin, class Probe>
+auto history(Samples const& samples, TheBody& body, Begin const& begin, Probe const& probe) {
+  std::vector<decltype(probe(body))> found;
+  double unused = 0;
+  advance_through(
+      samples, body, begin, [&](auto const& now, int) { found.push_back(probe(now)); }, unused);
+  return found;
+}
+
+/// Of a body's elements of a type, the share of evaluations that were those of its last group; none where there is one.
+template <Element E, class TheBody>
+double share_of_last_group(TheBody const& body) {
+  auto const steps = element_steps<E>(body);
+  if (steps.size() == 1) return Answer{}.share;
+  double sum = 0;
+  for (auto n : steps) sum += static_cast<double>(n);
+  return static_cast<double>(steps.back()) / sum;
+}
+
 /// A run: make() makes the body, begin(body) what advances it from sample to sample, and see(body, sample, apart)
 /// compares it with the truth, while the clock stands.
 template <class Make, class Begin, class See>
@@ -74,26 +111,17 @@ Contestant moving(char const* kind, std::string const& name, int n, Samples cons
                 Stopwatch const watch(answer.making);
                 return make();
               }();
-              auto advance = begin(body);
               Apart apart;
-              for (int sample = 0; sample < samples.count; ++sample) {
-                {
-                  Stopwatch const watch(answer.solving);
-                  advance(body);
-                  body.parts().backend.synchronize();
-                }
-                see(std::as_const(body), sample, apart);
-              }
-              if (std::abs(body.time() - samples.count * samples.apart) > 1e-9 * samples.apart)
-                throw Error("the integrator went back, and did not reach the last sample");
+              advance_through(
+                  samples, body, begin,
+                  [&](auto const& now, int sample) { see(now, sample, apart); }, answer.solving);
               answer.seconds = answer.making + answer.solving;
               answer.error = apart.relative();
               answer.unknowns = static_cast<long>(body.mesh().dim * body.mesh().nodes.size());
-              std::apply(
-                  [&](auto const&... list) {
-                    answer.elements = (static_cast<long>(list.size()) + ...);
-                  },
-                  body.mesh().tables);
+              [&]<Element... Es>(Mesh<Es...> const& mesh) {
+                answer.elements = (static_cast<long>(mesh.template elements<Es>().size()) + ...);
+                if constexpr (sizeof...(Es) == 1) answer.share = share_of_last_group<Es...>(body);
+              }(body.mesh());
             } catch (std::exception const& e) {
               answer.failed = e.what();
             }

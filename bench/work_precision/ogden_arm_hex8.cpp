@@ -2,5 +2,5 @@
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  bench::swing_under_ogden<Hex8>("block with a thin arm, Hex8, Ogden", {argc, argv});
+  bench::compare_ogden<bench::Arm, Hex8>("block with a thin arm, Hex8, Ogden", {argc, argv});
 }

@@ -2,5 +2,5 @@
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  bench::swing_under_ogden<Tet4>("block with a thin arm, Tet4, Ogden", {argc, argv});
+  bench::compare_ogden<bench::Arm, Tet4>("block with a thin arm, Tet4, Ogden", {argc, argv});
 }

@@ -2,13 +2,14 @@
 """Gathers what the programs of bench/work_precision printed, and writes work_precision.json, .md and .png
 (needs matplotlib).
 
-    bench/work_precision/report.py FOLDER [ROWS.jsonl...] [--context KEY=VALUE...]
+    bench/work_precision/report.py FOLDER [ROWS.jsonl...] [--name work_precision] [--context KEY=VALUE...]
 
-Rows of programs that did not run this time are kept from FOLDER/work_precision.json.
+Rows of programs that did not run this time are kept from FOLDER/NAME.json.
 """
 import argparse
 import json
 import math
+import re
 from pathlib import Path
 
 import matplotlib
@@ -19,7 +20,7 @@ import matplotlib.pyplot as plt
 # The one rule for meshes, the same on all scenes and elements.
 DEFAULT = "RecoveredStress bulk(0.65)"
 # Errors at which static problems are compared, and the bars of the project for time over that of the best
-# uniform mesh. Cook's membrane and the plate with a square hole had no say in the choice of the default.
+# uniform mesh. From Cook's membrane on, problems had no say in the choice of the default.
 LEVELS = {
     "L-shape": (0.04, 0.3),
     "slit plate": (0.06, 0.15),
@@ -28,14 +29,18 @@ LEVELS = {
     "Cook's membrane": (0.05, None),
     "plate with a square hole": (0.03, None),
     "smooth field, finite strain": (0.02, None),
+    "notched block": (0.04, None),
+    "twisted bar": (0.05, None),
+    "artery ring": (0.03, None),
 }
 # "A to B": elements A that are raised to B where rules say, and then refined. They stand beside uniform meshes of B.
-ELEMENTS = ["Tri3", "Quad4", "Tri6", "Quad9", "Tri3 to Tri6", "Quad4 to Quad9"]
+ELEMENTS = ["Tri3", "Quad4", "Tri6", "Quad9", "Tri3 to Tri6", "Quad4 to Quad9",
+            "Tet4", "Hex8", "Tet10", "Hex27", "Hex8 to Hex27"]
 
 
 def interpolated(points, error):
     """The time that a curve of (error, seconds) needs for an error: a power law between the two points
-    around it, or beyond the last two; and whether it lies beyond."""
+    around it, or beyond the last two; and whether it lies beyond. Infinite where errors stopped falling before it."""
     points = sorted(points, reverse=True)
     if len(points) < 2:
         return math.nan, True
@@ -44,7 +49,10 @@ def interpolated(points, error):
         k += 1
     (e0, t0), (e1, t1) = points[k - 1], points[k]
     slope = math.log(t1 / t0) / math.log(e1 / e0)
-    return t1 * (error / e1) ** slope, not (e1 <= error <= e0)
+    beyond = not e1 <= error <= e0
+    if beyond and not -20 < slope < 0:  # errors that fall no more
+        return math.inf, True
+    return t1 * (error / e1) ** slope, beyond
 
 
 class Problem:
@@ -65,8 +73,8 @@ class Problem:
         return [(r["error"], r["seconds"]) for r in self.of(contestant) if r["error"]]
 
     def uniform(self, error, element=None):
-        """(seconds, whether extrapolated, contestant) of the fastest uniform meshes."""
-        names = [c for c in self.contestants if self.kind(c) == "uniform"]
+        """(seconds, whether extrapolated, contestant) of the fastest uniform meshes, in double precision as adaptive ones are."""
+        names = [c for c in self.contestants if self.kind(c) == "uniform" and "float" not in c]
         if element:
             names = [c for c in names if c.startswith(element.split(" to ")[-1] + ",")]
         return min((*interpolated(self.points(c), error), c) for c in names)
@@ -175,7 +183,7 @@ def law_rows(problem):
     seconds = {c: problem.of(c)[0]["seconds"] for c in problem.contestants if problem.of(c)}
     for contestant in problem.contestants:
         for row in problem.of(contestant):
-            cells = [problem.name.replace("block with a thin arm, ", ""), contestant, time(row["seconds"]),
+            cells = [problem.name.rsplit(", ", 1)[0], contestant, time(row["seconds"]),
                      f"{row['seconds'] / seconds[costly]:.2f}", percent(row["error"])]
             share = row.get("share")
             if problem.kind(contestant) == "switching":
@@ -207,9 +215,9 @@ def motion_rows(problem):
                    "" if beaten else "front"]
 
 
-def report(data):
+def report(data, name):
     problems = [Problem(name, data["rows"]) for name in dict.fromkeys(r["problem"] for r in data["rows"])]
-    static = [p for p in problems if any(p.kind(c) == "adaptive" for c in p.contestants)]
+    static = [p for p in problems if p.name in LEVELS and any(p.kind(c) == "adaptive" for c in p.contestants)]
     text = ["# Run time against error", "",
             "Written by `bench/work_precision/run`; [bench/work_precision](../work_precision/README.md) says what is",
             "measured and what to choose. Times are medians over rounds in which all contestants of a problem ran in",
@@ -221,12 +229,13 @@ def report(data):
         how = data["measured"][problem.name]
         runs.setdefault((how["command"], how["commit"], how["date"]), []).append(problem.name)
     text += [f"- `{command}` at {commit}, {date}: {'; '.join(names)}" for (command, commit, date), names in runs.items()]
-    text += ["", "![run time against error](work_precision.png)", ""]
+    text += ["", f"![run time against error]({name}.png)", ""]
     if static:
         text += ["## The default for meshes beside uniform meshes, at equal error", "",
                  f"The default is `when<F>(RecoveredStress{{}}).bulk(...).refine()` of *{DEFAULT}*, in rounds until the error",
                  "is reached. Times at the same error lie on power laws between two rounds and between two meshes; † marks where",
-                 "they are extrapolated beyond the finest mesh measured. Errors are in the energy norm, over that of the solution.", "",
+                 "they are extrapolated beyond the finest mesh measured. Errors are in the energy norm, over that of the solution; of the",
+                 "artery's ring those of the gradient of the displacements.", "",
                  markdown(["problem", "error", "element", "time", "bar", "uniform, same element", "over it",
                            "best uniform of all elements", "over it", "first round within the error", "faster than all uniform below"],
                           [row for p in static for row in static_rows(p)]), "",
@@ -239,8 +248,8 @@ def report(data):
                           [row for p in static for row in share_rows(p)]), ""]
     laws = [p for p in problems if any(p.kind(c) == "switching" for c in p.contestants)]
     if laws:
-        text += ["## Laws: a block with a thin arm that swings", "",
-                 "Explicit steps of one size; the error is that of the history of the arm's tip, beside the costly law in half",
+        text += ["## Laws: solids that move", "",
+                 "Explicit steps of one size; the error is that of the history of one node, beside the costly law in half",
                  "the steps. *Expected* is share costly × its time + share cheap × its time; the bars of the project are 1.1 of it, and 0.5",
                  "of all costly, within 0.1 %.", "",
                  markdown(["scene", "elements' laws", "time", "over all costly", "error", "share costly", "over expected", "≤ 0.5 of all costly"],
@@ -265,71 +274,99 @@ def report(data):
 
 
 # What the plot of the README shows.
-OVERVIEW = ["L-shape", "slit plate", "hanging beam", "block with a thin arm, Tet4, Ogden"]
+OVERVIEW = ["L-shape", "slit plate", "hanging beam", "notched block", "twisted bar", "artery ring",
+            "block with a thin arm, Tet4, Ogden", "twisting bar, Hex8, Ogden"]
+# Elements of one colour; plane and solid.
+COLOURS = dict(zip([("Tri3", "Tet4"), ("Quad4", "Hex8"), ("Tri6", "Tet10"), ("Quad8", "Hex20"), ("Quad9", "Hex27"),
+                    ("Tri3 to Tri6", "Tet4 to Tet10"), ("Quad4 to Quad9", "Hex8 to Hex27")],
+                   matplotlib.colormaps["tab10"].colors))
+DASHES = {"uniform": "-", "uniform, float": "-.", "uniform, FBar": ":"}
+MARKS = "ovsDPX*<>"
+# In legends.
+SHORT = {"Saint Venant-Kirchhoff": "SVK", "isochoric neo-Hookean": "NH-iso", "neo-Hookean": "NH", "Holzapfel-Gasser-Ogden": "HGO"}
+
+
+def draw_static(axis, problem, overview):
+    """Uniform meshes as lines, rounds of adaptive ones as marks; for an overview the default rule and full quadratures alone."""
+    rules = rules_of(problem)
+    for contestant in problem.contestants:
+        points = sorted((t, e) for e, t in problem.points(contestant))
+        element, how = contestant.split(", ", 1)
+        if not points or overview and how not in ("uniform", DEFAULT):
+            continue
+        names, colour = next((n, c) for n, c in COLOURS.items() if element in n)
+        label = f"{' / '.join(names)}, {'adaptive' if overview and how == DEFAULT else how}"
+        if how.startswith("uniform"):
+            axis.loglog(*zip(*points), DASHES.get(how, "--"), linewidth=1.2, label=label, color=colour)
+        else:
+            default = how == DEFAULT
+            axis.loglog(*zip(*points), linestyle="none", label=label, color=colour,
+                        marker="^" if default else MARKS[rules.index(how) % len(MARKS)],
+                        markersize=5 if default else 3, alpha=1 if default else 0.5)
+
+
+def draw_others(axis, problem, legend_size):
+    """One mark for each contestant; those that differ by a threshold have the same."""
+    series = {}
+    for contestant in problem.contestants:
+        name = re.sub(" (above|at) [0-9.e-]+", "", contestant) if problem.kind(contestant) == "switching" else contestant
+        for law, short in SHORT.items():
+            name = name.replace(law, short)
+        series.setdefault(name, []).extend((t, e) for e, t in problem.points(contestant))
+    for k, (name, points) in enumerate(series.items()):
+        if points:
+            axis.loglog(*zip(*points), linestyle="none", label=name, marker=MARKS[k % len(MARKS)], markersize=5)
+    # The legend stands above the points. Whole powers of ten along the axis keep its numbers apart.
+    low, high = axis.get_ylim()
+    axis.set_ylim(low, high * (high / low) ** (0.1 * len(series)))
+    shortest, longest = (math.log10(time) for time in axis.get_xlim())
+    axis.set_xlim(10 ** math.floor(shortest), 10 ** math.ceil(longest))
+    axis.legend(fontsize=legend_size, loc="upper right")
 
 
 def draw(data, path, overview=False):
-    """All problems and contestants; for an overview, some problems and the default rule alone."""
-    names = dict.fromkeys(r["problem"] for r in data["rows"] if not overview or r["problem"] in OVERVIEW)
+    """All problems and contestants; for an overview, some of them."""
+    names = list(dict.fromkeys(r["problem"] for r in data["rows"]))
+    if overview:
+        names = [name for name in OVERVIEW if name in names]
     problems = [Problem(name, data["rows"]) for name in names]
     if not problems:
         return
-    columns = min(4, len(problems))
-    columns += overview  # for the legend
+    columns = min(3 if overview else 4, len(problems))
     lines = len(problems) // columns + 1
-    figure, axes = plt.subplots(lines, columns, figsize=(5.2 * columns, 5 * lines), layout="constrained", squeeze=False)
+    width, height = (3.7, 3.3) if overview else (5.2, 5)
+    figure, axes = plt.subplots(lines, columns, figsize=(width * columns, height * lines), layout="constrained", squeeze=False)
     *panels, corner = [axis for line in axes for axis in line]
     for axis in panels[len(problems):]:
         axis.remove()
     corner.axis("off")  # for the legend of all static problems
-    marks = "ov^sDPX*<>"
-    colours = dict(zip(["Tri3", "Quad4", "Tri6", "Quad8", "Quad9", "Tri3 to Tri6", "Quad4 to Quad9"],
-                       matplotlib.colormaps["tab10"].colors))
+    shared = {}
     for axis, problem in zip(panels, problems):
-        static = any(problem.kind(c) == "uniform" for c in problem.contestants)
-        rules = rules_of(problem) if static else []
-        for k, contestant in enumerate(problem.contestants):
-            points = sorted((t, e) for e, t in problem.points(contestant))
-            if not points:
-                continue
-            style = {}
-            if static:
-                element, how = contestant.split(", ", 1)
-                style["color"] = colours[element]
-                if how.startswith("uniform"):
-                    axis.loglog(*zip(*points), "-" if how == "uniform" else "--", linewidth=1.2, label=contestant, **style)
-                    continue
-                default = how == DEFAULT
-                if overview and not default:
-                    continue
-                style |= {"marker": marks[rules.index(how)], "markersize": 5 if default else 3, "alpha": 1 if default else 0.5}
-            else:
-                style["marker"] = marks[k % len(marks)]
-            axis.loglog(*zip(*points), linestyle="none", label=contestant, **style)
+        if any(problem.kind(c) == "uniform" for c in problem.contestants):
+            draw_static(axis, problem, overview)
+            shared |= {label: line for line, label in zip(*axis.get_legend_handles_labels())}
+        else:
+            draw_others(axis, problem, 6.5 if overview else 6)
         if problem.name in LEVELS:
             axis.axhline(LEVELS[problem.name][0], color="black", linewidth=0.6)
         axis.set_title(problem.name, fontsize=10)
         axis.set_xlabel("run time / s")
         axis.set_ylabel("relative error")
         axis.grid(True, which="major", alpha=0.3)
-        if not static:
-            axis.legend(fontsize=6)
-    shared = {}
-    for axis, problem in zip(panels, problems):
-        if any(problem.kind(c) == "uniform" for c in problem.contestants):
-            shared |= {label: line for line, label in zip(*axis.get_legend_handles_labels())}
     if shared:
-        corner.legend(shared.values(), shared.keys(), loc="center", fontsize=8)
-    figure.savefig(path, dpi=60 if overview else 90)
+        order = sorted(shared, key=lambda label: "uniform" not in label)
+        corner.legend([shared[label] for label in order], order, loc="center", fontsize=9 if overview else 8)
+    figure.savefig(path, dpi=90)
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder", type=Path)
     parser.add_argument("rows", nargs="*", type=Path)
+    parser.add_argument("--name", default="work_precision")
     parser.add_argument("--context", nargs="*", default=[])
     arguments = parser.parse_args()
-    path = arguments.folder / "work_precision.json"
+    path = arguments.folder / f"{arguments.name}.json"
     old = json.loads(path.read_text()) if path.exists() else {"context": {}, "rows": []}
     rows = [json.loads(line) for name in arguments.rows for line in name.read_text().splitlines()]
     new = {row["problem"] for row in rows}
@@ -346,9 +383,9 @@ def main():
             file.write(("{" if part == "context" else "") + f'"{part}": ' + json.dumps(data[part], ensure_ascii=False, indent=1) + ",\n")
         file.write('"rows": [\n')
         file.write(",\n".join(json.dumps(row, ensure_ascii=False) for row in data["rows"]) + "\n]}\n")
-    (arguments.folder / "work_precision.md").write_text(report(data))
-    draw(data, arguments.folder / "work_precision.png")
-    draw(data, arguments.folder / "work_precision_overview.png", overview=True)
+    (arguments.folder / f"{arguments.name}.md").write_text(report(data, arguments.name))
+    draw(data, arguments.folder / f"{arguments.name}.png")
+    draw(data, arguments.folder / f"{arguments.name}_overview.png", overview=True)
 
 
 main()

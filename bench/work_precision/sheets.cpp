@@ -1,5 +1,6 @@
 #include <pliant/mesh/loads.hpp>
 
+#include "scene/carve.hpp"
 #include "verification/support/grading.hpp"
 #include "work_precision/statics.hpp"
 
@@ -62,27 +63,10 @@ struct SquareHole {
   /// [0, 2]² without [0, 1]², from a square of n × n cells whose lines lie where `place` puts them.
   template <Element E, class Place>
   static Mesh<E> mesh(int n, Place const& place) {
-    using Linear = std::conditional_t<SimplexCell<typename E::cell>, Tri3, Quad4>;
-    auto const square = mesh::rectangle<Linear>({.size = {2, 2}, .cells = {n, n}});
-    Mesh<Linear> plate;
-    std::vector<Index> number(square.nodes.size(), -1);
-    for (auto element : square.template elements<Linear>()) {
-      double x = 0, y = 0;
-      for (Index node : element) {
-        x += square.nodes[static_cast<std::size_t>(node)][0] / Linear::nodes;
-        y += square.nodes[static_cast<std::size_t>(node)][1] / Linear::nodes;
-      }
-      if (x < 1 && y < 1) continue;
-      for (Index& node : element) {
-        auto const old = static_cast<std::size_t>(node);
-        if (number[old] < 0) {
-          number[old] = static_cast<Index>(plate.nodes.size());
-          plate.nodes.push_back({place(square.nodes[old][0]), place(square.nodes[old][1])});
-        }
-        node = number[old];
-      }
-      plate.template elements<Linear>().push_back(element);
-    }
+    using Linear = verification::LinearOn<E>;
+    auto plate = scene::carve(mesh::rectangle<Linear>({.size = {2, 2}, .cells = {n, n}}),
+                              [](Point<2> const& p) { return p[0] < 1 && p[1] < 1; });
+    for (auto& p : plate.nodes) p = {place(p[0]), place(p[1])};
     auto const side = [&](std::size_t k, double at) {
       return mesh::outer_sides_where(plate,
                                      [=](Point<2> const& p) { return std::abs(p[k] - at) < 1e-9; });

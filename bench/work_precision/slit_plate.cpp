@@ -93,13 +93,14 @@ struct SlitPlate {
   template <Element... Es, class TheBody>
   static double error(TheBody const& body, NewtonReport const&) {
     auto const law = Hooke<double>::from(material());
-    return std::sqrt((energy_of_error<Es>(body, law, gradient, {0, 0}) + ...) / reference);
+    return std::sqrt((energy_of_error<Es>(body, law, gradient, Point<2>{0, 0}) + ...) / reference);
   }
   /// The strain energy of the field: that of the error of a body at rest.
   static void find_reference() {
     Body const still{OpenMP<double>{{.threads = 1}}, mesh<Quad4>(64), material(),
                      Group<Formulation<Quad4, Gauss<2>, Hooke>>{}};
-    reference = energy_of_error<Quad4>(still, Hooke<double>::from(material()), gradient, {0, 0});
+    reference =
+        energy_of_error<Quad4>(still, Hooke<double>::from(material()), gradient, Point<2>{0, 0});
     std::fprintf(stderr, "slit plate: reference energy %.12g J\n", reference);
   }
 };

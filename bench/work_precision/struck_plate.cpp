@@ -38,11 +38,8 @@ class Blow {
  public:
   Blow(Options const& options, int cells) : options_(options), cells_(cells) {
     auto body = make<double, Law<Ogden>>(cells, options.threads);
-    auto advance = samples_.explicit_steps(0.4)(body);
-    for (int sample = 0; sample < samples_.count; ++sample) {
-      advance(body);
-      truth_->push_back(body.displacements());
-    }
+    *truth_ = history(samples_, body, samples_.explicit_steps(0.4),
+                      [](auto const& now) { return now.displacements(); });
   }
   template <class T, class... Fs, class Begin>
   void add(char const* kind, std::string const& name, Begin const& begin) {
