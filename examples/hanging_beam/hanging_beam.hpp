@@ -1,12 +1,11 @@
 #pragma once
 
-#include <cmath>
 #include <cstdio>
 
 #include <pliant/pliant.hpp>
-#include <pliant/solver/newton.hpp>
 
 #include "scene/drawing.hpp"
+#include "scene/levels.hpp"
 #include "scene/options.hpp"
 
 // Fig. 3 of Caillaud et al. 2013: a beam hangs from its top; the elements that pull hardest at their
@@ -20,13 +19,6 @@ using Linear = Formulation<Tri3, Gauss<1>, Hooke>;
 inline constexpr Elastic rubber{.young = 2e6, .poisson = 0.3, .density = 1e3};  // Pa, -, kg/m³
 inline constexpr int refinements = 8;
 
-/// One mesh of a sequence and the energy that it finds.
-struct Level {
-  Index unknowns;
-  std::size_t elements;
-  double energy;  // strain energy at equilibrium, J
-};
-
 template <class TheBackend>
 auto make_body(TheBackend const& backend, int across) {
   auto const mesh = mesh::rectangle<Tri3>({.size = {1, 4}, .cells = {across, 4 * across}});  // m
@@ -36,51 +28,13 @@ auto make_body(TheBackend const& backend, int across) {
   return body;
 }
 
-template <class TheBody>
-Level solve(TheBody& body) {
-  auto const report = solve_static(body);
-  return {report.unknowns, body.mesh().template elements<Tri3>().size(), report.energy};
-}
-
-/// Uniform refinement, until the mesh has at least so many unknowns.
-template <class TheBackend>
-std::vector<Level> uniform(TheBackend const& backend, int across, Index unknowns) {
-  auto body = make_body(backend, across);
-  std::vector<Level> levels{solve(body)};
-  while (levels.back().unknowns < unknowns) {
-    std::vector<Index> all(levels.back().elements);
-    std::iota(all.begin(), all.end(), 0);
-    refine(body, {all});
-    levels.push_back(solve(body));
-  }
-  return levels;
-}
-
-/// The energy that refinement for ever would find: Aitken's extrapolation of the three finest uniform
-/// meshes, whose errors fall by a constant ratio (a corner singularity governs them).
-inline double converged(std::vector<Level> const& levels) {
-  auto const n = levels.size();
-  double const a = levels[n - 3].energy, b = levels[n - 2].energy, c = levels[n - 1].energy;
-  return c + (c - b) * (c - b) / ((b - a) - (c - b));
-}
-
-/// The error that uniform refinement would have with so many unknowns: a power law between the
-/// meshes around.
-inline double uniform_error(std::vector<Level> const& levels, double exact, Index unknowns) {
-  std::size_t k = 1;
-  while (k + 1 < levels.size() && levels[k].unknowns < unknowns) ++k;
-  double const x0 = std::log(levels[k - 1].unknowns), x1 = std::log(levels[k].unknowns);
-  double const y0 = std::log(exact - levels[k - 1].energy), y1 = std::log(exact - levels[k].energy);
-  return std::exp(y0 + (y1 - y0) * (std::log(unknowns) - x0) / (x1 - x0));
-}
-
 template <class TheBackend>
 void run(TheBackend const& backend, scene::Options const& options) {
   int const across = options.cells > 0 ? options.cells : 3;
   std::printf("Hanging beam on %s: 1 m x 4 m, fixed on top, refining above 90%% of max(R_S)\n",
               TheBackend::name());
-  auto const uniform_levels = uniform(backend, across, 60000);
-  double const exact = converged(uniform_levels);
+  auto const uniform_levels = scene::refine_uniformly<Tri3>(make_body(backend, across), 60000);
+  double const exact = scene::converged(uniform_levels);
   std::printf("uniform refinement: ");
   for (auto const& level : uniform_levels) std::printf("%d ", level.unknowns);
   std::printf("unknowns; strain energy extrapolated to %.5f J\n\n", exact);
@@ -89,13 +43,13 @@ void run(TheBackend const& backend, scene::Options const& options) {
       when<Linear>(ForceIntensity<>{}).above_fraction_of_largest(0.9).refine({.max_level = 12})};
   auto body = make_body(backend, across);
   std::vector<picture::Frame> frames;
-  Level level = solve(body);
+  auto level = scene::solve<Tri3>(body);
   std::printf("%4s %9s %9s %13s %12s %14s %6s\n", "", "elements", "unknowns", "energy/J", "error/J",
               "uniform's/J", "ratio");
   for (int k = 0; k <= refinements; ++k) {
     if (k > 0) {
       adapt.now(body);
-      level = solve(body);
+      level = scene::solve<Tri3>(body);
       auto const intensity = evaluate<Tri3>(body, ForceIntensity<>{});
       double const strongest = *std::ranges::max_element(intensity);
       char caption[64];
@@ -105,7 +59,7 @@ void run(TheBackend const& backend, scene::Options const& options) {
       }));
     }
     double const error = exact - level.energy;
-    double const other = uniform_error(uniform_levels, exact, level.unknowns);
+    double const other = scene::uniform_error(uniform_levels, exact, level.unknowns);
     std::printf("%4s %9zu %9d %13.6f %12.6f %14.6f %6.3f\n",
                 k == 0 ? "" : std::string{static_cast<char>('a' + k - 1)}.c_str(), level.elements,
                 level.unknowns, level.energy, error, other, error / other);

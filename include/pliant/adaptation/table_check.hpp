@@ -60,8 +60,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
 
  public:
   TableCheck(Parts& parts, Table& table, Elements& elements, std::tuple<Rules...> const& rules,
-             LookedAt looked_at = LookedAt::awake)
-      : Base(parts, table, elements, looked_at), rules_{rules} {}
+             LookedAt which = LookedAt::awake)
+      : Base(parts, table, elements, which), rules_{rules} {}
 
   /// Allocates what `decide` and `act` need, in the first check of a mesh.
   void prepare() const {

@@ -198,14 +198,14 @@ ChangedTopology<Parts> change_topology(
     state.load.upload(next.layout.padded(loads));
   }
   std::size_t type = 0;
-  next.for_each_type([&](auto& table, auto& elements) {
+  next.for_each_type([&](auto& table, auto& of_type) {
     std::vector<Tag> internal(table.user_element.size());
     for (std::size_t e = 0; e < internal.size(); ++e)
       internal[e] = tags[type][static_cast<std::size_t>(table.user_element[e])];
-    elements.tags.upload(internal);
+    of_type.tags.upload(internal);
     auto const& own = points[type++];
-    elements.internal_variables.upload(table.in_internal_order(own.rows));
-    elements.statistics = {};
+    of_type.internal_variables.upload(table.in_internal_order(own.rows));
+    of_type.statistics = {};
     if (!own.at_rest.empty()) detail::put_points_to_rest(next, table, internal, own.at_rest);
   });
   follow_state(next);
