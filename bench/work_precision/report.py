@@ -227,8 +227,9 @@ def report(data, name):
     runs = {}
     for problem in problems:
         how = data["measured"][problem.name]
-        runs.setdefault((how["command"], how["commit"], how["date"]), []).append(problem.name)
-    text += [f"- `{command}` at {commit}, {date}: {'; '.join(names)}" for (command, commit, date), names in runs.items()]
+        runs.setdefault((how["command"], how["commit"], how["date"], how.get("clock", "wall")), []).append(problem.name)
+    text += [f"- `{command}` at {commit}, {date}, {clock} clock: {'; '.join(names)}"
+             for (command, commit, date, clock), names in runs.items()]
     text += ["", f"![run time against error]({name}.png)", ""]
     if static:
         text += ["## The default for meshes beside uniform meshes, at equal error", "",
@@ -318,7 +319,7 @@ def draw_others(axis, problem, legend_size):
             axis.loglog(*zip(*points), linestyle="none", label=name, marker=MARKS[k % len(MARKS)], markersize=5)
     # The legend stands above the points. Whole powers of ten along the axis keep its numbers apart.
     low, high = axis.get_ylim()
-    axis.set_ylim(low, high * (high / low) ** (0.1 * len(series)))
+    axis.set_ylim(low, high * (high / low) ** (0.13 * len(series)))
     shortest, longest = (math.log10(time) for time in axis.get_xlim())
     axis.set_xlim(10 ** math.floor(shortest), 10 ** math.ceil(longest))
     axis.legend(fontsize=legend_size, loc="upper right")
@@ -372,7 +373,7 @@ def main():
     new = {row["problem"] for row in rows}
     context = dict(pair.split("=", 1) for pair in arguments.context)
     # Problems may have been measured one at a time: what differs from run to run stands with each.
-    each = {key: context.pop(key) for key in ("commit", "date", "command") if key in context}
+    each = {key: context.pop(key) for key in ("commit", "date", "command", "clock") if key in context}
     measured = old.get("measured", {}) | {problem: each for problem in new}
     rows = [row for row in old["rows"] if row["problem"] not in new] + rows
     order = list(LEVELS)

@@ -72,6 +72,7 @@ class Statics {
       auto body = made(Problem::coarse, answer);
       auto adapt = make_adaptation();
       measure_adaptation(body);
+      double decided = 0;  // s, so far
       for (int round = 0;; ++round) {
         answer.n = round;
         auto const report = solved(body, answer);
@@ -84,9 +85,12 @@ class Statics {
           Stopwatch const watch(all);
           adapt.now(body);
         }
-        double const deciding = body.parts().timers.criteria.seconds();
-        answer.refining += all - (deciding - answer.deciding);
-        answer.deciding = deciding;
+        // By the clock on the wall, which may have gone further.
+        double const criteria = body.parts().timers.criteria.seconds();
+        double const deciding = std::min(criteria - decided, all);
+        decided = criteria;
+        answer.deciding += deciding;
+        answer.refining += all - deciding;
       }
     } catch (std::exception const& e) {
       answer.failed = e.what();
