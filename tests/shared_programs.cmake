@@ -47,7 +47,7 @@ share(shared/elements
 share(shared/statics
       body/pressure solver/assemble solver/equilibrium_path solver/load_steps solver/static solver/static_loads solver/static_report)
 share(shared/implicit
-      solver/implicit solver/implicit_state solver/schemes solver/without_matrix)
+      solver/implicit solver/implicit_errors solver/implicit_state solver/schemes solver/without_matrix)
 share(shared/preconditioners
       solver/multigrid solver/preconditioners)
 share(shared/laws

@@ -28,7 +28,8 @@ struct Progress {
   double step = 0;
   bool rolled_back = false;
   int retries = 0;
-  double error = 0;  // m: by how much displacements may be off, as the integrator tells
+  double error = 0;   // m: by how much displacements may be off, as the integrator tells
+  bool lost = false;  // it tells that this is not known
 };
 
 /// One of the integrators that advance a state, for as long as it keeps its step. All have lumped masses, in which the
@@ -43,10 +44,11 @@ class Stepper {
     else if (method == Method::local_steps)
       local_.emplace(LocalStepsOptions{.safety = std::min(safety, 0.8), .macro_step = step});
     else if (method != Method::statics)
-      implicit_.emplace(
-          ChosenScheme{method == Method::backward_euler},
-          ImplicitOptions{
-              .step = step, .mass = MassMatrix::lumped, .accept_folded = accept_folded});
+      implicit_.emplace(ChosenScheme{method == Method::backward_euler},
+                        ImplicitOptions{.step = step,
+                                        .mass = MassMatrix::lumped,
+                                        .errors = ErrorEstimate::carried,
+                                        .accept_folded = accept_folded});
   }
 
   template <class TheBody>
@@ -59,7 +61,8 @@ class Stepper {
       auto const done = (*local_)(body, steps);
       return {done.step, done.rolled_back, local_->retries()};
     }
-    return {.step = step_, .error = (*implicit_)(body, steps).error_in_all};
+    auto const done = (*implicit_)(body, steps);
+    return {.step = step_, .error = done.error_in_all, .lost = done.errors_lost};
   }
   /// Whether the present state is good; explicit integrators look at it only now, and go back where it is not.
   template <class TheBody>

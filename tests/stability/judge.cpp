@@ -41,10 +41,12 @@ double largest_of(Sample const& s, Sample const* less = nullptr) {
       most = std::max(most, std::abs(s.u[i][k] - (less ? less->u[i][k] : 0)));
   return most;
 }
-/// Whether the integrator has told, at every sample, of an error at least as large as how far displacements are off.
+/// Whether the integrator has told, at every sample, of an error at least as large as how far displacements are off, or
+/// that it does not know any more.
 bool is_told(Record const& record, Record const& reference) {
   for (std::size_t k = 0; k < record.samples.size() && k < reference.samples.size(); ++k)
-    if (!(largest_of(record.samples[k], &reference.samples[k]) <= record.samples[k].error))
+    if (auto const& own = record.samples[k];
+        !own.lost && !(largest_of(own, &reference.samples[k]) <= own.error))
       return false;
   return true;
 }
@@ -181,7 +183,7 @@ Verdict judge(Case const& one) {
                    1e-3);
     if (demands.returns)
       told = !found.within("left", norm_of(last) / norm_of(first), 1e-3) &&
-             largest_of(last) <= last.error;
+             (last.lost || largest_of(last) <= last.error);
     if (demands.unfolded)
       found.within("-det F", -record.least_J, 0);
     else if (!(record.least_J > 0))
@@ -215,8 +217,12 @@ Verdict judge(Case const& one) {
         finite && (record.rolled_back || record.retries > 0) ? Outcome::reports : Outcome::wrong;
     if (verdict.outcome == Outcome::reports) verdict.text = "rolled back; " + verdict.text;
     if (told && (verdict.text == "apart" || verdict.text == "left")) {
+      auto const& last = record.samples.back();
       char error[80];
-      std::snprintf(error, sizeof error, "tells an error of %.2g m; ", record.samples.back().error);
+      std::snprintf(
+          error, sizeof error,
+          last.lost ? "tells that errors of %.2g m are too large; " : "tells an error of %.2g m; ",
+          last.error);
       verdict = {Outcome::reports, verdict.figures, error + verdict.text};
     }
   }

@@ -141,7 +141,8 @@ class Run {
   }
 
   void sample() {
-    Sample s{.time = body_.time(), .steps = body_.steps(), .error = error_};
+    Sample s{
+        .time = body_.time(), .steps = body_.steps(), .error = told_.error, .lost = told_.lost};
     auto const u = body_.displacements(), v = body_.velocities();
     auto const& mass = body_.parts().layout.mass_list;
     s.strain = strain_energy(body_);
@@ -209,7 +210,7 @@ class Run {
     record_.step = progress.step;
     record_.rolled_back = record_.rolled_back || progress.rolled_back;
     record_.retries = std::max(record_.retries, progress.retries);
-    error_ += progress.error;
+    told_ = progress;
   }
   /// Steps until done(), at a state that the integrator has looked at: what it has not is no result yet.
   template <class Done, class Take>
@@ -333,7 +334,7 @@ class Run {
   Record& record_;
   std::function<void(int)> between_;
   std::vector<Index> fixed_;
-  double error_ = 0;
+  Progress told_{};
 };
 
 /// A scene on the body that `make(material)` makes; `between(body, k)` is called before the stretch to sample k.

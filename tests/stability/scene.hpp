@@ -91,7 +91,8 @@ struct Sample {
   std::vector<Vec> u{};
   double strain = 0, kinetic = 0, potential = 0;  // J
   double work = 0;                                // J, booked by the body
-  double error = 0;  // m: by how much displacements may be off, as the integrator tells
+  double error = 0;   // m: by how much displacements may be off, as the integrator tells
+  bool lost = false;  // it tells that this is not known
   Vec momentum{}, spin{};
   double speed = 0;      // Σ m |v|, kg m/s
   double arm = 0;        // Σ m |x| |v|, kg m²/s

@@ -18,7 +18,7 @@ namespace pliant {
 namespace detail {
 
 inline constexpr std::string_view archive_magic{"PLIANT\r\n", 8};
-inline constexpr std::uint32_t archive_version = 12;
+inline constexpr std::uint32_t archive_version = 13;
 
 /// Writes members of a state. The first mesh is not written: the body has it.
 template <class M>
@@ -81,7 +81,10 @@ void check_sizes(State const& state, Layout const& layout) {
   demand(state.u.size() == rows && state.v.size() == rows);
   demand(state.load.size() == 0 || state.load.size() == rows);
   demand(state.work.size() == static_cast<std::size_t>(Work::count));
-  for (auto const* field : {&state.implicit.a, &state.implicit.d_before, &state.implicit.v_before})
+  auto const& steps = state.implicit;
+  for (auto const* field :
+       {&steps.a, &steps.d_before, &steps.v_before, &steps.error_u, &steps.error_v, &steps.error_a,
+        &steps.error_d_before, &steps.error_v_before})
     demand(field->size() == 0 || field->size() == rows);
   auto const types = std::tuple_size_v<decltype(layout.tables)>;
   demand(state.record.totals.empty() || state.record.totals.size() == types);

@@ -30,6 +30,10 @@ struct ImplicitState {
   std::int32_t mass = 0;  // by which MassMatrix it is
   double step = 0;        // s: the size of the last step; 0: there was none
   double next_step = 0;   // s: which its error asks for
+  /// (nodes, 4), in m, m/s and m/s²: how far u, v, a, d_before and v_before are off; see CarriedErrors.
+  Field error_u, error_v, error_a, error_d_before, error_v_before;
+  double error = 0;     // m: by how much displacements may have been off so far
+  double farthest = 0;  // m: the largest displacement so far
 
   bool empty() const { return step == 0; }
 
@@ -42,6 +46,13 @@ struct ImplicitState {
     visit("masses", r.mass...);
     visit("size of the last step", r.step...);
     visit("size of the next step", r.next_step...);
+    visit("errors of displacements", r.error_u...);
+    visit("errors of velocities", r.error_v...);
+    visit("errors of accelerations", r.error_a...);
+    visit("error of the last step", r.error_d_before...);
+    visit("errors of velocities before it", r.error_v_before...);
+    visit("largest error", r.error...);
+    visit("largest displacement", r.farthest...);
   }
 };
 

@@ -7,9 +7,19 @@
 
 #include <pliant/solver/implicit/assembled_steps.hpp>
 #include <pliant/solver/implicit/balance.hpp>
+#include <pliant/solver/implicit/carried_errors.hpp>
 #include <pliant/solver/least_jacobian_on.hpp>
 
 namespace pliant {
+
+/// What implicit integrators make of the errors of their steps.
+enum class ErrorEstimate {
+  automatic,  // carried where steps follow their error
+  added_up,  // a sum: no bound where motions part by themselves, as of bodies that buckle, snap or are hit
+  /// Along with the motion by its tangent, which tells how errors grow or die out: for a linear system more in each step,
+  /// solved to a hundredth.
+  carried
+};
 
 /// How implicit integrators step.
 struct ImplicitOptions {
@@ -20,6 +30,7 @@ struct ImplicitOptions {
   /// m: steps become as long as the error of each, told from what it has beyond an extrapolation, is at the largest
   /// displacement; 0: all steps are the same.
   double error = 0;
+  ErrorEstimate errors = ErrorEstimate::automatic;
   int max_iterations = 30;   // of Newton's method, per step
   double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
   /// Automatic: on hosts with a matrix, on GPUs without; there with one (on the host) in steps that find no other way.
@@ -38,10 +49,13 @@ struct ImplicitReport {
   double time = 0;   // s: where the body is now
   double step = 0;   // s: the size of the last step
   double error = 0;  // m: of the last step, as its extrapolation tells
-  /// m: twice the sum over these steps, as each is one of the velocity too, which displaces as much again. Displacements
-  /// may be off by as much, and by more where motions part by themselves; a fast motion that steps do not resolve counts
-  /// in full.
+  /// m: by how much displacements may be off. Carried errors: at any time since the motion began, or was changed by
+  /// hand. Added up: by these steps, twice their sum, as each is an error of the velocity too, which displaces as much again.
   double error_in_all = 0;
+  ErrorEstimate errors = ErrorEstimate::added_up;  // or carried
+  /// Carried errors have come to a tenth of all displacements, or had no solution, so that their tangent is not that of the
+  /// motion any more: where the body is by now is not known. Take shorter steps from the start.
+  bool errors_lost = false;
   int iterations = 0;      // of Newton's method, in all
   int factorisations = 0;  // of matrices, in all
   LinearReport linear{};   // what the linear systems took
@@ -146,10 +160,13 @@ class Implicit {
           body_(body),
           parts_(begin(body.parts())),
           balance_(parts_, options_.mass, options_.stiffness_damping),
+          errors_(parts_, balance_, options_.mass, options_.stiffness_damping),
           linear_(integrator.template linear<dim>()),
           before_(linear_.report()),
           preconditioning_(options_.preconditioner),
-          report_(report) {
+          report_(report),
+          carries_(options_.errors == ErrorEstimate::carried ||
+                   (options_.errors == ErrorEstimate::automatic && options_.error > 0)) {
       bool const conservative = detail::is_conservative(body);
       bool const on_host = std::same_as<typename Parts::backend_type::Recording, HostRecording>;
       if (options_.linear == LinearMethod::matrix_free && !conservative)
@@ -184,9 +201,10 @@ class Implicit {
           h *= std::max(0.2, 0.8 * growth(error));
           continue;
         }
-        accept(h);
         report_.error = error;
-        report_.error_in_all += 2 * error;
+        if (carries_) carry_errors(h);
+        accept(h);
+        tell_errors();
         if (options_.error > 0)
           kept.next_step = std::max(cut ? asked : 0.0, h * std::clamp(growth(error), 0.3, 2.0));
         return;
@@ -225,6 +243,7 @@ class Implicit {
         if (array.size() == 0) array = zeros<T>(parts_.backend, parts_.layout.rest.size());
       };
       if (kept.empty()) take_speed_of_motions();
+      begin_errors();
       if (Scheme::looks_back && kept.d_before.size() == 0) kept.step = 0;
       make(kept.a);
       if constexpr (Scheme::looks_back) {
@@ -237,6 +256,14 @@ class Implicit {
       balance_.find_acceleration();
       kept.balanced = true;
       kept.mass = mass;
+    }
+    void begin_errors() {
+      auto& kept = parts_.state.implicit;
+      if (carries_) return errors_.begin(Scheme::looks_back);
+      for (auto* array : {&kept.error_u, &kept.error_v, &kept.error_a, &kept.error_d_before,
+                          &kept.error_v_before})
+        *array = {};
+      kept.error = kept.farthest = 0;
     }
     /// Gives driven nodes the mean velocity of their motions over the step before now, or over the first one where none
     /// was before.
@@ -403,18 +430,48 @@ class Implicit {
            ", perhaps between the points of its quadrature; take smaller steps, more "
            "points or a finer mesh there, or accept it by accept_folded"})};
     }
-    /// The largest displacement that the step has beyond an extrapolation, times what of that is an error, m.
-    double step_error(double h) {
+    /// What the step has beyond an extrapolation, times what of that is an error, m, into arrays.trial.
+    Field find_step_error(double h) {
       auto& own = balance_.arrays();
       auto const beyond = balance_.field(own.trial);
+      double const share = rule_.error_share;
       detail::set_sum(parts_.backend, parts_.layout.nodes, beyond,
-                      balance_.scaled(1, balance_.field(own.increment)),
-                      balance_.scaled(-h, parts_.v()),
-                      balance_.scaled(Scheme::order > 1 ? -h * h / 2 : 0,
+                      balance_.scaled(share, balance_.field(own.increment)),
+                      balance_.scaled(-share * h, parts_.v()),
+                      balance_.scaled(Scheme::order > 1 ? -share * h * h / 2 : 0,
                                       balance_.field(parts_.state.implicit.a)));
       detail::keep_unknowns(parts_, beyond);
-      return rule_.error_share *
-             parts_.backend.maximum(parts_.layout.nodes, detail::LargestAt<T, dim>{{beyond.data}});
+      return beyond;
+    }
+    double largest(Field field) const {
+      return parts_.backend.maximum(parts_.layout.nodes, detail::LargestAt<T, dim>{{field.data}});
+    }
+    /// The largest error of a displacement, m.
+    double step_error(double h) { return largest(find_step_error(h)); }
+    /// To the end of the step, which is not yet the body's state.
+    void carry_errors(double h) {
+      auto& kept = parts_.state.implicit;
+      errors_.find_residual(rule_);
+      if (balance_.norm(balance_.arrays().residual) > 0) {
+        if (!solve(1e-2, h)) kept.error = std::numeric_limits<double>::infinity();
+      } else {
+        auto const nothing = balance_.field(balance_.arrays().solution);
+        detail::set_sum(parts_.backend, parts_.layout.nodes, nothing, balance_.scaled(0, nothing));
+      }
+      double const off = errors_.go_on(rule_, Scheme::looks_back, find_step_error(h));
+      // Twice, as errors of steps are of velocities too, and twice for what the first order leaves out.
+      kept.error = std::max(kept.error, 4 * off);
+    }
+    void tell_errors() {
+      auto& kept = parts_.state.implicit;
+      if (!carries_) {
+        report_.error_in_all += 2 * report_.error;
+        return;
+      }
+      kept.farthest = std::max(kept.farthest, largest(parts_.u()));
+      report_.errors = ErrorEstimate::carried;
+      report_.error_in_all = kept.error;
+      report_.errors_lost = !(kept.error <= 0.1 * kept.farthest);
     }
     double growth(double error) const {
       return 0.9 * std::pow(options_.error / std::max(error, 1e-300), 1.0 / (Scheme::order + 1));
@@ -462,10 +519,12 @@ class Implicit {
     TheBody& body_;
     Parts& parts_;
     detail::Balance<Parts> balance_;
+    detail::CarriedErrors<Parts> errors_;
     detail::LinearSolver<dim>& linear_;
     LinearReport before_;
     detail::Preconditioning<Parts> preconditioning_;
     ImplicitReport& report_;
+    bool carries_;  // errors
     std::optional<detail::AssembledSteps<TheBody>> assembled_;
     bool may_assemble_ = false;  // where steps without a matrix find no way
     StepRule rule_{};

@@ -20,8 +20,8 @@ struct StepRule {
   };
   Row velocity, acceleration;
   double force_weight = 1, inertia_weight = 1;
-  /// The part that is an error of what d has beyond the extrapolation u + h v + h²/2 a, or u + h v of first order, for
-  /// short steps.
+  /// The part that d is too large by of what it has beyond the extrapolation h v + h²/2 a, or h v of first order, for short
+  /// steps.
   double error_share = 0;
 };
 
@@ -67,7 +67,7 @@ struct Newmark {
     StepRule::Row const a{.d = 1 / (beta * h * h), .v = -1 / (beta * h), .a = -(0.5 - beta) / beta};
     StepRule::Row const v{
         .d = gamma * h * a.d, .v = 1 + gamma * h * a.v, .a = h * (1 - gamma) + gamma * h * a.a};
-    return {.velocity = v, .acceleration = a, .error_share = std::abs(1 - 1 / (6 * beta))};
+    return {.velocity = v, .acceleration = a, .error_share = 1 - 1 / (6 * beta)};
   }
 };
 
