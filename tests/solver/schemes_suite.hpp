@@ -277,6 +277,41 @@ TEST_CASE("reports tell what of the residual single precision leaves", "[solver]
   });
 }
 
+TEST_CASE("bodies in single precision reach the tolerance that was asked", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    auto const method = GENERATE(LinearMethod::direct, LinearMethod::matrix_free);
+    auto const kind = GENERATE(MassMatrix::consistent, MassMatrix::lumped);
+    auto const run = [&](auto const& scheme, auto const& on) {
+      Body body{on, mesh::rectangle({.size = {1, 0.5}, .cells = {4, 2}}), Elastic{2e5, 0.3, 1000},
+                Group<Rubber>{}};
+      body.drive(body.mesh().boundary("left"), [](double t) {
+        return Point<2>{0.01 * std::sin(40 * t), 0};
+      });
+      refine(body, {{3, 4}});
+      body.set_gravity({0, -10});
+      body.set_load(body.nodes() - 1, {0, 10});
+      body.set_damping(2);
+      auto const report = Implicit{scheme,
+                                   {.step = 5e-3,
+                                    .mass = kind,
+                                    .stiffness_damping = 1e-3,
+                                    .tolerance = 1e-9,
+                                    .linear = method}}(body, 10);
+      CHECK(report.reached <= 1e-9);
+      CHECK((report.corrections > 0) ==
+            (sizeof(typename std::remove_cvref_t<decltype(on)>::scalar) < 8));
+      return body.displacements();
+    };
+    auto const check = [&](auto const& scheme) {
+      CAPTURE(scheme.name);
+      auto const u = run(scheme, backend), exact = run(scheme, Reference<double>{});
+      CHECK(difference(u, exact) < 1e-5 * largest(exact));
+    };
+    check(BDF2{});
+    check(GeneralizedAlpha{0.5});
+  });
+}
+
 TEST_CASE("a first step that is too long is made shorter", "[solver]") {
   auto body = beam<Rubber>(MainBackend{});
   Implicit step{Newmark{}, {.step = 0.1, .error = 1e-5}};

@@ -31,6 +31,8 @@ struct Case {
   Bodies const* reference;  // of the same element
   int quick = 0;            // 1: in the quick form
 
+  /// How many times as long as others it may take: a run of 1e6 steps is slow, it does not hang.
+  int patience() const { return scene.steps > 100000 ? 10 : 1; }
   /// scene|variant|element|law|integrator|backend
   std::string key() const {
     return scene_name + "|" + variant + "|" + bodies->element + "|" + scene.law + "|" +

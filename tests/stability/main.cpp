@@ -23,7 +23,7 @@ using namespace pliant::stability;
 struct Options {
   bool quick = false, list = false;
   std::string results{}, filter{};
-  int patience = 120;   // s, for each case
+  int patience = 120;   // s, for each case; see Case::patience
   int jobs = 1;         // side by side
   double budget = 1e9;  // s, for all
 };
@@ -113,7 +113,7 @@ int run_all(std::vector<Case const*> const& cases, Options const& options,
     for (auto const& apart : running) waiting.push_back({apart.pipe_end(), POLLIN, 0});
     poll(waiting.data(), waiting.size(), 500);
     for (std::size_t k = running.size(); k-- > 0;) {
-      bool const hangs = running[k].seconds() > options.patience;
+      bool const hangs = running[k].seconds() > options.patience * running[k].one().patience();
       if (running[k].pipe_end() >= 0 && !hangs && (waiting[k].revents == 0 || running[k].listen()))
         continue;
       auto const verdict = running[k].end(hangs);

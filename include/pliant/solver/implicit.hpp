@@ -7,65 +7,12 @@
 
 #include <pliant/solver/implicit/assembled_steps.hpp>
 #include <pliant/solver/implicit/balance.hpp>
+#include <pliant/solver/implicit/balance_in_double.hpp>
 #include <pliant/solver/implicit/carried_errors.hpp>
+#include <pliant/solver/implicit/options.hpp>
 #include <pliant/solver/least_jacobian_on.hpp>
 
 namespace pliant {
-
-/// What implicit integrators make of the errors of their steps.
-enum class ErrorEstimate {
-  automatic,  // carried where steps follow their error
-  added_up,  // a sum: no bound where motions part by themselves, as of bodies that buckle, snap or are hit
-  /// Along with the motion by its tangent, which tells how errors grow or die out: for a linear system more in each step,
-  /// solved to a hundredth.
-  carried
-};
-
-/// How implicit integrators step.
-struct ImplicitOptions {
-  double step = 0;  // s, positive and finite; the first one where steps follow their error
-  MassMatrix mass = MassMatrix::consistent;  // for inertia, gravity and mass damping
-  double stiffness_damping =
-      0;  // s: forces −s K(u) v, K the stiffness where a step begins (Rayleigh)
-  /// m: steps become as long as the error of each, told from what it has beyond an extrapolation, is at the largest
-  /// displacement; 0: all steps are the same.
-  double error = 0;
-  ErrorEstimate errors = ErrorEstimate::automatic;
-  int max_iterations = 30;   // of Newton's method, per step
-  double tolerance = 1e-10;  // of the residual, relative to the largest of the forces; below 1
-  /// Automatic: on hosts with a matrix, on GPUs without; there with one (on the host) in steps that find no other way.
-  LinearMethod linear = LinearMethod::automatic;
-  int max_linear_iterations = 10000;              // without a matrix, per iteration
-  KrylovMethod krylov = KrylovMethod::automatic;  // without a matrix
-  /// Without a matrix. Kept from iteration to iteration of a step as long as it serves.
-  Preconditioner preconditioner = Preconditioner::automatic;
-  bool accept_folded = false;  // steps that fold the body somewhere, instead of an Error
-};
-
-/// What a call of an implicit integrator did, and at what cost.
-struct ImplicitReport {
-  int steps = 0;     // taken
-  int rejected = 0;  // and others that were too long
-  double time = 0;   // s: where the body is now
-  double step = 0;   // s: the size of the last step
-  double error = 0;  // m: of the last step, as its extrapolation tells
-  /// m: by how much displacements may be off. Carried errors: at any time since the motion began, or was changed by
-  /// hand. Added up: by these steps, twice their sum, as each is an error of the velocity too, which displaces as much again.
-  double error_in_all = 0;
-  ErrorEstimate errors = ErrorEstimate::added_up;  // or carried
-  /// Carried errors have come to a tenth of all displacements, or had no solution, so that their tangent is not that of the
-  /// motion any more: where the body is by now is not known. Take shorter steps from the start.
-  bool errors_lost = false;
-  int iterations = 0;      // of Newton's method, in all
-  int factorisations = 0;  // of matrices, in all
-  LinearReport linear{};   // what the linear systems took
-  double residual = 0;     // N, of the last step
-  /// The largest residual of these steps over the forces that it is the sum of: above the tolerance where steps ended as
-  /// the body's precision tells no more of its displacements.
-  double reached = 0;
-  LeastJacobian
-      least_J{};  // det F where it is least at the ends of these steps, at points of elements and between
-};
 
 /// Implicit time integration by a scheme: BackwardEuler, Newmark, GeneralizedAlpha, BDF2 or a user's own (see
 /// StepRule). One residual for all of them, on the body's backend and in its precision, brought to zero by Newton's
@@ -92,8 +39,9 @@ class Implicit {
     if (options.max_iterations < 1 || options.max_linear_iterations < 1)
       throw Error(Scheme::name, ": max_iterations ", options.max_iterations,
                   " and max_linear_iterations ", options.max_linear_iterations, "; give 1 or more");
-    if (!(options.tolerance > 0 && options.tolerance < 1))
-      throw Error(Scheme::name, ": a tolerance of ", options.tolerance,
+    if (double const tolerance = options.tolerance.value_or(usual_tolerance);
+        !(tolerance > 0 && tolerance < 1))
+      throw Error(Scheme::name, ": a tolerance of ", tolerance,
                   "; give a number between 0 and 1, relative to the forces");
     if (!(options.error >= 0 && std::isfinite(options.error)))
       throw Error(Scheme::name, ": an error of ", options.error,
@@ -126,6 +74,8 @@ class Implicit {
   }
 
  private:
+  static constexpr double usual_tolerance = 1e-10;
+
   template <int Dim>
   detail::LinearSolver<Dim>& linear() {
     if constexpr (Dim == 2)
@@ -165,6 +115,7 @@ class Implicit {
           before_(linear_.report()),
           preconditioning_(options_.preconditioner),
           report_(report),
+          tolerance_(options_.tolerance.value_or(usual_tolerance)),
           carries_(options_.errors == ErrorEstimate::carried ||
                    (options_.errors == ErrorEstimate::automatic && options_.error > 0)) {
       bool const conservative = detail::is_conservative(body);
@@ -317,13 +268,13 @@ class Implicit {
         report_.residual = now.residual;
         if (!std::isfinite(now.residual)) return false;
         // Where forces cancel to rounding, the displacement tells.
-        if (now.residual <= std::max(options_.tolerance * now.scale, nothing) || settled) {
+        if (now.residual <= std::max(tolerance_ * now.scale, nothing) || settled) {
           reached_ = now.scale > 0 ? now.residual / now.scale : 0;
-          return true;
+          return sizeof(T) == sizeof(double) || !options_.tolerance || now.residual <= nothing ||
+                 reached_ <= tolerance_ || refine(h);
         }
         if (iteration == options_.max_iterations) return false;
-        double const enough =
-            std::clamp(0.1 * options_.tolerance * now.scale / now.residual, 1e-12, 0.1);
+        double const enough = std::clamp(0.1 * tolerance_ * now.scale / now.residual, 1e-12, 0.1);
         double const before = now.residual;
         if (!solve(std::max(forcing, enough), h)) return false;
         ++report_.iterations;
@@ -332,6 +283,26 @@ class Implicit {
         // Eisenstat and Walker, SIAM Journal on Scientific Computing 17 (1996) 16, their second choice.
         forcing = std::clamp(0.9 * square(now.residual / before), 1e-6, 1e-3);
       }
+    }
+    /// The step in single precision, refined by residuals in double. Whether that goes.
+    bool refine(double h) {
+      auto& own = balance_.arrays();
+      if (!in_double_) in_double_.emplace(body_, options_.mass, options_.stiffness_damping);
+      in_double_->begin(rule_, rule_.force_weight * h);
+      Eigen::VectorXd d = in_double_->flat(own.increment);
+      bool solved = true;
+      auto const correct = [&](Eigen::VectorXd const& residual, double gain, Eigen::VectorXd& to) {
+        own.residual.upload(in_double_->padded(residual));
+        solved = solved && solve(gain, h);
+        if (solved) in_double_->add(to, in_double_->flat(own.solution));
+        ++report_.corrections;
+      };
+      auto const left = detail::refine_in_double(d, tolerance_, *in_double_, correct);
+      if (left.empty() || !solved) return false;
+      own.increment.upload(in_double_->padded(d));
+      report_.residual = left.back().residual;
+      reached_ = left.back().residual / left.back().scale;
+      return true;
     }
     /// The better of two guesses of the step: along the present motion, and none.
     Size begin_iteration(double h, bool searching) {
@@ -524,7 +495,9 @@ class Implicit {
     LinearReport before_;
     detail::Preconditioning<Parts> preconditioning_;
     ImplicitReport& report_;
+    double tolerance_;
     bool carries_;  // errors
+    std::optional<detail::BalanceInDouble<TheBody>> in_double_;
     std::optional<detail::AssembledSteps<TheBody>> assembled_;
     bool may_assemble_ = false;  // where steps without a matrix find no way
     StepRule rule_{};

@@ -213,6 +213,32 @@ class StaticNewton {
   NewtonReport report_;
 };
 
+/// Rest that was found in single precision, refined; the report tells what was reached.
+template <DeformableBody TheBody>
+void refine_rest(TheBody const& body, NewtonOptions const& options,
+                 MatrixFreeStatics<typename TheBody::parts_type>& statics, NewtonReport& report) {
+  using Problem = StaticProblem<TheBody>;
+  Problem const problem(body, options.gravity);
+  Eigen::VectorXd u = Problem::flat(statics.points());
+  problem.prescribe(u, body.time());
+  auto const evaluate = [&](Eigen::VectorXd const& at) -> DoubleResidual {
+    auto const now = assembled_at(body.parts(), at, Assemble::energy_and_force,
+                                  std::numeric_limits<double>::infinity(), 1);
+    Eigen::VectorXd residual = now.force + problem.external;
+    problem.unknowns.keep(residual);
+    return {residual, std::max(problem.external.norm(), now.force.norm()), now.energy};
+  };
+  auto const correct = [&](Eigen::VectorXd const& residual, double gain, Eigen::VectorXd& at) {
+    problem.add(at, Problem::flat(statics.correction(Problem::per_node(residual), gain)), 1);
+    ++report.iterations;
+  };
+  for (auto const& left : refine_in_double(u, options.tolerance, evaluate, correct)) {
+    report.residual = left.residual;
+    report.residuals.push_back(left.residual);
+    report.energy = left.energy;
+  }
+  statics.set(Problem::per_node(u));
+}
 /// The displacements in equilibrium, found without a matrix.
 template <DeformableBody TheBody>
 NewtonReport solve_static_matrix_free(TheBody& body, NewtonOptions const& options) {
@@ -231,7 +257,7 @@ NewtonReport solve_static_matrix_free(TheBody& body, NewtonOptions const& option
                                                           place_before_drives(parts));
   auto report = statics.solve();
   if constexpr (sizeof(typename TheBody::scalar) < sizeof(double))
-    refine_in_double(body, options, statics, report);
+    refine_rest(body, options, statics, report);
   change_by_hand(parts, [&] {
     copy_values(parts.backend, statics.displacements().data(), parts.state.u.data(),
                 parts.state.u.size());

@@ -1,44 +1,45 @@
 #pragma once
 
-#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include <pliant/solver/assemble.hpp>
-#include <pliant/solver/newton_options.hpp>
-#include <pliant/solver/static_problem.hpp>
 
 namespace pliant::detail {
 
-/// Iterative refinement of rest that was found in single precision: residuals and displacements in double precision, on
-/// the host, corrections in the body's own (Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 12).
-/// Ends within the tolerance, or where corrections no longer halve the residual; the report tells what was reached.
-/// Of `statics` it takes points(), correction(residual, tolerance) and set(points), node by node in the user's order.
-template <DeformableBody TheBody, class Statics>
-void refine_in_double(TheBody const& body, NewtonOptions const& options, Statics& statics,
-                      NewtonReport& report) {
-  using Problem = StaticProblem<TheBody>;
+/// A residual in double precision.
+struct DoubleResidual {
+  Eigen::VectorXd residual;  // N
+  double scale;              // N: the largest of what it is the sum of
+  double energy = 0;         // J, where it has one
+};
+/// What of it was left.
+struct Refined {
+  double residual, scale, energy;
+};
+
+/// Iterative refinement of an answer u that was found in single precision: residuals and u in double precision, on the
+/// host, corrections in the body's own (Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 12). Ends within
+/// the tolerance, or where corrections no longer halve the residual, at the best of them. `evaluate(u)` is a DoubleResidual, `correct(residual,
+/// gain, u)` adds to u what a residual asks for, to such a relative accuracy. Returns what each was left of, the best last.
+template <class Evaluate, class Correct>
+std::vector<Refined> refine_in_double(Eigen::VectorXd& u, double tolerance,
+                                      Evaluate const& evaluate, Correct const& correct) {
   constexpr double gain = 1e-4;  // of a correction
-  Problem const problem(body, options.gravity);
-  Eigen::VectorXd best, u = Problem::flat(statics.points());
-  problem.prescribe(u, body.time());
+  std::vector<Refined> left;
+  Eigen::VectorXd best = u;
   for (double before = std::numeric_limits<double>::infinity();;) {
-    auto const now = assembled_at(body.parts(), u, Assemble::energy_and_force,
-                                  std::numeric_limits<double>::infinity(), 1);
-    Eigen::VectorXd residual = now.force + problem.external;
-    problem.unknowns.keep(residual);
-    double const left = residual.norm(),
-                 scale = std::max(problem.external.norm(), now.force.norm());
-    if (!(left < before)) break;
+    DoubleResidual const now = evaluate(u);
+    double const size = now.residual.norm();
+    if (!(size < before)) break;
     best = u;
-    report.residual = left;
-    report.residuals.push_back(left);
-    report.energy = now.energy;
-    if (left <= options.tolerance * scale || left > before / 2) break;
-    before = left;
-    problem.add(u, Problem::flat(statics.correction(Problem::per_node(residual), gain)), 1);
-    ++report.iterations;
+    left.push_back({size, now.scale, now.energy});
+    if (size <= tolerance * now.scale || size > before / 2) break;
+    before = size;
+    correct(now.residual, gain, u);
   }
-  if (best.size() > 0) statics.set(Problem::per_node(best));
+  u = best;
+  return left;
 }
 
 }  // namespace pliant::detail
