@@ -36,19 +36,21 @@ struct Progress {
 /// suite measures.
 class Stepper {
  public:
-  /// `step`: s; 0 where the integrator chooses. Implicit ones have to be given one.
-  Stepper(Method method, double safety, double step, bool accept_folded = false)
+  /// `step`: s; 0 where the integrator chooses. Implicit ones have to be given one. A reference may fold, and is not asked for
+  /// its errors.
+  Stepper(Method method, double safety, double step, bool is_reference = false)
       : method_(method), step_(step) {
     if (method == Method::explicit_steps)
       central_.emplace(CentralDifferenceOptions{.safety = safety, .step = step});
     else if (method == Method::local_steps)
       local_.emplace(LocalStepsOptions{.safety = std::min(safety, 0.8), .macro_step = step});
     else if (method != Method::statics)
-      implicit_.emplace(ChosenScheme{method == Method::backward_euler},
-                        ImplicitOptions{.step = step,
-                                        .mass = MassMatrix::lumped,
-                                        .errors = ErrorEstimate::carried,
-                                        .accept_folded = accept_folded});
+      implicit_.emplace(
+          ChosenScheme{method == Method::backward_euler},
+          ImplicitOptions{.step = step,
+                          .mass = MassMatrix::lumped,
+                          .errors = is_reference ? ErrorEstimate::added_up : ErrorEstimate::carried,
+                          .accept_folded = is_reference});
   }
 
   template <class TheBody>
