@@ -1,6 +1,6 @@
 #include "work_precision/artery.hpp"
 #include "work_precision/energy_error.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
 
 // A ring of an artery under the pressure of blood; a quarter of it. It widens as the radial equation of equilibrium says, which has
 // one unknown function of the radius and is integrated beforehand.

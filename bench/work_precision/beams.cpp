@@ -1,5 +1,6 @@
 #include "verification/support/grading.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
+#include "work_precision/reference_energy.hpp"
 
 // A beam that hangs from its top, and one that is clamped at its left end, under their weight.
 namespace pliant::bench {

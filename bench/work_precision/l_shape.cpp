@@ -1,7 +1,7 @@
 #include "verification/support/l_shape.hpp"
 
 #include "work_precision/energy_error.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
 
 // The L-shape of REFERENCES, section 8: its exact field is singular at the re-entrant corner.
 namespace pliant::bench {

@@ -2,7 +2,8 @@
 
 #include "scene/carve.hpp"
 #include "verification/support/grading.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
+#include "work_precision/reference_energy.hpp"
 
 // A block of 4 m × 2 m × 2 m, pulled at its ends, with notches in the middle of its top and bottom that reach over half of
 // them; an eighth of it. Each notch ends in three re-entrant edges that meet, and the field is singular along them.

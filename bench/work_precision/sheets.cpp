@@ -2,7 +2,8 @@
 
 #include "scene/carve.hpp"
 #include "verification/support/grading.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
+#include "work_precision/reference_energy.hpp"
 
 // Sheets that no rule for meshes was chosen by: Cook's membrane, a plate with a square hole.
 namespace pliant::bench {

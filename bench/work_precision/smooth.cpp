@@ -1,6 +1,6 @@
 #include "verification/support/manufactured.hpp"
 #include "work_precision/energy_error.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
 
 // A smooth field at finite strain (REFERENCES, section 9), where no place needs more elements than another.
 namespace pliant::bench {

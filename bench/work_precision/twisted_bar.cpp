@@ -1,7 +1,8 @@
 #include <numbers>
 
 #include "verification/support/grading.hpp"
-#include "work_precision/statics.hpp"
+#include "work_precision/mesh_contest.hpp"
+#include "work_precision/reference_energy.hpp"
 
 // A bar of 4 m × 1 m × 1 m whose end is turned by a right angle (REFERENCES, section 8): finite strain, everywhere, and
 // stresses that are singular along the edges of both ends.

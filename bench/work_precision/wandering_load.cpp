@@ -1,4 +1,4 @@
-#include "work_precision/statics.hpp"
+#include "work_precision/reference_energy.hpp"
 
 // A load that wanders along a block, place by place at rest: a mesh that holds an error or a budget follows it. Errors are
 // root mean squares over the places, in the energy norm; times are of all places together.
