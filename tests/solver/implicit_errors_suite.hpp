@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include <pliant/solver/implicit.hpp>
+#include <pliant/solver/newton.hpp>
 
 #include "adaptation/plane_bodies.hpp"
 #include "support/repeatable.hpp"
