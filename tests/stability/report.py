@@ -123,7 +123,7 @@ with open(f"{folder}/RESULTS.md", "w") as out:
     say("Else it is silently wrong, hangs or crashes. Each case is a process of its own.")
     say("*det F* tells of explicit steps whose body is folded somewhere in the end, which they do not look for: laws that take")
     say("inversion go on. Steps are half the stable one, after sudden starts a tenth; implicit ones half of these.\n")
-    say(f"{len(rows)} of {expected} cases, {sum(row.seconds for row in rows) / 60:.0f} minutes: "
+    say(f"{len(rows)} of {expected} cases, {sum(row.seconds for row in rows) / 60:.0f} minutes of processes, as many side by side as there are cores: "
         + ", ".join(f"{total[outcome]} {outcome.lower()}" for outcome in OUTCOMES) + ".\n")
     for name, backend in pictures:
         say(f"![{backend}]({name})\n")
