@@ -139,6 +139,12 @@ TEST_CASE("MINRES has the least residual of all in the Krylov space", "[solver]"
       CHECK(found.iterations == k);
       CHECK((x - l * (basis * y)).norm() < 1e-8 * x.norm());
       CHECK(found.residual == Approx((b - a * x).norm()).epsilon(1e-10));
+      // It knows when it is as small as that.
+      auto const asked = minres([&](auto const& v, auto& out) { out = a * v; },
+                                [&](auto const& v, auto& out) { out = m * v; }, b, x,
+                                1.0001 * found.residual / b.norm(), n);
+      CHECK(asked.converged);
+      CHECK(asked.iterations <= k);
     }
   }
 }

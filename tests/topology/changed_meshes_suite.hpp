@@ -410,6 +410,23 @@ TEST_CASE("a refined and coarsened body steps, saves and resumes", "[topology]")
   });
 }
 
+TEST_CASE("what a rule refines is not merged by another", "[topology]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    using F = Formulation<Tet4, Gauss<1>, Hooke>;
+    auto body = body_of<F>(backend, mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {2, 2, 2}}));
+    auto const count = body.mesh().template elements<Tet4>().size();
+    Adaptation adapt{when<F>(StrainNorm{}).above(0.02).refine({.max_level = 2}),
+                     when<F>(StrainNorm{}).above(0.01).coarsen()};
+    for (std::size_t const more : {8, 64}) {
+      auto u = body.mesh().nodes;
+      for (auto& x : u) x = {0.05 * x[0], 0, 0};
+      body.set_displacements(u);
+      adapt.now(body);
+      CHECK(body.mesh().template elements<Tet4>().size() == more * count);
+    }
+  });
+}
+
 TEST_CASE("a rule coarsens behind what another refines", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     using F = Formulation<Tet4, Gauss<1>, Hooke>;

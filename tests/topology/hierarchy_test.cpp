@@ -495,6 +495,28 @@ TEST_CASE("a mesh that cannot be refined soundly is refused, and the message say
                  {"cell 2", "overlaps"}));
 }
 
+TEST_CASE("families of several degrees, and parts of degree two, are not merged", "[hierarchy]") {
+  using pliant::CellNodes;
+  auto mesh = rectangle(Cells::quads, 2, 2);
+  mesh.refine(std::array<Index, 1>{0});
+  Index const child = mesh.cell(0).first_child;
+  std::array<Index, 4> const family{child, child + 1, child + 2, child + 3};
+  CHECK(mesh.families(family) == std::vector<Index>{0});
+  mesh.raise({{child + 2, CellNodes::all}});
+  CHECK(mesh.families(family).empty());
+  mesh.raise({{child, CellNodes::all}, {child + 1, CellNodes::all}, {child + 3, CellNodes::all}});
+  CHECK(mesh.families(family) == std::vector<Index>{0});
+
+  mesh.split({{3, pliant::Division::four_triangles}});
+  Index const part = mesh.cell(3).first_child;
+  std::array<Index, 4> const parts{part, part + 1, part + 2, part + 3};
+  CHECK(mesh.split_cells(parts) == std::vector<Index>{3});
+  std::vector<pliant::CellConversion> raised;
+  for (Index const c : parts) raised.push_back({c, CellNodes::edges});
+  mesh.raise(raised);
+  CHECK(mesh.split_cells(parts).empty());
+}
+
 TEST_CASE("composition sums the weights of masters reached twice and refuses circles", "[slave]") {
   auto const slaves = pliant::compose(
       {{9, {{0, 0.5}, {1, 0.5}}}, {3, {{9, 0.5}, {1, 0.25}, {2, 0.25}}}, {4, {{3, 1.0}}}});

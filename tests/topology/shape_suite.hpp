@@ -259,6 +259,20 @@ TEST_CASE("two pyramids that share a base are split into tetrahedra, both or non
     CHECK(plan->counts.merged == 0);
     CHECK(plan->counts.refined > 10);
     coarsen(body, all(body, -1));
+    // Where one of them alone would be, both stay too: the child at the apex is on an edge of that one's.
+    Index const apex = elements<1>(body)[0][4];
+    refine(body, {{}, {0}, {}});
+    auto const levels = refinement_levels<Pyramid5>(body);
+    std::vector<Index> at_apex;
+    for (std::size_t e = 0; e < levels.size(); ++e)
+      if (levels[e] == 1 && std::ranges::count(elements<1>(body)[e], apex) == 1)
+        at_apex.push_back(static_cast<Index>(e));
+    REQUIRE(at_apex.size() == 1);
+    plan = plan_change(body.parts(), {.refine = {{}, at_apex, {}}, .merge = all(body, 2)});
+    REQUIRE(plan);
+    CHECK(plan->counts.refined > 1);
+    CHECK(plan->counts.merged == 0);
+    coarsen(body, all(body, -1));
     CHECK(merge(body, all(body, 2)).merged == 2);
     CHECK(body.mesh().tables == pyramids.tables);
     CHECK(merge(body, all(body, 1)).merged == 2);

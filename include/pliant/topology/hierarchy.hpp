@@ -163,6 +163,7 @@ class Hierarchy {
   /// Puts cells of another shape in the place of leaves that have corners only. They are neither coarser nor finer, and
   /// no edge or side is divided. Throws Error as refine.
   AddedNodes split(std::vector<CellSplit> const& splits, RefinementLimits const& limits = {}) {
+    if (splits.empty()) return {};
     auto const needed = TreeQueries(tree_).needed(splits);
     check_room("split", splits.size(), needed, limits);
     std::vector<PlacedNode> made;

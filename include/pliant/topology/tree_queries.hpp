@@ -20,7 +20,8 @@ class TreeQueries {
       : tree_(tree), cells_(tree.cells()), edges_(tree.edges()), sides_(tree.sides()) {}
 
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
-  /// one at most across edges and sides: coarser ones first, then ascending.
+  /// one at most across edges and sides: coarser ones first, then ascending. Each part of a side has an edge that lies between
+  /// parts, so that edges tell of coarser neighbours across sides too.
   [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
     std::vector<bool> seen(cells_.size(), false);
     for (Index const c : leaves) seen[at(c)] = true;
@@ -48,11 +49,6 @@ class TreeQueries {
         auto const first = std::ranges::lower_bound(*on_edge, std::pair(coarse, Index{-1}));
         for (auto entry = first; entry != on_edge->end() && entry->first == coarse; ++entry)
           want(entry->second);
-      }
-      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
-        Index const coarse = sides_[at(cell.sides[s])].parent;
-        if (coarse < 0) continue;
-        for (Index neighbour : sides_[at(coarse)].cells) want(neighbour);
       }
     }
     std::ranges::sort(leaves, {}, [&](Index c) { return std::pair(cells_[at(c)].level, c); });
