@@ -108,6 +108,27 @@ std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule) {
 }  // namespace detail
 
 namespace detail {
+/// How many patches beside a stirred one a wave crosses until the next look, if that comes after so many steps, and one at
+/// least: it goes a node a step where steps are as long as they may be, and a patch is as wide as its share of the nodes.
+template <class Parts>
+int rings_reached(Parts const& parts, std::int64_t steps) {
+  double const nodes_of_patch =
+      static_cast<double>(parts.layout.nodes) / parts.patch_nodes->count();
+  double const width = std::pow(nodes_of_patch, 1.0 / Parts::dim);
+  return std::max(1, static_cast<int>(std::lround(static_cast<double>(steps) / width)));
+}
+/// Marks so many rings of neighbours too: what sleeps would throw a wave back that comes before the next look.
+template <class Parts>
+void mark_reached(Parts const& parts, int rings, std::vector<std::uint8_t>& stirred) {
+  for (int ring = 0; ring < rings; ++ring) {
+    auto const inner = stirred;
+    for (std::size_t p = 0; p < inner.size(); ++p)
+      if (inner[p])
+        for (Index const other : parts.patch_nodes->neighbours[p])
+          stirred[static_cast<std::size_t>(other)] = 1;
+  }
+}
+
 /// Those that are about to fall asleep while their points relax are not at rest.
 template <class Parts>
 void keep_awake_what_relaxes(Parts& parts, SleepRule const& rule, std::vector<std::int32_t>& rest) {
@@ -122,7 +143,7 @@ void keep_awake_what_relaxes(Parts& parts, SleepRule const& rule, std::vector<st
 }
 }  // namespace detail
 
-/// Wakes patches that something would move, and puts those to sleep that have been at rest for long enough. Before
+/// Wakes patches that something would move, and those that it may reach before the next look, and puts those to sleep that have been at rest for long enough. Before
 /// an integrator with a step has taken the body, nothing sleeps. A look holds for `for_steps` steps: without another
 /// one, all wakes then.
 template <class Parts>
@@ -144,7 +165,8 @@ void look_for_rest(Parts& parts, SleepRule const& rule) {
   auto const passed = static_cast<std::int32_t>(
       std::min<std::int64_t>(state.steps - state.rest_seen, rule.for_steps));
   state.rest_seen = state.steps;
-  auto const stirred = detail::find_stirred(parts, rule);
+  auto stirred = detail::find_stirred(parts, rule);
+  detail::mark_reached(parts, detail::rings_reached(parts, passed), stirred);
   auto rest = state.rest;
   for (std::size_t p = 0; p < count; ++p) {
     if (stirred[p])
