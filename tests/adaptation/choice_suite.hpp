@@ -631,7 +631,7 @@ TEST_CASE("a budget in milliseconds follows what steps take", "[adaptation]") {
 
 TEST_CASE("what sleeps stays, costs nothing, and leaves its budget to others", "[adaptation]") {
   on_each_backend<MainAlone>([]<class B>(B const& backend) {
-    int const rows = B::orders_by_group ? 12 : 6;
+    int const rows = B::orders_by_group ? 48 : 6;
     auto const mesh = mesh::rectangle({.size = {20, 0.05 * rows}, .cells = {200, rows}});
     auto const run = [&](auto... rules) {
       Body body{backend, mesh, soft, Group<Linear>{}, Group<Rubber>{}};
