@@ -20,7 +20,7 @@ using F = Formulation<Tet4, Gauss<1>, Hooke>;
 
 inline constexpr Elastic rubber{.young = 2e6, .poisson = 0.3, .density = 1e3};  // Pa, -, kg/m³
 inline constexpr int rounds = 6;
-inline constexpr int drawn_apart = 2;          // rounds
+inline constexpr int drawn_apart = 2;           // rounds
 inline constexpr Index most_unknowns = 150000;  // of the uniform meshes
 
 template <class TheBackend>
