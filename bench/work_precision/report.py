@@ -24,6 +24,7 @@ DEFAULT = "RecoveredStress bulk(0.65)"
 LEVELS = {
     "L-shape": (0.04, 0.3),
     "slit plate": (0.06, 0.15),
+    "slit plate, explicit": (0.065, 0.2),
     "hanging beam": (0.014, 0.15),
     "cantilever": (0.03, None),
     "Cook's membrane": (0.05, None),
