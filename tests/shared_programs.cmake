@@ -55,7 +55,7 @@ share(shared/laws
       law/plane_stress law/plane_stress_tangents law/plane_stress_values law/precision
       law/printed_energies law/ranges law/stretches law/tangents)
 share(shared/points
-      body/copy_values body/numbering element/cell math/dual math/functions math/matrix math/spectrum
+      body/copy_values body/numbering element/cell math/dual math/eigenvalue_bounds math/functions math/matrix math/spectrum
       mesh/hilbert quadrature/exactness topology/number_table topology/shared_list)
 share(shared/elements_alone
       formulation/inversion formulation/mass formulation/modes)

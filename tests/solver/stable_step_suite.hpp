@@ -85,6 +85,57 @@ TEST_CASE("the stable step holds for clamped, stretched and mixed meshes", "[sol
   });
 }
 
+/// Of a body of one cell: sums over elements are of absolute values of each.
+template <class F, Backend B>
+void check_row_sums(B const& backend) {
+  using E = typename F::element;
+  auto const mesh = [] {
+    if constexpr (E::dim == 2)
+      return mesh::rectangle<E>({.size = {1, 0.9}, .cells = {1, 1}});
+    else
+      return mesh::box<E>({.size = {1, 0.9, 1.2}, .cells = {1, 1, 1}});
+  }();
+  auto body = body_of<F>(backend, mesh);
+  body.set_displacements(Random(3).field<F::dim>(mesh.nodes.size(), 0.03));
+  auto const k = assembled_stiffness(body, body.displacements());
+  auto const& mass = body.parts().layout.mass_list;
+  double largest = 0;
+  for (Eigen::Index i = 0; i < k.rows(); ++i)
+    largest =
+        std::max(largest, k.row(i).cwiseAbs().sum() / mass[static_cast<std::size_t>(i) / E::dim]);
+
+  CHECK(detail::frequency_bounds(body.parts(), detail::Among::all).rows ==
+        Approx(largest).epsilon(1e-9));
+}
+
+TEST_CASE("sums of rows that bound frequencies are those of the stiffness", "[solver]") {
+  on_each_backend<MainAlone>([](auto const& backend) {
+    check_row_sums<Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>>(backend);
+    check_row_sums<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend);
+    check_row_sums<Formulation<Hex27, Gauss<3>, NeoHookean>>(backend);
+  });
+}
+
+TEST_CASE("the stable step of large elements is below the true limit and near", "[solver]") {
+  on_each_backend<MainAlone>([](auto const& backend) {
+    auto const check = [&]<class F>(F) {
+      auto const mesh = distorted_mesh<typename F::element>(2);
+      auto body = body_of<F>(backend, mesh);
+      for (double strain : {0.0, 0.15}) {
+        Random random(5);
+        body.set_displacements(uniform(mesh.nodes, random.tensor<3>(strain)));
+
+        double const bound = stable_step(body), limit = true_limit(body);
+
+        CHECK(bound <= limit);
+        CHECK(bound > 0.8 * limit);
+      }
+    };
+    check(Formulation<Hex20, Gauss<3>, SaintVenantKirchhoff>{});
+    check(Formulation<Hex27, Gauss<3>, NeoHookean>{});
+  });
+}
+
 TEST_CASE("the stable step is the same in single precision", "[solver]") {
   on_each_backend<Backends<float>>([]<class B>(B const& backend) {
     auto const mesh = distorted_mesh<Hex8>(3);

@@ -105,11 +105,23 @@ struct RowSumKernel {
     using F = typename Laws::template formulation<G>;
     return groups.template apply<G>(
         [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          auto const k = stiffness<F>(law, rest, u);
+          constexpr int dim = F::dim, size = F::nodes * dim;
           auto rows = std::remove_cvref_t<decltype(u)>::zero();
-          for (int i = 0; i < F::nodes * F::dim; ++i)
-            for (int j = 0; j < F::nodes * F::dim; ++j)
-              rows(i / F::dim, i % F::dim) = rows(i / F::dim, i % F::dim) + abs(k(i, j));
+          auto const add = [&](int row, auto const& entry) PLIANT_INLINE {
+            rows(row / dim, row % dim) = rows(row / dim, row % dim) + abs(entry);
+          };
+          if constexpr (has_large_stiffness<F>) {
+            for (int column = 0; column < size; ++column) {
+              auto du = std::remove_cvref_t<decltype(u)>::zero();
+              du(column / dim, column % dim) = du(column / dim, column % dim) + 1;
+              auto const df = tangent_product<F>(law, rest, u, du);
+              for (int row = 0; row < size; ++row) add(row, df(row / dim, row % dim));
+            }
+          } else {
+            auto const k = stiffness<F>(law, rest, u);
+            for (int row = 0; row < size; ++row)
+              for (int column = 0; column < size; ++column) add(row, k(row, column));
+          }
           return rows;
         },
         v...);

@@ -73,6 +73,10 @@ PLIANT_HOST_DEVICE Nodal<typename F::element, S> tangent_product(
   return detail::SchemeOf<F, G>::tangent_product(law, rest, u, du);
 }
 
+/// Whether the stiffness matrix of an element is too large for each thread of a GPU to have one: of Hex20 and Hex27.
+template <class F>
+inline constexpr bool has_large_stiffness = F::nodes * F::dim > 48;
+
 /// The stiffness matrix K = ∂²W_E/∂u², N/m; rows and columns run over (node, direction). Large and
 /// seldom called, so kept out of line; constexpr is what lets device code call it.
 template <class F, class L, class S>
