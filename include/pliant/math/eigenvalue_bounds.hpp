@@ -10,10 +10,9 @@
 // Upper bounds of the largest |eigenvalue| of the symmetric matrix of an element.
 namespace pliant::detail {
 
-/// The Frobenius norm ‖A⁴‖^(1/4), computed from A scaled to norm one: within a factor N^(1/8). Leaves nothing of A, which
-/// is the only matrix that this needs: each thread of a GPU may have one.
+/// The Frobenius norm ‖A⁴‖^(1/4), computed from A scaled to norm one: within a factor N^(1/8).
 template <class S, int N>
-PLIANT_HOST_DEVICE S bound_by_powers(Tensor<S, N>& a) {
+PLIANT_HOST_DEVICE S bound_by_powers(Tensor<S, N> a) {
   S largest = S(0);
   for (int i = 0; i < N; ++i) {
     S row = S(0);
@@ -21,28 +20,20 @@ PLIANT_HOST_DEVICE S bound_by_powers(Tensor<S, N>& a) {
     largest = max(largest, row);
   }
   using T = builtin_scalar<S>;
-  a = S(1) / max(largest, S(std::numeric_limits<T>::min())) * a;
-  // A² goes below the diagonal of A, which the other half still has.
-  Vector<S, N> diagonal;
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j) {
-      S sum = S(0);
-      for (int k = 0; k < j; ++k) sum = sum + a(k, i) * a(k, j);
-      for (int k = j; k < i; ++k) sum = sum + a(k, i) * a(j, k);
-      for (int k = i; k < N; ++k) sum = sum + a(i, k) * a(j, k);
-      (j == i ? diagonal[i] : a(i, j)) = sum;
-    }
-  for (int i = 0; i < N; ++i) a(i, i) = diagonal[i];
-  S squares = S(0);  // of the entries of A⁴
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j) {
-      S sum = S(0);
-      for (int k = 0; k < j; ++k) sum = sum + a(i, k) * a(j, k);
-      for (int k = j; k < i; ++k) sum = sum + a(i, k) * a(k, j);
-      for (int k = i; k < N; ++k) sum = sum + a(k, i) * a(k, j);
-      squares = squares + S(j == i ? 1 : 2) * (sum * sum);
-    }
-  return largest * sqrt(sqrt(sqrt(squares)));
+  S const scale = S(1) / max(largest, S(std::numeric_limits<T>::min()));
+  a = scale * a;
+  for (int power = 0; power < 2; ++power) {
+    Tensor<S, N> squared;
+    for (int i = 0; i < N; ++i)
+      for (int j = i; j < N; ++j) {
+        S sum = S(0);
+        for (int k = 0; k < N; ++k) sum = sum + a(i, k) * a(j, k);
+        squared(i, j) = sum;
+        squared(j, i) = sum;
+      }
+    a = squared;
+  }
+  return largest * sqrt(sqrt(norm(a)));
 }
 
 /// A symmetric tridiagonal matrix.
