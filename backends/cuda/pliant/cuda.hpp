@@ -25,12 +25,34 @@
 namespace pliant {
 
 namespace detail {
+/// A functor that does nothing where selects(i) does not hold.
+template <class F>
+concept SelectsNodes = requires(F const& f, Index i) {
+  { f.selects(i) } -> std::same_as<bool>;
+};
+/// Nodes that one thread looks at: several where most are passed over, so that few threads start for nothing.
+template <class F>
+inline constexpr int nodes_per_thread = SelectsNodes<F> ? 4 : 1;
+
 template <class F>
 __global__ void __launch_bounds__(node_threads)
     call_for_each(Index n, __grid_constant__ F const f) {
   begin_after_previous_kernel();
-  Index const i = static_cast<Index>(blockIdx.x * node_threads + threadIdx.x);
-  if (i < n) f(i);
+  constexpr int each = nodes_per_thread<F>;
+  Index const first = static_cast<Index>(blockIdx.x * (each * node_threads) + threadIdx.x);
+  if constexpr (each == 1) {
+    if (first < n) f(first);
+  } else {
+    bool selected[each];
+#pragma unroll
+    for (int k = 0; k < each; ++k) {
+      Index const i = first + k * node_threads;
+      selected[k] = i < n && f.selects(i);
+    }
+#pragma unroll
+    for (int k = 0; k < each; ++k)
+      if (selected[k]) f(first + k * node_threads);
+  }
 }
 }  // namespace detail
 
@@ -68,8 +90,8 @@ class Cuda {
   template <class F>
   void for_each(Index n, F const& f) const {
     if (n <= 0) return;
-    launch("for_each", {blocks(n, detail::node_threads), detail::node_threads},
-           detail::call_for_each<F>, n, f);
+    constexpr int in_block = detail::node_threads * detail::nodes_per_thread<F>;
+    launch("for_each", {blocks(n, in_block), detail::node_threads}, detail::call_for_each<F>, n, f);
   }
   template <class F>
   double sum(Index n, F const& f) const {

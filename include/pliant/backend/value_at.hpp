@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include <pliant/backend/patch_list.hpp>
 #include <pliant/math/functions.hpp>
 
 namespace pliant::detail {
@@ -22,6 +23,29 @@ struct ValueAt {
     return infinite_if_not_finite(static_cast<double>(data[i]));
   }
 };
+
+/// The same of the elements of a list's patches, one after another.
+template <class T>
+struct ListedValueAt {
+  ValueAt<T> values;
+  Index const* list;  // see over
+  Index patch_size, count;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    Index const k = i / patch_size;
+    Index const e = k < list[0] ? list[k + 1] * patch_size + i % patch_size : count;
+    return e < count ? values(e) : -std::numeric_limits<double>::infinity();
+  }
+};
+
+/// The largest of the values of some elements; -infinity where there are none.
+template <class B, class Elements, class T>
+double largest_of(B const& backend, ActiveElements<Elements> const& some, T const* values) {
+  ValueAt<T> const at{values};
+  Index const count = some.elements.count();
+  if (some.list == nullptr) return backend.maximum(count, at);
+  Index const size = some.elements.patch_size();
+  return backend.maximum(some.most * size, ListedValueAt<T>{at, some.list, size, count});
+}
 
 template <class T>
 struct FillValue {

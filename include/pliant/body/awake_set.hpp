@@ -49,9 +49,10 @@ template <class F>
 struct AtAwakeNodes {
   NodeWatch const* nodes;
   F f;
+  PLIANT_HOST_DEVICE bool selects(Index i) const { return (nodes[i] & beside_awake) != 0; }
   PLIANT_HOST_DEVICE auto operator()(Index i) const {
     using Result = decltype(f(i));
-    if (!(nodes[i] & beside_awake)) return Result();
+    if (!selects(i)) return Result();
     return f(i);
   }
 };

@@ -94,6 +94,7 @@ template <class Parts>
 void put_in_force(Parts& parts, Parts next) noexcept {
   parts.recorded.reset();
   parts.recorded_stretch.reset();
+  parts.recorded_onward.reset();
   parts.recorded_with_look.reset();
   parts.schedule.reset();
   parts.solver.reset();

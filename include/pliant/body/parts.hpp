@@ -101,8 +101,9 @@ struct Parts {
     std::shared_ptr<void const> look{};  // of which adaptation; null: of none
     int steps = 1;
   };
-  std::optional<Recorded> recorded{};            // a step
-  std::optional<Recorded> recorded_stretch{};    // several
+  std::optional<Recorded> recorded{};          // a step
+  std::optional<Recorded> recorded_stretch{};  // several
+  std::optional<Recorded> recorded_onward{};   // the same, where the forces of the first are known
   std::optional<Recorded> recorded_with_look{};  // and a look of an adaptation behind them
   std::optional<StepSchedule<B>> schedule{};     // of local time steps; see solver/local_steps.hpp
   std::optional<PatchNodes<B>> patch_nodes{};    // made when something first looks for rest

@@ -40,13 +40,12 @@ struct DistortionVisitor {
 }  // namespace detail
 
 namespace detail {
-/// Leaves the distortion of each element in its table's scratch; 0 of those that sleep.
+/// Leaves the distortion of each element that is awake in its table's scratch.
 template <class Parts, class Table>
 void evaluate_distortion(Parts& parts, Table& table) {
   using T = typename Parts::T;
   if (table.scratch.size() == 0)
     table.scratch = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
-  if (parts.awake) parts.backend.for_each(table.count(), FillValue<T>{table.scratch.data(), T(0)});
   parts.backend.template visit<Table::groups>(
       parts.awake_in(table), DistortionVisitor<T, typename Table::Laws>{table.scratch.data()},
       parts.no_counters, parts.rest(), std::as_const(parts).u());
@@ -60,9 +59,8 @@ double largest_distortion(Parts& parts) {
   parts.for_each_type([&](auto& table, auto&) {
     if (table.count() == 0) return;
     detail::evaluate_distortion(parts, table);
-    largest = std::max(
-        largest, parts.backend.maximum(table.count(),
-                                       detail::ValueAt<typename Parts::T>{table.scratch.data()}));
+    largest = std::max(largest, detail::largest_of(parts.backend, parts.awake_in(table),
+                                                   std::as_const(table.scratch).data()));
   });
   return largest;
 }

@@ -19,6 +19,14 @@ bool next_step_is_special(Parts const& parts, double dt) {
   return next_move_is_special(parts, dt) || parts.forces_current;
 }
 
+/// Whether the next step is like the others but that its forces are known: at the nodes that evaluate_forces leaves them
+/// at, which a recording counts on.
+template <class Parts>
+bool next_move_alone_is_known(Parts const& parts, double dt) {
+  return parts.forces_current && parts.forces_complete == !parts.awake &&
+         !next_move_is_special(parts, dt);
+}
+
 /// Steps that are not like the others: `steps` of them at the most. Returns how many are left.
 template <class Parts>
 int take_special_steps(Parts& parts, double dt, int steps) {
@@ -89,14 +97,23 @@ void take_steps(Parts& parts, double dt, int steps) {
     parts.state.steps += steps;
     return;
   }
+  constexpr int together = detail::steps_of_stretch;
+  if (steps >= together && detail::next_move_alone_is_known(parts, dt)) {
+    detail::replay_steps(parts, parts.recorded_onward, dt, together, nullptr, 1, [&parts, dt] {
+      detail::loop_over_move(parts, dt);
+      for (int k = 1; k < together; ++k) detail::loop_over_step(parts, dt);
+    });
+    parts.forces_current = parts.forces_complete = false;  // a replay does not tell
+    steps -= together;
+  }
   steps = detail::take_special_steps(parts, dt, steps);
-  auto const replay = [&](auto& kept, int together, int n) {
-    detail::replay_steps(parts, kept, dt, together, nullptr, n, [&parts, dt, together] {
-      for (int k = 0; k < together; ++k) detail::loop_over_step(parts, dt);
+  auto const replay = [&](auto& kept, int of, int n) {
+    detail::replay_steps(parts, kept, dt, of, nullptr, n, [&parts, dt, of] {
+      for (int k = 0; k < of; ++k) detail::loop_over_step(parts, dt);
     });
   };
-  replay(parts.recorded_stretch, detail::steps_of_stretch, steps / detail::steps_of_stretch);
-  replay(parts.recorded, 1, steps % detail::steps_of_stretch);
+  replay(parts.recorded_stretch, together, steps / together);
+  replay(parts.recorded, 1, steps % together);
 }
 
 /// Takes as many whole stretches as fit into `steps`, each of look.interval() steps with a look behind them,

@@ -122,7 +122,6 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
     if (table.scratch.size() == 0)
       table.scratch = zeros<T>(backend, static_cast<std::size_t>(table.count()));
     bool const awake = among == Among::awake && parts.awake;
-    if (awake) backend.for_each(table.count(), FillValue<T>{table.scratch.data(), T(0)});
     auto const& const_table = std::as_const(table);
     auto const elements = awake ? parts.awake_in(const_table) : active(const_table.elements);
     backend.template visit<Table::groups>(
@@ -131,7 +130,7 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
                                         table.scratch.data()},
         parts.no_counters, at.rest, at.u);
     by_elements = std::max(
-        by_elements, backend.maximum(table.count(), detail::ValueAt<T>{table.scratch.data()}));
+        by_elements, detail::largest_of(backend, elements, std::as_const(table.scratch).data()));
   });
   parts.layout.interpolation.hand_on_magnitudes(backend, rows);
   return {magnitude * magnitude * by_elements + by_terms, magnitude * largest_row()};
