@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 
 #include "support/formulations.hpp"
@@ -153,6 +154,30 @@ TEST_CASE("node loops see every node once", "[backend]") {
     }
     CHECK(backend.maximum(0, Peak{}) == -std::numeric_limits<double>::infinity());
     CHECK(backend.maximum(5, Peak{}) == -774);
+  });
+}
+
+/// Of the nodes that are no multiple of 3, and of no others.
+template <class T>
+struct AddOneToSome : AddOne<T> {
+  PLIANT_HOST_DEVICE bool selects(Index i) const { return i % 3 != 0; }
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (selects(i)) AddOne<T>::operator()(i);
+  }
+};
+
+TEST_CASE("node loops that pass over nodes see each of the others once", "[backend]") {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
+    for (Index n : {1, 2, 31, 1023, 1024, 1025, 100000}) {
+      INFO(n << " nodes");
+      auto seen = zeros<double>(backend, static_cast<std::size_t>(n));
+
+      backend.for_each(n, AddOneToSome<double>{{seen.data()}});
+
+      auto const values = download<double>(seen);
+      for (Index i = 0; i < n; ++i)
+        REQUIRE(values[static_cast<std::size_t>(i)] == (i % 3 != 0 ? i + 1 : 0));
+    }
   });
 }
 
@@ -350,6 +375,17 @@ TEST_CASE("loops over a list of patches pass over the elements of the others", "
           all[0] = patches;
           return all;
         }()};
+    using T = typename B::scalar;
+    std::vector<T> values(static_cast<std::size_t>(fan.elements_count));
+    for (std::size_t e = 0; e < values.size(); ++e) values[e] = static_cast<T>(e * 7919 % 1009);
+    auto const elements_values = upload(backend, values);
+    auto const largest_in = [&](std::vector<Index> const& list) {
+      double largest = -std::numeric_limits<double>::infinity();
+      for (Index e = 0; e < fan.elements_count; ++e)
+        if (std::find(list.begin() + 1, list.end(), e / fan.elements.patch_size()) != list.end())
+          largest = std::max(largest, static_cast<double>(values[static_cast<std::size_t>(e)]));
+      return largest;
+    };
     for (auto const& list : lists) {
       INFO(list[0] << " of " << patches << " patches");
       auto tags = std::vector<Tag>(fan.tags.size(), no_group);
@@ -366,7 +402,11 @@ TEST_CASE("loops over a list of patches pass over the elements of the others", "
 
       CHECK(got == sweep(backend, fan, tagged));
       CHECK((got.total != 0) == (list[0] > 0));
+      CHECK(detail::largest_of(backend, over(fan.elements, numbers), elements_values.data()) ==
+            largest_in(list));
     }
+    CHECK(detail::largest_of(backend, detail::active(fan.elements), elements_values.data()) ==
+          largest_in(lists.back()));
     auto const one = upload(backend, std::vector<Index>{1, 1});
     for (Index count : {Index{2}, std::numeric_limits<Index>::max()}) {
       auto const beyond = upload(backend, std::vector<Index>{count, 1});
