@@ -22,7 +22,7 @@ bool next_step_is_special(Parts const& parts, double dt) {
 /// Whether the next step is like the others but that its forces are known: at the nodes that evaluate_forces leaves them
 /// at, which a recording counts on.
 template <class Parts>
-bool next_move_alone_is_known(Parts const& parts, double dt) {
+bool goes_on_from_known_forces(Parts const& parts, double dt) {
   return parts.forces_current && parts.forces_complete == !parts.awake &&
          !next_move_is_special(parts, dt);
 }
@@ -98,7 +98,7 @@ void take_steps(Parts& parts, double dt, int steps) {
     return;
   }
   constexpr int together = detail::steps_of_stretch;
-  if (steps >= together && detail::next_move_alone_is_known(parts, dt)) {
+  if (steps >= together && detail::goes_on_from_known_forces(parts, dt)) {
     detail::replay_steps(parts, parts.recorded_onward, dt, together, nullptr, 1, [&parts, dt] {
       detail::loop_over_move(parts, dt);
       for (int k = 1; k < together; ++k) detail::loop_over_step(parts, dt);
