@@ -30,27 +30,23 @@ template <class F>
 concept SelectsNodes = requires(F const& f, Index i) {
   { f.selects(i) } -> std::same_as<bool>;
 };
-/// Nodes that one thread looks at: several where most are passed over, so that few threads start for nothing.
-template <class F>
-inline constexpr int nodes_per_thread = SelectsNodes<F> ? 4 : 1;
-
-template <class F>
+/// Calls f for the nodes below n, of which each thread looks at several.
+template <int Each, class F>
 __global__ void __launch_bounds__(node_threads)
     call_for_each(Index n, __grid_constant__ F const f) {
   begin_after_previous_kernel();
-  constexpr int each = nodes_per_thread<F>;
-  Index const first = static_cast<Index>(blockIdx.x * (each * node_threads) + threadIdx.x);
-  if constexpr (each == 1) {
+  Index const first = static_cast<Index>(blockIdx.x * (Each * node_threads) + threadIdx.x);
+  if constexpr (Each == 1) {
     if (first < n) f(first);
   } else {
-    bool selected[each];
+    bool selected[Each];
 #pragma unroll
-    for (int k = 0; k < each; ++k) {
+    for (int k = 0; k < Each; ++k) {
       Index const i = first + k * node_threads;
       selected[k] = i < n && f.selects(i);
     }
 #pragma unroll
-    for (int k = 0; k < each; ++k)
+    for (int k = 0; k < Each; ++k)
       if (selected[k]) f(first + k * node_threads);
   }
 }
@@ -90,8 +86,10 @@ class Cuda {
   template <class F>
   void for_each(Index n, F const& f) const {
     if (n <= 0) return;
-    constexpr int in_block = detail::node_threads * detail::nodes_per_thread<F>;
-    launch("for_each", {blocks(n, in_block), detail::node_threads}, detail::call_for_each<F>, n, f);
+    // Where most of many nodes are passed over, fewer threads start for nothing; of few nodes, all have room.
+    if constexpr (detail::SelectsNodes<F>)
+      if (n >= detail::many_nodes) return launch_for_each<4>(n, f);
+    launch_for_each<1>(n, f);
   }
   template <class F>
   double sum(Index n, F const& f) const {
@@ -179,6 +177,11 @@ class Cuda {
   }
 
  private:
+  template <int Each, class F>
+  void launch_for_each(Index n, F const& f) const {
+    launch("for_each", {blocks(n, Each * detail::node_threads), detail::node_threads},
+           detail::call_for_each<Each, F>, n, f);
+  }
   template <int Nodes, class Field>
   using Values = Matrix<T, Nodes, Field::components>;
 
