@@ -61,6 +61,49 @@ PLIANT_HOST_DEVICE S least_eigenvalue(Tensor<S, Dim> const& q) {
     return minimum(values[0], minimum(values[1], values[2]));
   }
 }
+
+/// Whether a symmetric tensor has positive eigenvalues alone, by the pivots of Gauss' elimination; NaN has not.
+template <class T, int Dim>
+PLIANT_HOST_DEVICE bool is_positive_definite(Tensor<T, Dim> q) {
+  bool holds = true;
+  for (int k = 0; k < Dim; ++k) {
+    holds = holds && T(0) < q(k, k);
+    for (int i = k + 1; i < Dim; ++i)
+      for (int j = i; j < Dim; ++j) q(i, j) = q(i, j) - q(k, i) / q(k, k) * q(k, j);
+  }
+  return holds;
+}
+
+/// visit(Q) with the acoustic tensor Q_ik(N) = ∂P_iJ/∂F_kL N_J N_L of each direction N that is looked at.
+template <class L, class S, int Dim, class Visit>
+PLIANT_HOST_DEVICE void for_each_acoustic_tensor(L const& law, Tensor<S, Dim> const& h,
+                                                 Visit const& visit) {
+  using T = builtin_scalar<S>;
+  static constexpr auto directions = wave_directions<Dim>();
+  Vector<Tensor<S, Dim>, Dim> tangent[Dim];  // ∂P/∂F_kL
+  for (int k = 0; k < Dim; ++k) {
+    Vector<Tensor<S, Dim>, Dim> df;
+    for (int l = 0; l < Dim; ++l) {
+      df[l] = Tensor<S, Dim>::zero();
+      df[l](k, l) = S(1);
+    }
+    tangent[k] = stress_tangent_products(law, h, df);
+  }
+  for (auto const& direction : directions) {
+    T n[Dim];
+    for (int j = 0; j < Dim; ++j) n[j] = static_cast<T>(direction[static_cast<std::size_t>(j)]);
+    auto q = Tensor<S, Dim>::zero();
+    for (int j = 0; j < Dim; ++j)
+      for (int l = 0; l < Dim; ++l) {
+        T const both = n[j] * n[l];
+        for (int i = 0; i < Dim; ++i)
+          for (int k = i; k < Dim; ++k) q(i, k) = q(i, k) + tangent[k][l](i, j) * both;
+      }
+    for (int i = 0; i < Dim; ++i)
+      for (int k = 0; k < i; ++k) q(i, k) = q(k, i);
+    visit(q);
+  }
+}
 }  // namespace detail
 
 /// The least eigenvalue, Pa, of the acoustic tensor Q_ik(N) = ∂P_iJ/∂F_kL N_J N_L over directions N at rest; of those
@@ -68,27 +111,20 @@ PLIANT_HOST_DEVICE S least_eigenvalue(Tensor<S, Dim> const& q) {
 /// law has lost strong ellipticity: short waves grow instead of travelling. NaN where the law has no tangent.
 template <class L, class S, int Dim>
 PLIANT_HOST_DEVICE S least_acoustic_eigenvalue(L const& law, Tensor<S, Dim> const& h) {
-  using T = builtin_scalar<S>;
-  static constexpr auto directions = detail::wave_directions<Dim>();
-  Tensor<S, Dim> tangent[Dim][Dim];  // ∂P/∂F_kL: fewer products than three for each direction
-  for (int k = 0; k < Dim; ++k)
-    for (int l = 0; l < Dim; ++l) {
-      auto df = Tensor<S, Dim>::zero();
-      df(k, l) = S(1);
-      tangent[k][l] = stress_tangent_product(law, h, df);
-    }
-  S least(std::numeric_limits<T>::max());
-  for (auto const& direction : directions) {
-    T n[Dim];
-    for (int j = 0; j < Dim; ++j) n[j] = static_cast<T>(direction[static_cast<std::size_t>(j)]);
-    auto q = Tensor<S, Dim>::zero();
-    for (int k = 0; k < Dim; ++k)
-      for (int l = 0; l < Dim; ++l)
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) q(i, k) = q(i, k) + tangent[k][l](i, j) * (n[j] * n[l]);
+  S least(std::numeric_limits<builtin_scalar<S>>::max());
+  detail::for_each_acoustic_tensor(law, h, [&](Tensor<S, Dim> const& q) {
     least = minimum(least, detail::least_eigenvalue(q));
-  }
+  });
   return least;
+}
+
+/// Whether least_acoustic_eigenvalue is positive, without finding it.
+template <class L, class T, int Dim>
+PLIANT_HOST_DEVICE bool is_strongly_elliptic_at(L const& law, Tensor<T, Dim> const& h) {
+  bool holds = true;
+  detail::for_each_acoustic_tensor(
+      law, h, [&](Tensor<T, Dim> const& q) { holds = holds && detail::is_positive_definite(q); });
+  return holds;
 }
 
 /// Whether the law of a formulation is strongly elliptic at all points of an element, under their own deformations.
@@ -101,7 +137,7 @@ PLIANT_HOST_DEVICE bool is_strongly_elliptic(L const& law,
   } else {
     bool holds = true;
     for_each_point_of<F>(rest, u, [&](int q, S const&, Tensor<S, F::dim> const& h) {
-      holds = holds && S(0) < least_acoustic_eigenvalue(point_law(law, q), h);
+      holds = holds && is_strongly_elliptic_at(point_law(law, q), h);
     });
     return holds;
   }
