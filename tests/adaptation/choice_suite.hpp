@@ -20,6 +20,17 @@ static_assert(!SwitchingRule<ChoiceRule<Linear, Turning, Rubber>>);
 static_assert(Estimator<Discrepancy<Rubber>, Linear>);
 static_assert(Estimator<Discrepancy<Rubber>, Coarse>);
 
+/// What a choice finds of a group, in whatever group an element is.
+template <class F>
+struct In {
+  static constexpr Unit unit = Unit::joule;
+  static constexpr bool reads_young = true;
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    return detail::Discrepancies<Rubber, F>{}(e)[0];
+  }
+};
+
 template <class B>
 auto three_laws(B const& backend, Mesh<Quad4> const& mesh) {
   return Body{backend, mesh, soft, Group<Linear>{}, Group<Turning>{}, Group<Rubber>{}};
@@ -258,7 +269,7 @@ TEST_CASE("equal offers are taken by number, as many as the budget allows", "[ad
 
     auto const groups = body.template groups_of<Quad4>();
     CHECK(numbers_in(groups)[2] == 100);
-    auto const values = evaluate<Quad4>(body, detail::DiscrepancyOf<Linear, Rubber>{});
+    auto const values = evaluate<Quad4>(body, In<Linear>{});
     if (std::ranges::count(values, values[0]) == 256)
       for (std::size_t e = 0; e < 256; ++e) CHECK((groups[e] == 2) == (e < 100));
   });
@@ -272,8 +283,7 @@ TEST_CASE("a discrepancy is the same from whatever group it is looked at", "[ada
     body.set_displacements(uneven(mesh));
     auto const sum_within = [&]<class F>(List<F>) {
       put_all_into<F>(body);
-      return std::pair{estimate(body, detail::DiscrepancyOf<Linear, Rubber>{}),
-                       estimate(body, detail::DiscrepancyOf<Coarse, Rubber>{})};
+      return std::pair{estimate(body, In<Linear>{}), estimate(body, In<Coarse>{})};
     };
     auto const linear = sum_within(List<Linear>{}), coarse = sum_within(List<Coarse>{}),
                rubber = sum_within(List<Rubber>{});
@@ -489,7 +499,7 @@ TEST_CASE("where a discrepancy is NaN an element stays", "[adaptation]") {
     auto body = three_laws(backend, mesh);
     put_all_into<Rubber>(body);
     body.set_displacements(u);
-    auto const values = evaluate<Quad4>(body, detail::DiscrepancyOf<Linear, Rubber>{});
+    auto const values = evaluate<Quad4>(body, In<Linear>{});
     Adaptation{within<Linear, Rubber>({.error = 1e9})}.now(body);
     auto const groups = body.template groups_of<Quad4>();
     for (std::size_t e = 0; e < groups.size(); ++e)

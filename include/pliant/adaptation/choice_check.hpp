@@ -39,31 +39,25 @@ struct PresentCost {
 
 /// A move that a choice makes.
 template <class From, class To>
-struct GuardedMove : SwitchRule<From, To, DiscrepancyOf<To, To>> {
+struct GuardedMove : SwitchRule<From, To, Discrepancy<To>> {
   static constexpr bool guards_ellipticity = true;
 };
 
 /// Looks that find, in every group of a list, the discrepancy of each but the last, and the moves between them.
-template <class All, class... Fs>
-struct ChoiceLooks;
-template <class... All, class... Fs>
-struct ChoiceLooks<TypeList<All...>, Fs...> {
-  using To = std::tuple_element_t<sizeof...(Fs) - 1, std::tuple<All...>>;
-  template <class From, class... Of>
-  static auto looks_of() {
-    return std::tuple_cat([]<class G>(Look<From, DiscrepancyOf<G, To>> look) {
-      if constexpr (std::same_as<G, To>)
-        return std::tuple<>{};
-      else
-        return std::tuple{look};
-    }(Look<From, DiscrepancyOf<Of, To>>{})...);
-  }
+template <class... Fs>
+struct ChoiceLooks {
+  template <std::size_t K>
+  using formulation = std::tuple_element_t<K, std::tuple<Fs...>>;
   template <class From, class... Tos>
   static auto moves_of() {
     return std::tuple{GuardedMove<From, Tos>{}...};
   }
-  using Looks = decltype(std::tuple_cat(looks_of<Fs, All...>()...));
-  using Moves = decltype(std::tuple_cat(moves_of<Fs, All...>()...));
+  template <std::size_t... K>
+  static Discrepancies<formulation<sizeof...(K)>, formulation<K>...> cheaper(
+      std::index_sequence<K...>);
+  using Found = decltype(cheaper(std::make_index_sequence<sizeof...(Fs) - 1>()));
+  using Looks = std::tuple<Look<Fs, Found>...>;
+  using Moves = decltype(std::tuple_cat(moves_of<Fs, Fs...>()...));
 };
 
 /// What the kernels of a check are made of.
@@ -101,7 +95,7 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
   static constexpr int count = sizeof...(Fs);
   static_assert(((Table::template group_of<Fs> < Table::groups) && ...),
                 "a choice names a formulation of which the body has no Group");
-  using Of = ChoiceLooks<TypeList<Fs...>, Fs...>;
+  using Of = ChoiceLooks<Fs...>;
   using Looks = typename RulesOfChoice<Table, typename Of::Looks>::type;
   using Moves = typename RulesOfChoice<Table, typename Of::Moves>::type;
 

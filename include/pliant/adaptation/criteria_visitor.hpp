@@ -5,46 +5,13 @@
 #include <concepts>
 #include <tuple>
 
+#include <pliant/adaptation/criterion_rows.hpp>
 #include <pliant/adaptation/nodal_means.hpp>
 #include <pliant/adaptation/rule_context.hpp>
 #include <pliant/adaptation/young_at_rest.hpp>
 #include <pliant/backend/kernel.hpp>
 
 namespace pliant::detail {
-
-/// The row of the value of each rule's criterion. Rules on different groups share rows, as do rules on
-/// one group whose criteria are the same.
-template <class Table, class... Rules>
-struct CriterionRows {
-  static constexpr std::size_t count = sizeof...(Rules);
-
-  template <class A, class B>
-  static constexpr bool same_value = std::same_as<typename A::from, typename B::from> &&
-                                     std::same_as<decltype(A::criterion), decltype(B::criterion)> &&
-                                     stateless<decltype(A::criterion)>;
-  template <class A>
-  static constexpr std::array<bool, count> same_values{same_value<A, Rules>...};
-
-  std::array<int, count> row{};
-  std::array<bool, count> first{};  // of the rules with the same value
-
-  static constexpr CriterionRows make() {
-    CriterionRows r;
-    std::array<int, count> const group{Table::template group_of<typename Rules::from>...};
-    std::array<std::array<bool, count>, count> const same{same_values<Rules>...};
-    for (std::size_t i = 0; i < count; ++i) {
-      r.first[i] = true;
-      for (std::size_t j = 0; j < i; ++j)
-        if (r.first[i] && same[i][j]) {
-          r.first[i] = false;
-          r.row[i] = r.row[j];
-        }
-      if (r.first[i])
-        for (std::size_t j = 0; j < i; ++j) r.row[i] += group[j] == group[i] && r.first[j] ? 1 : 0;
-    }
-    return r;
-  }
-};
 
 /// Looks at the elements of a formulation, and does nothing.
 template <class F, class C>
@@ -69,8 +36,10 @@ struct TableRules {
   template <int R>
   static constexpr int row = layout.row[R];
   static constexpr int rows = [] {
+    constexpr std::array<int, count> values{values_of<decltype(Rules::criterion)>...};
     int most = 1;
-    for (int row : layout.row) most = std::max(most, row + 1);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      most = std::max(most, layout.row[i] + values[i]);
     return most;
   }();
 
@@ -132,8 +101,13 @@ struct TableRules {
       if constexpr (group<R> == G && layout.first[R]) {
         using Context = RuleContext<Places, R, G, typename Table::Laws, Around, Own, Found>;
         Context const context{groups, around, own, found};
-        values[row<R>] =
+        auto const found =
             value_of(std::get<R>(rules).criterion, StateInBody<F, L, S, Context>{state, context});
+        using C = decltype(rule<R>::criterion);
+        if constexpr (GivesSeveral<C>)
+          for (int k = 0; k < values_of<C>; ++k) values[row<R> + k] = found[k];
+        else
+          values[row<R>] = found;
       }
       evaluate_rules<G, R + 1>(state, groups, around, own, found, values);
     }

@@ -5,33 +5,6 @@
 
 namespace pliant {
 
-/// What an element's formulation gets wrong beside the Group<To>, J: LawDiscrepancy<To> at the points of its own rule,
-/// and, where To has another rule or scheme, QuadratureDiscrepancy beside that under its own law. Zero for To itself.
-/// Where law and rule differ, the two are added as if independent: the energy of a sum of errors is at most twice the
-/// sum of their energies. To is a formulation of the same element; neither has internal variables that the other has
-/// not.
-template <class To>
-struct Discrepancy {
-  static constexpr Unit unit = Unit::joule;
-  static constexpr bool reads_young = true;
-
-  template <class State>
-  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
-    using F = typename State::formulation;
-    using S = typename State::scalar;
-    static_assert(std::same_as<typename F::element, typename To::element>,
-                  "Discrepancy<To>: To is a formulation on the same element");
-    if constexpr (std::same_as<F, To>)
-      return S(0);
-    else if constexpr (std::same_as<typename F::quadrature, typename To::quadrature>)
-      return LawDiscrepancy<To>{}(e);
-    else
-      return LawDiscrepancy<To>{}(e) +
-             QuadratureDiscrepancy<
-                 Formulation<typename F::element, typename To::quadrature, F::template law>>{}(e);
-  }
-};
-
 namespace detail {
 /// What a criterion would see if the element were in the group of another formulation.
 template <class G, class Context>
@@ -54,26 +27,83 @@ struct ContextInGroup {
   }
 };
 
-/// Discrepancy<To> as it would be in the group of G, whatever group the element is in.
-template <class G, class To>
-struct DiscrepancyOf {
-  static constexpr Unit unit = Unit::joule;
+/// Discrepancy<To> as it would be in each of the groups Fs, in whatever group the element is.
+template <class To, class... Fs>
+struct Discrepancies {
+  static constexpr int values = int{sizeof...(Fs)};
   static constexpr bool reads_young = true;
 
   template <class State>
   PLIANT_HOST_DEVICE auto operator()(State const& e) const {
     using S = typename State::scalar;
-    if constexpr (std::same_as<typename State::formulation, G>) {
-      return Discrepancy<To>{}(e);
+    using T = builtin_scalar<S>;
+    static_assert((std::same_as<typename Fs::element, typename To::element> && ...),
+                  "Discrepancy<To>: To is a formulation on the same element");
+    auto found = of_laws(e, law_in<To>(e), law_in<Fs>(e)...);
+    int k = 0;
+    auto const complete = [&]<class F>(std::type_identity<F>) PLIANT_INLINE {
+      found[k] = T(0.5) * found[k] / S(e.context.template young_of<F>()) + of_quadrature<F>(e);
+      ++k;
+    };
+    (complete(std::type_identity<Fs>{}), ...);
+    return found;
+  }
+
+ private:
+  using First = std::tuple_element_t<0, std::tuple<Fs...>>;
+  static constexpr bool share_points =
+      (std::same_as<typename Fs::quadrature, typename First::quadrature> && ...);
+
+  template <class F, class State>
+  PLIANT_HOST_DEVICE static decltype(auto) law_in(State const& e) {
+    if constexpr (std::same_as<F, typename State::formulation>)
+      return (e.law);
+    else
+      return e.template law_of<F>();
+  }
+  template <class State, class Law, class... Laws>
+  PLIANT_HOST_DEVICE static auto of_laws(State const& e, Law const& to, Laws const&... laws) {
+    if constexpr (share_points)
+      return squared_differences<First>(e, to, laws...);
+    else
+      return Vector<typename State::scalar, values>{{{squared_differences<Fs>(e, to, laws)[0]}...}};
+  }
+  template <class F, class State>
+  PLIANT_HOST_DEVICE static auto of_quadrature(State const& e) {
+    using S = typename State::scalar;
+    if constexpr (std::same_as<typename F::quadrature, typename To::quadrature>) {
+      return S(0);
     } else {
-      auto const& law = e.template law_of<G>();
-      using Context = ContextInGroup<G, std::remove_cvref_t<decltype(e.context)>>;
+      auto const& law = law_in<F>(e);
+      using Context = ContextInGroup<F, std::remove_cvref_t<decltype(e.context)>>;
       Context const context{e.context};
-      return Discrepancy<To>{}(StateInBody<G, std::remove_cvref_t<decltype(law)>, S, Context>{
-          state_of<G>(law, e.rest, e.u), context});
+      return QuadratureDiscrepancy<
+          Formulation<typename F::element, typename To::quadrature, F::template law>>{}(
+          StateInBody<F, std::remove_cvref_t<decltype(law)>, S, Context>{
+              state_of<F>(law, e.rest, e.u), context});
     }
   }
 };
 }  // namespace detail
+
+/// What an element's formulation gets wrong beside the Group<To>, J: LawDiscrepancy<To> at the points of its own rule,
+/// and, where To has another rule or scheme, QuadratureDiscrepancy beside that under its own law. Zero for To itself.
+/// Where law and rule differ, the two are added as if independent: the energy of a sum of errors is at most twice the
+/// sum of their energies. To is a formulation of the same element; neither has internal variables that the other has
+/// not.
+template <class To>
+struct Discrepancy {
+  static constexpr Unit unit = Unit::joule;
+  static constexpr bool reads_young = true;
+
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    using F = typename State::formulation;
+    if constexpr (std::same_as<F, To>)
+      return typename State::scalar(0);
+    else
+      return detail::Discrepancies<To, F>{}(e)[0];
+  }
+};
 
 }  // namespace pliant

@@ -5,6 +5,27 @@
 
 namespace pliant {
 
+namespace detail {
+/// ∫ |P_to − P|² dV over an element, by the rule of F, beside each of some laws; stresses under `to` are found once.
+template <class F, class State, class To, class... Laws>
+PLIANT_HOST_DEVICE auto squared_differences(State const& e, To const& to, Laws const&... laws) {
+  using S = typename State::scalar;
+  auto sums = Vector<S, int{sizeof...(Laws)}>::zero();
+  for_each_point_of<F>(e.rest, e.u,
+                       [&](int q, S const& volume, Tensor<S, F::dim> const& h) PLIANT_INLINE {
+                         auto const there = stress(point_law(to, q), h);
+                         int k = 0;
+                         auto const add = [&](auto const& law) PLIANT_INLINE {
+                           auto const off = there - stress(point_law(law, q), h);
+                           sums[k] = sums[k] + volume * dot(off, off);
+                           ++k;
+                         };
+                         (add(laws), ...);
+                       });
+  return sums;
+}
+}  // namespace detail
+
 /// What an element's law gets wrong beside that of the Group<To>, J: ∫ |P_to − P|²/(2E) dV over the element, of
 /// the first Piola-Kirchhoff stresses at its present deformation, with Young's modulus E of its own law at rest. Both
 /// ways round it is a rule for switching: a cheaper law is good enough where `LawDiscrepancy<Cheaper>` is small.
@@ -24,14 +45,8 @@ struct LawDiscrepancy {
         keeps_internal_variables<F, To>,
         "LawDiscrepancy<To>: To has the internal variables of the element's own law, at the same "
         "points, or none");
-    decltype(auto) other = e.template law_of<To>();
-    S sum(0);
-    for_each_point_of<F>(
-        e.rest, e.u, [&](int q, S const& volume, Tensor<S, F::dim> const& h) PLIANT_INLINE {
-          auto const off = stress(point_law(other, q), h) - stress(point_law(e.law, q), h);
-          sum = sum + volume * dot(off, off);
-        });
-    return T(0.5) * sum / e.young();
+    auto const squared = detail::squared_differences<F>(e, e.template law_of<To>(), e.law)[0];
+    return T(0.5) * squared / e.young();
   }
 };
 
