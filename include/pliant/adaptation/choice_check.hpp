@@ -37,9 +37,18 @@ struct PresentCost {
   }
 };
 
+/// The criterion of moves that are decided upon elsewhere.
+struct Decided {
+  static constexpr Unit unit = Unit::one;
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const&) const {
+    return typename State::scalar(0);
+  }
+};
+
 /// A move that a choice makes.
 template <class From, class To>
-struct GuardedMove : SwitchRule<From, To, Discrepancy<To>> {
+struct GuardedMove : SwitchRule<From, To, Decided> {
   static constexpr bool guards_ellipticity = true;
 };
 
