@@ -80,14 +80,17 @@ PLIANT_HOST_DEVICE void for_each_acoustic_tensor(L const& law, Tensor<S, Dim> co
                                                  Visit const& visit) {
   using T = builtin_scalar<S>;
   static constexpr auto directions = wave_directions<Dim>();
-  Vector<Tensor<S, Dim>, Dim> tangent[Dim];  // ∂P/∂F_kL
+  // By dual numbers of several components: what does not depend on the direction, such as principal stretches, is found
+  // once for them.
+  Tensor<Dual<S, Dim>, Dim> along[Dim];  // P, derivative[L] of the k-th is ∂P/∂F_kL
   for (int k = 0; k < Dim; ++k) {
-    Vector<Tensor<S, Dim>, Dim> df;
-    for (int l = 0; l < Dim; ++l) {
-      df[l] = Tensor<S, Dim>::zero();
-      df[l](k, l) = S(1);
-    }
-    tangent[k] = stress_tangent_products(law, h, df);
+    Tensor<Dual<S, Dim>, Dim> variables;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        variables(i, j).value = h(i, j);
+        variables(i, j).derivative[j] = S(i == k ? 1 : 0);
+      }
+    along[k] = stress(law, variables);
   }
   for (auto const& direction : directions) {
     T n[Dim];
@@ -97,7 +100,7 @@ PLIANT_HOST_DEVICE void for_each_acoustic_tensor(L const& law, Tensor<S, Dim> co
       for (int l = 0; l < Dim; ++l) {
         T const both = n[j] * n[l];
         for (int i = 0; i < Dim; ++i)
-          for (int k = i; k < Dim; ++k) q(i, k) = q(i, k) + tangent[k][l](i, j) * both;
+          for (int k = i; k < Dim; ++k) q(i, k) = q(i, k) + along[k](i, j).derivative[l] * both;
       }
     for (int i = 0; i < Dim; ++i)
       for (int k = 0; k < i; ++k) q(i, k) = q(k, i);

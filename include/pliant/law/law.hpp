@@ -229,30 +229,21 @@ PLIANT_HOST_DEVICE Tensor<S, Dim> stress(L const& law, Tensor<S, Dim> const& h) 
     return detail::stress_by_gradient(law, h);
 }
 
-/// The changes of stress dP_n = ∂P/∂F : dH_n along N directions, by dual numbers of N components through the stress:
-/// what does not depend on the direction, such as principal stretches, is found once.
-template <PointLaw L, class S, int Dim, int N>
-PLIANT_HOST_DEVICE Vector<Tensor<S, Dim>, N> stress_tangent_products(
-    L const& law, Tensor<S, Dim> const& h, Vector<Tensor<S, Dim>, N> const& dh) {
-  Tensor<Dual<S, N>, Dim> variables;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      variables(i, j).value = h(i, j);
-      for (int n = 0; n < N; ++n) variables(i, j).derivative[n] = dh[n](i, j);
-    }
-  Tensor<Dual<S, N>, Dim> const p = stress(law, variables);
-  Vector<Tensor<S, Dim>, N> dp;
-  for (int n = 0; n < N; ++n)
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) dp[n](i, j) = p(i, j).derivative[n];
-  return dp;
-}
-
-/// The change of stress dP = ∂P/∂F : dH.
+/// The change of stress dP = ∂P/∂F : dH, by a one-component dual through the stress.
 template <PointLaw L, class S, int Dim>
 PLIANT_HOST_DEVICE Tensor<S, Dim> stress_tangent_product(L const& law, Tensor<S, Dim> const& h,
                                                          Tensor<S, Dim> const& dh) {
-  return stress_tangent_products(law, h, Vector<Tensor<S, Dim>, 1>{{{dh}}})[0];
+  Tensor<Dual<S, 1>, Dim> variables;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      variables(i, j).value = h(i, j);
+      variables(i, j).derivative[0] = dh(i, j);
+    }
+  Tensor<Dual<S, 1>, Dim> const p = stress(law, variables);
+  Tensor<S, Dim> dp;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) dp(i, j) = p(i, j).derivative[0];
+  return dp;
 }
 
 }  // namespace pliant
