@@ -28,6 +28,7 @@ struct SolverArrays {
   Array<T> place, speed, acceleration;        // where balance is asked for: m, m/s, m/s²
   Array<T> force, inert, residual;            // N; the first two with scratch rows
   Array<T> solution, direction, conditioned;  // of Krylov methods
+  Array<T> right_side;                        // of the system that they solve
   Array<T> image;                             // of the direction, with scratch rows
   Array<T> blocks;                            // (dim, nodes, 4): inverse blocks of nodes
   Array<double> scalars;                      // of Krylov methods
@@ -46,7 +47,7 @@ struct SolverArrays {
 
   SolverArrays(B const& backend, std::size_t rows, std::size_t rows_and_scratch, int dim) {
     for (auto* array : {&increment, &trial, &place, &speed, &acceleration, &residual, &solution,
-                        &direction, &conditioned})
+                        &direction, &conditioned, &right_side})
       *array = zeros<T>(backend, rows);
     for (auto* array : {&force, &inert, &image}) *array = zeros<T>(backend, rows_and_scratch);
     blocks = zeros<T>(backend, static_cast<std::size_t>(dim) * rows);

@@ -26,7 +26,8 @@ class KrylovFields {
         r(node_field<dim>(arrays.residual)),
         p(node_field<dim>(arrays.direction)),
         z(node_field<dim>(arrays.conditioned)),
-        q(node_field<dim>(arrays.image)) {}
+        q(node_field<dim>(arrays.image)),
+        b(node_field<dim>(arrays.right_side)) {}
 
  private:
   Parts* parts_;
@@ -36,7 +37,7 @@ class KrylovFields {
   ShiftedTangent<Parts> a;
   Index n;
   Scalars s;
-  Field x, r, p, z, q;  // q = A p has scratch rows
+  Field x, r, p, z, q, b;  // q = A p has scratch rows
 
   typename Parts::backend_type const& backend() const { return parts_->backend; }
   Arrays& arrays() const { return *arrays_; }
@@ -44,6 +45,16 @@ class KrylovFields {
 
   void dot_into(Scalars::Name name, Field one, Field other) const {
     backend().add_sum(n, DotAt<T, dim>{fixed(one), fixed(other)}, &s[name]);
+  }
+  /// b, which stands in r while x is zero.
+  void keep_right_hand_side() const { set_sum(backend(), n, b, Scaled<T, dim>{1, fixed(r)}); }
+  /// r = b − A x and its square; the direction is lost.
+  void find_residual() const {
+    set_sum(backend(), n, p, Scaled<T, dim>{1, fixed(x)});
+    multiply();
+    set_sum(backend(), n, r, Scaled<T, dim>{1, fixed(b)}, Scaled<T, dim>{-1, fixed(q)});
+    backend().for_each(1, ClearSquare{s});
+    dot_into(Scalars::rr, r, r);
   }
   /// q = A p.
   void multiply() const { a.apply(*parts_, p, q); }

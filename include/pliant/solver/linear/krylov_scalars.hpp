@@ -24,6 +24,11 @@ struct Scalars {
   PLIANT_HOST_DEVICE double& operator[](Name name) const { return values[name]; }
 };
 
+/// Before r·r.
+struct ClearSquare {
+  Scalars s;
+  PLIANT_HOST_DEVICE void operator()(Index) const { s[Scalars::rr] = 0; }
+};
 /// Behind r·r.
 struct EndIteration {
   Scalars s;

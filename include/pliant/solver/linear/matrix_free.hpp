@@ -32,6 +32,7 @@ class MatrixFreeSystem {
         values_(arrays.scalars.size(), 0.0) {
     parts.backend.for_each(fields_.n, Clear<T>{fields_.x.data});
     arrays.scalars.upload(values_);
+    fields_.keep_right_hand_side();
     fields_.dot_into(Scalars::rr, fields_.r, fields_.r);
     values_ = download<double>(arrays.scalars);
     size_ = values_[Scalars::rr];
@@ -44,35 +45,14 @@ class MatrixFreeSystem {
   /// Whether x stayed 0.
   bool ended_at_once() const { return values_[Scalars::iterations] == 0; }
 
-  /// From the x so far, until |b − A x| ≤ tolerance |b|. On a GPU iterations are recorded and replayed by the stretch; what
-  /// is behind the last one of a stretch does nothing. Another preconditioner goes on from the x of the one before.
+  /// Until |b − A x| ≤ tolerance |b|, computed from x: a recursion does not know how x was rounded. It begins again with what
+  /// is left, as long as that halves it.
   template <template <class> class Iteration>
   void iterate() {
-    auto& a = fields_.a;
-    begin<Iteration>();
-    for (;;) {
-      arrays_.recorded->recording.replay(1);
-      values_ = download<double>(arrays_.scalars);
-      if (values_[Scalars::stopped] == 0) {
-        if (!by_.should_turn_to_multigrid(parts_, static_cast<int>(values_[Scalars::iterations]),
-                                          share(), tolerance_))
-          continue;
-        by_.turn_to_multigrid(parts_, arrays_, a);
-      } else if (values_[Scalars::unfit] == 0 || !by_.replace(parts_, arrays_, a)) {
-        return;
-      }
-      begin<Iteration>();
-    }
-  }
-  /// By MINRES, whose recursion does not know how x was rounded: goes on from x while b − A x itself is above the tolerance,
-  /// as long as that halves it.
-  void iterate_minres() {
-    MinresIteration<Parts> const keeper(fields_, nullptr);
-    keeper.keep_right_hand_side();
     for (double before = std::numeric_limits<double>::infinity();;) {
-      iterate<MinresIteration>();
+      run<Iteration>();
       bool const claims = values_[Scalars::rr] <= values_[Scalars::enough];
-      keeper.find_residual();
+      fields_.find_residual();
       values_ = download<double>(arrays_.scalars);
       double const left = values_[Scalars::rr];
       if (!claims || left <= values_[Scalars::enough] || !(left < before / 4) ||
@@ -90,6 +70,26 @@ class MatrixFreeSystem {
   }
 
  private:
+  /// From the x so far, until the recursion claims that |b − A x| ≤ tolerance |b|. On a GPU iterations are recorded and replayed by the stretch; what
+  /// is behind the last one of a stretch does nothing. Another preconditioner goes on from the x of the one before.
+  template <template <class> class Iteration>
+  void run() {
+    auto& a = fields_.a;
+    begin<Iteration>();
+    for (;;) {
+      arrays_.recorded->recording.replay(1);
+      values_ = download<double>(arrays_.scalars);
+      if (values_[Scalars::stopped] == 0) {
+        if (!by_.should_turn_to_multigrid(parts_, static_cast<int>(values_[Scalars::iterations]),
+                                          share(), tolerance_))
+          continue;
+        by_.turn_to_multigrid(parts_, arrays_, a);
+      } else if (values_[Scalars::unfit] == 0 || !by_.replace(parts_, arrays_, a)) {
+        return;
+      }
+      begin<Iteration>();
+    }
+  }
   template <template <class> class Iteration>
   void begin() {
     Multigrid<Parts> const* const condition = by_.in(arrays_);
@@ -134,7 +134,7 @@ class MatrixFreeSystem {
 
 /// Solves A x = b for x in arrays.solution, from 0, until |b − A x| ≤ tolerance |b|, with sums in double precision, by
 /// conjugate gradients or MINRES, preconditioned. b stands in arrays.residual, zero at what is no unknown, and is lost.
-/// MINRES has converged where b − A x, computed anew, is that small. Automatic: MINRES solves it where the first direction of
+/// It has converged where b − A x, computed from x, is that small. Automatic: MINRES solves it where the first direction of
 /// conjugate gradients has no positive curvature.
 template <class Parts>
 KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backend_type>& arrays,
@@ -147,7 +147,7 @@ KrylovReport solve_matrix_free(Parts& parts, SolverArrays<typename Parts::backen
   bool const has_no_way = method == KrylovMethod::automatic && system.ended_at_once();
   if (method == KrylovMethod::minres || has_no_way) {
     by.note_minres();
-    system.iterate_minres();
+    system.template iterate<MinresIteration>();
   }
   auto const report = system.report();
   by.end(report.iterations, system.share());

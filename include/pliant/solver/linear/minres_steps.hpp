@@ -73,21 +73,15 @@ struct GoAlongMinres {
   }
 };
 
-/// Before r·r.
-struct ClearSquare {
-  Scalars s;
-  PLIANT_HOST_DEVICE void operator()(Index) const { s[Scalars::rr] = 0; }
-};
-
 /// What MINRES keeps on a backend besides SolverArrays.
 template <Backend B>
 struct MinresArrays final : KeptBySolver {
   using T = typename B::scalar;
-  typename B::template Array<T> v, v_before, w, w_before, b;  // fields of padded rows, (nodes, 4)
+  typename B::template Array<T> v, v_before, w, w_before;  // fields of padded rows, (nodes, 4)
   typename B::template Array<MinresNumbers> numbers;
 
   MinresArrays(B const& backend, std::size_t rows) : numbers(zeros<MinresNumbers>(backend, 1)) {
-    for (auto* array : {&v, &v_before, &w, &w_before, &b}) *array = zeros<T>(backend, rows);
+    for (auto* array : {&v, &v_before, &w, &w_before}) *array = zeros<T>(backend, rows);
   }
 };
 
@@ -120,20 +114,6 @@ class MinresIteration {
     auto const first = MinresNumbers::first(vz, double{std::numeric_limits<T>::epsilon()});
     kept_->numbers.upload(std::vector{first});
     backend.for_each(f_.n, ScaleDirection<T, dim>{numbers(), f_.p, Fields::fixed(f_.z)});
-  }
-  /// b, which stands in r while x is zero.
-  void keep_right_hand_side() const {
-    set_sum(f_.backend(), f_.n, field(kept_->b), Scaled<T, dim>{1, Fields::fixed(f_.r)});
-  }
-  /// r = b − A x and its square; the direction is lost.
-  void find_residual() const {
-    auto const& backend = f_.backend();
-    set_sum(backend, f_.n, f_.p, Scaled<T, dim>{1, Fields::fixed(f_.x)});
-    f_.multiply();
-    set_sum(backend, f_.n, f_.r, Scaled<T, dim>{1, Fields::fixed(field(kept_->b))},
-            Scaled<T, dim>{-1, Fields::fixed(f_.q)});
-    backend.for_each(1, ClearSquare{f_.s});
-    f_.dot_into(Scalars::rr, f_.r, f_.r);
   }
   void operator()() const {
     auto const& backend = f_.backend();
