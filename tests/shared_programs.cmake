@@ -49,7 +49,7 @@ share(shared/statics
 share(shared/implicit
       solver/implicit solver/implicit_errors solver/implicit_state solver/schemes solver/without_matrix)
 share(shared/preconditioners
-      solver/multigrid solver/preconditioners)
+      solver/multigrid solver/p_multigrid solver/preconditioners)
 share(shared/laws
       law/closed_forms law/derivatives law/fibres law/invariance law/inversion law/limits
       law/plane_stress law/plane_stress_tangents law/plane_stress_values law/precision

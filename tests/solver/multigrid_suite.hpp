@@ -3,6 +3,7 @@
 #include <pliant/solver/implicit/balance.hpp>
 
 #include "adaptation/plane_bodies.hpp"
+#include "solver/anchor.hpp"
 #include "support/repeatable.hpp"
 
 // Multigrid around a body without a matrix, by itself.
@@ -24,9 +25,10 @@ struct Machine {
   detail::Balance<Parts> balance{parts, MassMatrix::lumped, 0};
   detail::ShiftedTangent<Parts> a{0, MassMatrix::lumped,      1, std::as_const(parts).u(),
                                   0, std::as_const(parts).u()};
-  detail::Multigrid<Parts> multigrid{parts, Preconditioner::multigrid};
+  detail::Multigrid<Parts> multigrid;
 
-  explicit Machine(TheBody& of) : body(of) {}
+  explicit Machine(TheBody& of, Preconditioner kind = Preconditioner::multigrid)
+      : body(of), multigrid(parts, kind) {}
   void prepare() { multigrid.prepare(parts, balance.arrays(), a); }
   auto upload(Field const& values) const {
     return pliant::upload(parts.backend, parts.layout.padded(values));
@@ -197,28 +199,107 @@ TEST_CASE("interpolation carries any linear field over", "[solver]") {
   });
 }
 
+/// It is, and nearly the inverse of the matrix.
+template <class M>
+void check_symmetry(M& machine) {
+  for (double inertia : {0.0, 50.0}) {
+    machine.a.inertia = inertia;
+    machine.prepare();
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      auto const r = machine.random(seed), s = machine.random(seed + 10);
+      auto const mr = machine.conditioned(r), ms = machine.conditioned(s);
+      double const size = std::sqrt(inner_product(r, mr) * inner_product(s, ms));
+      CHECK(inner_product(r, mr) > 0);
+      CHECK(inner_product(s, mr) ==
+            Approx(inner_product(r, ms)).margin(digits<typename M::T> * size));
+      double const share =
+          inner_product(r, machine.conditioned(machine.times_matrix(mr))) / inner_product(r, mr);
+      CHECK(share > 0.3);
+      CHECK(share < 1.2);
+    }
+  }
+}
+
 TEST_CASE("multigrid is symmetric and positive definite", "[solver]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     on_bodies(backend, Are::held, [&]<class TheBody>(TheBody& body) {
       Machine<TheBody> machine(body);
-      for (double inertia : {0.0, 50.0}) {
-        machine.a.inertia = inertia;
-        machine.prepare();
-        for (unsigned seed = 1; seed <= 3; ++seed) {
-          auto const r = machine.random(seed), s = machine.random(seed + 10);
-          auto const mr = machine.conditioned(r), ms = machine.conditioned(s);
-          double const size = std::sqrt(inner_product(r, mr) * inner_product(s, ms));
-          CHECK(inner_product(r, mr) > 0);
-          CHECK(inner_product(s, mr) ==
-                Approx(inner_product(r, ms)).margin(digits<typename B::scalar> * size));
-          // It is nearly the inverse.
-          double const share = inner_product(r, machine.conditioned(machine.times_matrix(mr))) /
-                               inner_product(r, mr);
-          CHECK(share > 0.3);
-          CHECK(share < 1.2);
-        }
+      check_symmetry(machine);
+    });
+  });
+}
+
+/// Calls visit(body) for bodies of quadratic elements that are held here and there, with springs and past.
+template <class B, class Visit>
+void on_quadratic_bodies(B const& backend, Visit const& visit) {
+  auto const hold = [](auto& body, double size) {
+    constexpr int dim = std::remove_cvref_t<decltype(body)>::dim;
+    body.clamp(body.mesh().boundary("left"));
+    body.hold(body.mesh().boundary("bottom"), 1 << (dim - 1));
+    body.hold(std::vector<Index>{body.mesh().boundary("top")[0][0]}, 1);
+    body.set_displacements(
+        Random(1).template field<dim>(static_cast<std::size_t>(body.nodes()), size));
+  };
+  auto plane = body_of<Formulation<Quad8, Gauss<3>, NeoHookean>>(backend, distorted_mesh<Quad8>(9));
+  hold(plane, 1e-4);
+  std::vector<std::array<Index, 1>> nodes;
+  for (Index i = 0; i < plane.nodes(); i += 3) nodes.push_back({i});
+  plane.add(nodes, Anchor<double>{300});
+  visit(plane);
+  auto solid = body_of<Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>>(
+      backend, distorted_mesh<Tet10>(4));
+  hold(solid, 1e-4);
+  visit(solid);
+}
+
+TEST_CASE("p-multigrid is symmetric and positive definite", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    on_quadratic_bodies(backend, [&]<class TheBody>(TheBody& body) {
+      Machine<TheBody> machine(body, Preconditioner::p_multigrid);
+      check_symmetry(machine);
+    });
+  });
+}
+
+TEST_CASE("the matrix of linear elements on the same cells is Galerkin's", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    on_quadratic_bodies(backend, [&]<class TheBody>(TheBody& body) {
+      using T = typename B::scalar;
+      constexpr int dim = TheBody::dim;
+      Machine<TheBody> machine(body, Preconditioner::p_multigrid);
+      machine.a.inertia = 50;
+      // A force term couples no nodes here, and masses count as lumped.
+      machine.prepare();
+      auto& parts = body.parts();
+      auto const& corners = machine.multigrid.corner_level();
+      auto const count = static_cast<std::size_t>(corners.count());
+      CHECK(count < static_cast<std::size_t>(body.nodes()) / 2);
+      for (unsigned seed = 1; seed <= 3; ++seed) {
+        auto x = pliant::upload(backend, machine.random_rows(node_stride * count, seed));
+        auto fine = zeros<T>(backend, parts.layout.rest.size());
+        auto expected = zeros<T>(backend, x.size()), found = zeros<T>(backend, x.size());
+        auto& image = machine.balance.arrays().image;
+        corners.interpolate(parts, {x.data()}, node_field<dim>(fine));
+        machine.a.apply(parts, node_field<dim>(fine), node_field<dim>(image));
+        corners.restrict(parts, node_field<dim>(image), node_field<dim>(expected));
+        backend.for_each(corners.count(), detail::SlicedProduct<T, dim>{
+                                              corners.matrix(), {found.data()}, {x.data()}});
+        auto const one = download<T>(expected), other = download<T>(found);
+        CHECK(difference_of(one, other) < digits<T> * std::sqrt(dot(one, one)));
       }
     });
+  });
+}
+
+TEST_CASE("linear fields of corners are linear at all nodes of their cells", "[solver]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    auto body = body_of<Formulation<Hex27, Gauss<3>, Hooke>>(backend, distorted_mesh<Hex27>(3));
+    Machine<decltype(body)> const machine(body, Preconditioner::p_multigrid);
+    auto const& corners = machine.multigrid.corner_level();
+    auto found = zeros<T>(backend, body.parts().layout.rest.size());
+    corners.interpolate(body.parts(), {corners.rest().data()}, node_field<3>(found));
+    CHECK(difference_of(download<T>(found), download<T>(body.parts().layout.rest)) < digits<T>);
   });
 }
 

@@ -5,6 +5,7 @@
 #include <pliant/solver/newton.hpp>
 
 #include "adaptation/plane_bodies.hpp"
+#include "solver/anchor.hpp"
 #include "support/repeatable.hpp"
 
 // What conjugate gradients find does not depend on what preconditions them; how soon they find it does.
@@ -14,17 +15,6 @@ inline constexpr Elastic material{2e5, 0.3, 1000};
 using Bricks = Formulation<Hex8, Gauss<2>, SaintVenantKirchhoff>;
 using Curved = Formulation<Tet10, Gauss<2>, SaintVenantKirchhoff>;
 using Viscous = Formulation<Quad4, Gauss<2>, Prony<NeoHookean, 1>::law>;
-
-/// A spring from where a node is at rest.
-template <class T>
-struct Anchor {
-  static constexpr int nodes = 1, dim = 2;
-  T stiffness;  // N/m
-  template <class S>
-  PLIANT_HOST_DEVICE S energy(Matrix<S, 1, 2> const&, Matrix<S, 1, 2> const& u) const {
-    return stiffness / 2 * (square(u(0, 0)) + square(u(0, 1)));
-  }
-};
 
 template <class TheBody>
 NewtonReport rest(TheBody& body, Preconditioner preconditioner, double tolerance = 1e-9) {

@@ -64,6 +64,17 @@ struct ElementOn {
   }
 };
 
+/// The linear function of corner b of the cell at node a.
+template <Element E>
+PLIANT_HOST_DEVICE constexpr Matrix<double, E::nodes, E::cell::corners> linear_at_nodes() {
+  Matrix<double, E::nodes, E::cell::corners> values{};
+  for (int a = 0; a < E::nodes; ++a) {
+    auto const shape = E::cell::linear(E::place(a));
+    for (int b = 0; b < E::cell::corners; ++b) values(a, b) = shape[b];
+  }
+  return values;
+}
+
 /// ∂N_a/∂ξ_k, by automatic differentiation of the shape functions.
 template <Element E>
 PLIANT_HOST_DEVICE constexpr Matrix<double, E::nodes, E::dim> shape_gradient(

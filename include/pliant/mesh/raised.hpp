@@ -46,14 +46,14 @@ struct AddedNodes {
   static std::array<Node, count> const& all() {
     static auto const nodes = [] {
       std::array<Node, count> all;
-      for (std::size_t a = 0; a < count; ++a) {
-        auto const shape = E::cell::linear(E::place(static_cast<int>(corners + a)));
+      auto const values = linear_at_nodes<E>();
+      for (std::size_t a = 0; a < count; ++a)
         for (std::size_t b = 0; b < corners; ++b) {
-          if (!(shape[static_cast<int>(b)] > 1e-9)) continue;
+          double const share = values(static_cast<int>(corners + a), static_cast<int>(b));
+          if (!(share > 1e-9)) continue;
           all[a].corner[all[a].size] = b;
-          all[a].share[all[a].size++] = shape[static_cast<int>(b)];
+          all[a].share[all[a].size++] = share;
         }
-      }
       return all;
     }();
     return nodes;

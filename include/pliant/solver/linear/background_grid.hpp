@@ -151,10 +151,13 @@ struct BackgroundGrid {
   std::vector<Index> box_at_, node_at_;
 };
 
-/// Lays the finest grid around a mesh, without numbers: boxes of two elements' size, one of quadratic ones, but none
-/// smaller than an element, which is to lie in one of them or nearly.
+/// Whose errors a grid makes small: those of all nodes of a body, or of the corners of its cells.
+enum class GridFor { nodes, corners };
+
+/// Lays the finest grid around a mesh, without numbers: boxes of two elements' size, one of those that have more nodes than
+/// corners if these count, but none smaller than an element, which is to lie in one of them or nearly.
 template <Element... Es>
-BackgroundGrid<Mesh<Es...>::dim> grid_around(Mesh<Es...> const& mesh) {
+BackgroundGrid<Mesh<Es...>::dim> grid_around(Mesh<Es...> const& mesh, GridFor finer) {
   constexpr std::size_t dim = Mesh<Es...>::dim;
   BackgroundGrid<Mesh<Es...>::dim> grid;
   Point<dim> high, sum{}, largest{};
@@ -162,7 +165,7 @@ BackgroundGrid<Mesh<Es...>::dim> grid_around(Mesh<Es...> const& mesh) {
   high.fill(-INFINITY);
   double count = 0;
   auto const look_at = [&]<Element E>(std::vector<Connectivity<E>> const& elements) {
-    constexpr double wanted = E::nodes > E::cell::corners ? 1 : 2;
+    double const wanted = finer == GridFor::nodes && E::nodes > E::cell::corners ? 1 : 2;
     for (auto const& element : elements)
       for (std::size_t k = 0; k < dim; ++k) {
         double least = INFINITY, most = -INFINITY;

@@ -7,53 +7,85 @@
 // of the elements are, whatever the mesh; where elements lie within boxes it is Galerkin's.
 namespace pliant::detail {
 
-/// Column (corner, direction) of an element's matrix over the corners of its box.
-template <class T, int Dim, class Laws>
+/// The functions of the corners of an element's box.
+template <class T, int Dim>
+struct BoxFunctions {
+  static constexpr int count = power(2, Dim);
+  ElementField<T const, Dim> low;  // lowest corners of the boxes, m
+  T per_spacing[Dim];              // 1/m
+
+  /// Calls visit(value), where value(a, b) is that of function b at node a.
+  template <class F, class Own, class V, class Visit>
+  PLIANT_HOST_DEVICE void with_values(Own const& own, V const& rest, Visit const& visit) const {
+    using S = std::remove_cvref_t<decltype(rest(0, 0))>;
+    auto const origin = own(low);
+    visit([&](int a, int b) PLIANT_INLINE {
+      Vector<S, Dim> xi;
+      for (int k = 0; k < Dim; ++k)
+        xi[k] = local_coordinate<S>(rest(a, k), origin[k], per_spacing[k]);
+      return corner_function<Dim>(xi, b);
+    });
+  }
+  /// What a function's share of direction k is multiplied by, besides what `mask` is at nodes.
+  template <class V>
+  PLIANT_HOST_DEVICE static T own_mask(V const&, int, int) {
+    return T(1);
+  }
+};
+
+/// Column (function, direction) of an element's matrix for coarser functions.
+template <class T, class Laws, class Functions>
 struct ElementColumn {
   static constexpr bool reads_elements = true;
-  static constexpr int counters = 0, corners = power(2, Dim), count = corners * Dim;
+  static constexpr int dim = Laws::template formulation<0>::dim;
+  static constexpr int counters = 0, count = Functions::count * dim;
   Laws groups;
-  ElementField<T const, Dim> low;  // corners of the boxes, m
-  T per_spacing[Dim];              // 1/m
-  int corner, direction;
+  Functions functions;
+  int function, direction;
   T factor;
   T* out;  // (count, elements)
   Index elements;
 
-  /// `mask`: one at unknowns, zero at what is held, and what slaves have of both.
-  template <int G, class Own, class V>
+  /// `mask`: one at unknowns, zero at what is held, and what slaves have of both. `nodal`, if there: what is added to the
+  /// element's matrix at nodes, column `direction` of their blocks.
+  template <int G, class Own, class V, class... Nodal>
   PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, Own const& own, V const& rest, V const& u,
-                                   V const& mask) const {
+                                   V const& mask, Nodal const&... nodal) const {
     using F = typename Laws::template formulation<G>;
     using S = std::remove_cvref_t<decltype(rest(0, 0))>;
-    auto const origin = own(low);
-    auto const local = [&](int a) PLIANT_INLINE {
-      Vector<S, Dim> xi;
-      for (int k = 0; k < Dim; ++k)
-        xi[k] = local_coordinate<S>(rest(a, k), origin[k], per_spacing[k]);
-      return xi;
-    };
-    auto du = V::zero();
-    for (int a = 0; a < F::nodes; ++a)
-      for (int k = 0; k < Dim; ++k)
-        if (k == direction) du(a, k) = mask(a, k) * corner_function<Dim>(local(a), corner);
-    auto const product = [&](auto const& law, auto const&... v)
-                             PLIANT_INLINE { return tangent_product<F>(law, v...); };
-    auto const df = [&]() PLIANT_INLINE {
-      if constexpr (Laws::reads_elements)
-        return groups.template apply<G>(product, own, rest, u, du);
-      else
-        return groups.template apply<G>(product, rest, u, du);
-    }();
     Vector<S, count> column{};
-    for (int a = 0; a < F::nodes; ++a) {
-      auto const xi = local(a);
-      for (int b = 0; b < corners; ++b) {
-        S const weight = -factor * corner_function<Dim>(xi, b);
-        for (int k = 0; k < Dim; ++k)
-          column[Dim * b + k] = column[Dim * b + k] + weight * (mask(a, k) * df(a, k));
+    functions.template with_values<F>(own, rest, [&](auto const& value) PLIANT_INLINE {
+      auto du = V::zero();
+      for (int a = 0; a < F::nodes; ++a)
+        for (int k = 0; k < dim; ++k)
+          if (k == direction) du(a, k) = mask(a, k) * value(a, function);
+      auto const product = [&](auto const& law, auto const&... v)
+                               PLIANT_INLINE { return tangent_product<F>(law, v...); };
+      auto const df = [&]() PLIANT_INLINE {
+        if constexpr (Laws::reads_elements)
+          return groups.template apply<G>(product, own, rest, u, du);
+        else
+          return groups.template apply<G>(product, rest, u, du);
+      }();
+      for (int a = 0; a < F::nodes; ++a) {
+        auto image = Vector<S, dim>::zero();
+        for (int k = 0; k < dim; ++k) image[k] = -factor * df(a, k);
+        for (int l = 0; l < dim; ++l)
+          if (l == direction)
+            for (int k = 0; k < dim; ++k) ((image[k] = image[k] + nodal(a, k) * du(a, l)), ...);
+        for (int b = 0; b < Functions::count; ++b) {
+          S const weight = value(a, b);
+          for (int k = 0; k < dim; ++k)
+            column[dim * b + k] = column[dim * b + k] + weight * (mask(a, k) * image[k]);
+        }
       }
-    }
+    });
+    S own_mask = S(0);
+    for (int l = 0; l < dim; ++l)
+      if (l == direction) own_mask = S(Functions::own_mask(mask, function, l));
+    for (int b = 0; b < Functions::count; ++b)
+      for (int k = 0; k < dim; ++k)
+        column[dim * b + k] = own_mask * S(Functions::own_mask(mask, b, k)) * column[dim * b + k];
     return column;
   }
   template <int G, class Again, class Tally>

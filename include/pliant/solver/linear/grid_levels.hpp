@@ -56,7 +56,7 @@ class GridLevels {
       auto& next = levels_[l + 1];
       backend.for_each(next.grid.nodes() * BackgroundGrid<Dim>::neighbours,
                        GalerkinBlock<T, Dim>{next.matrix(), level.matrix(), next.grid.view()});
-      InvertStencilBlocks<T, Dim> invert{level.matrix(), {}};
+      InvertDiagonal<T, Dim, StencilView<T, Dim>> invert{level.matrix(), {}};
       for (int k = 0; k < Dim; ++k) invert.columns[k] = level.column(k);
       backend.for_each(level.grid.nodes(), invert);
       double const largest =
@@ -76,18 +76,25 @@ class GridLevels {
       return;
     }
     auto const& next = levels_[l + 1];
-    auto const product = level.product(backend);
-    smooth(backend, fields, smoothing, Guess::zero, product);
-    product(fields.x, fields.q);
-    auto const coarse = next.fields();
-    backend.for_each(
-        next.grid.nodes(),
-        Restrict<T, Dim>{next.grid.view(), coarse.b, {fields.b.data}, {fields.q.data}});
-    cycle(backend, smoothing, l + 1);
-    backend.for_each(
-        level.grid.nodes(),
-        AddInterpolated<T, Dim>{next.grid.view(), fields.x, {coarse.x.data}, nullptr, nullptr});
-    smooth(backend, fields, smoothing, Guess::given, product);
+    cycle_around(backend, fields, smoothing, level.product(backend), [&] {
+      auto const coarse = next.fields();
+      backend.for_each(
+          next.grid.nodes(),
+          Restrict<T, Dim>{next.grid.view(), coarse.b, {fields.b.data}, {fields.q.data}});
+      cycle(backend, smoothing, l + 1);
+      backend.for_each(
+          level.grid.nodes(),
+          AddInterpolated<T, Dim>{next.grid.view(), fields.x, {coarse.x.data}, nullptr, nullptr});
+    });
+  }
+  /// x += V-cycle of what b − q is, over the nodes around which the finest grid lies; `mass` and `held` tell their unknowns.
+  void correct(B const& backend, SmootherFields<T, Dim> const& f,
+               SmoothingPolynomial const& smoothing, T const* mass,
+               DirectionMask const* held) const {
+    backend.for_each(finest().nodes,
+                     Restrict<T, Dim>{finest(), right_side(), {f.b.data}, {f.q.data}});
+    cycle(backend, smoothing);
+    backend.for_each(f.n, AddInterpolated<T, Dim>{finest(), f.x, {correction().data}, mass, held});
   }
 
  private:

@@ -15,14 +15,43 @@ struct GridOfBody {
   std::vector<std::vector<Index>> boxes_of_elements{};
 };
 
+/// Whether elements, but for a twentieth, lie in the boxes of the finest grid, and fill more than half of them along each axis:
+/// then the grid's functions are as good as linear ones on the elements' own cells.
+template <class Parts>
+bool lies_in_boxes(Parts const& parts) {
+  auto const& mesh = parts.state.topology->mesh;
+  auto const grid = grid_around(mesh, GridFor::nodes);
+  constexpr double rounding = 0.05;  // of a box
+  std::size_t others = 0, all = 0;
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    for (auto const& element : mesh.template elements<E>()) {
+      bool fits = true;
+      for (std::size_t k = 0; k < E::dim; ++k) {
+        double low = INFINITY, high = -INFINITY;  // in boxes
+        for (std::size_t a = 0; a < E::cell::corners; ++a) {
+          double const x = mesh.nodes[static_cast<std::size_t>(element[a])][k] - grid.low[k];
+          low = std::min(low, x / grid.spacing[k]);
+          high = std::max(high, x / grid.spacing[k]);
+        }
+        fits = fits && high - low > 0.5 &&
+               std::ceil(high - rounding) <= std::floor(low + rounding) + 1;
+      }
+      others += fits ? 0 : 1;
+      ++all;
+    }
+  });
+  return 20 * others <= all;
+}
+
 /// Elements lie where the middle of their corners is, and nodes where they are, or with an element of theirs if that box
 /// has none.
 template <class Parts>
-GridOfBody<Parts::dim> grid_of_body(Parts const& parts) {
+GridOfBody<Parts::dim> grid_of_body(Parts const& parts, GridFor finer) {
   constexpr std::size_t dim = Parts::dim;
   using Place = typename BackgroundGrid<Parts::dim>::Place;
   auto const& mesh = parts.state.topology->mesh;
-  GridOfBody<Parts::dim> body{grid_around(mesh)};
+  GridOfBody<Parts::dim> body{grid_around(mesh, finer)};
   auto& grid = body.grid;
   auto const relative = [&](Point<dim> x) {
     for (std::size_t k = 0; k < dim; ++k) x[k] -= parts.layout.middle[k];

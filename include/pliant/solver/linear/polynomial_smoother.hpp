@@ -45,12 +45,21 @@ struct SmoothingPolynomial {
   /// For V-cycles, of degree two: Chebyshev's polynomial of the fourth kind with the weights 1.024 and 1.264 that are best
   /// there (Lottes, Numerical Linear Algebra with Applications 30 (2023) e2518, table 1), written as two steps. It needs no
   /// lower end of what it is to make small.
-  static SmoothingPolynomial of_fourth_kind() {
+  static constexpr SmoothingPolynomial of_fourth_kind() {
     constexpr double first = 1.02387287570313, second = 1.26408905371085;
     return {2, {0, first + second / 5 - 1}, {4.0 / 3, second * 12 / 5}};
   }
+  /// The same without weights, of any degree.
+  static constexpr SmoothingPolynomial of_fourth_kind(int degree) {
+    SmoothingPolynomial p{degree};
+    for (int k = 0; k < degree; ++k) {
+      p.keep[k] = k == 0 ? 0 : (2.0 * k - 1) / (2 * k + 3);
+      p.take[k] = (8.0 * k + 4) / (2 * k + 3);
+    }
+    return p;
+  }
   /// Makes errors small over [λ/ratio, λ] (Adams, Brezina, Hu, Tuminaro, Parallel multigrid smoothing, 2003).
-  static SmoothingPolynomial of_first_kind(int degree, double ratio) {
+  static constexpr SmoothingPolynomial of_first_kind(int degree, double ratio) {
     SmoothingPolynomial p{degree};
     double const middle = (1 + 1 / ratio) / 2, half = (1 - 1 / ratio) / 2;
     double rho = half / middle;
@@ -88,6 +97,16 @@ void smooth(B const& backend, SmootherFields<T, Dim> const& f, SmoothingPolynomi
     step.take = static_cast<T>(p.take[k]);
     backend.for_each(f.n, step);
   }
+}
+
+/// x = V(b), symmetric: smoothed before and behind correct(), which adds to x what coarser functions find from b and q = A x.
+template <class B, class T, int Dim, class Multiply, class Correct>
+void cycle_around(B const& backend, SmootherFields<T, Dim> const& f, SmoothingPolynomial const& p,
+                  Multiply const& multiply, Correct const& correct) {
+  smooth(backend, f, p, Guess::zero, multiply);
+  multiply(f.x, f.q);
+  correct();
+  smooth(backend, f, p, Guess::given, multiply);
 }
 
 /// Any numbers between −1/2 and 1/2, the same ones each time (Steele, Lea, Flood, Fast splittable pseudorandom number

@@ -47,7 +47,8 @@ class Preconditioning {
     return share > tolerance && std::log(tolerance / share) < worth * rate;
   }
   void turn_to_multigrid(Parts const& parts, Arrays& arrays, Matrix const& a) {
-    now_ = Preconditioner::multigrid;
+    now_ = is_quadratic(parts) && !lies_in_boxes(parts) ? Preconditioner::p_multigrid
+                                                        : Preconditioner::multigrid;
     make(parts, arrays, a);
   }
   /// Where rᵀ M r > 0 does not hold. False where there is nothing else.
@@ -82,6 +83,8 @@ class Preconditioning {
     return static_cast<Multigrid<Parts>&>(*arrays.preconditioner);
   }
   void make(Parts const& parts, Arrays& arrays, Matrix const& a) {
+    if (now_ == Preconditioner::p_multigrid && !is_quadratic(parts))
+      now_ = Preconditioner::multigrid;
     parts.backend.synchronize();
     auto const start = std::chrono::steady_clock::now();
     if (!arrays.preconditioner || of(arrays).kind() != now_) {

@@ -28,6 +28,9 @@ struct StencilView {
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) (*this)(node, offset, k, l) += block(k, l);
   }
+  PLIANT_HOST_DEVICE Tensor<T, Dim> diagonal(Index node) const {
+    return block(node, neighbours / 2);
+  }
   PLIANT_HOST_DEVICE Tensor<T, Dim> block(Index node, int offset) const {
     Tensor<T, Dim> a;
     for (int k = 0; k < Dim; ++k)
@@ -96,12 +99,12 @@ struct GalerkinBlock {
 };
 
 /// Makes inverse blocks of the diagonal. What has no diagonal is no unknown.
-template <class T, int Dim>
-struct InvertStencilBlocks {
-  StencilView<T, Dim> a;
+template <class T, int Dim, class View>
+struct InvertDiagonal {
+  View a;
   NodeField<T, Dim> columns[Dim];
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    auto const own = a.block(i, a.neighbours / 2);
+    auto const own = a.diagonal(i);
     DirectionMask none = 0;
     for (int k = 0; k < Dim; ++k)
       if (!(own(k, k) > T(0))) none = static_cast<DirectionMask>(none | 1 << k);
