@@ -47,8 +47,9 @@ class Preconditioning {
     return share > tolerance && std::log(tolerance / share) < worth * rate;
   }
   void turn_to_multigrid(Parts const& parts, Arrays& arrays, Matrix const& a) {
-    now_ = is_quadratic(parts) && !lies_in_boxes(parts) ? Preconditioner::p_multigrid
-                                                        : Preconditioner::multigrid;
+    // On GPUs nothing tells yet that linear elements between pay.
+    now_ = on_host && is_quadratic(parts) && !lies_in_boxes(parts) ? Preconditioner::p_multigrid
+                                                                   : Preconditioner::multigrid;
     make(parts, arrays, a);
   }
   /// Where rᵀ M r > 0 does not hold. False where there is nothing else.
