@@ -31,6 +31,17 @@ struct In {
   }
 };
 
+/// The k-th of what a choice finds of several groups at once.
+template <int K, class... Fs>
+struct InOneOf {
+  static constexpr Unit unit = Unit::joule;
+  static constexpr bool reads_young = true;
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    return detail::Discrepancies<Rubber, Fs...>{}(e)[K];
+  }
+};
+
 template <class B>
 auto three_laws(B const& backend, Mesh<Quad4> const& mesh) {
   return Body{backend, mesh, soft, Group<Linear>{}, Group<Turning>{}, Group<Rubber>{}};
@@ -293,6 +304,21 @@ TEST_CASE("a discrepancy is the same from whatever group it is looked at", "[ada
     CHECK(rubber.first == Approx(linear.first));
     CHECK(linear.second == Approx(coarse.second));
     CHECK(rubber.second == Approx(coarse.second));
+  });
+}
+
+TEST_CASE("a discrepancy is the same by itself and beside those of other rules", "[adaptation]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    using Rough = Formulation<Quad4, OnePoint, Hooke>;
+    auto const mesh = distorted_mesh<Quad4>(8);
+    Body body{backend, mesh, soft, Group<Linear>{}, Group<Rough>{}, Group<Rubber>{}};
+    body.set_displacements(uneven(mesh));
+    double const linear = estimate(body, In<Linear>{}), rough = estimate(body, In<Rough>{});
+
+    CHECK(linear > 0);
+    CHECK(rough != Approx(linear));
+    CHECK(estimate(body, InOneOf<0, Linear, Rough>{}) == Approx(linear));
+    CHECK(estimate(body, InOneOf<1, Linear, Rough>{}) == Approx(rough));
   });
 }
 
