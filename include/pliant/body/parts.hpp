@@ -49,6 +49,8 @@ struct Parts {
   static constexpr int dim = M::dim;
   /// Whether a law has internal variables: see LawWithInternalVariables.
   static constexpr bool has_internal_variables = ((internal_variables_of<Fs> > 0) || ...);
+  /// Whether the stress of a law depends on how fast it deforms: see depends_on_rate.
+  static constexpr bool has_dashpots = (depends_on_rate<typename Fs::template law<double>> || ...);
   using T = typename B::scalar;
   using backend_type = B;
   using mesh_type = M;

@@ -108,6 +108,10 @@ concept LawWithInternalVariables =
         law.over(1.0).equilibrated(h)
       } -> std::same_as<Vector<double, L::template internal_variables<3>>>;
     };
+/// Whether a law's stress depends on how fast it deforms, so that after a step, once the point keeps what it has
+/// come to, `over(0)` has another stress than the step had: a dashpot's is gone. The law says so itself.
+template <class L>
+inline constexpr bool depends_on_rate = requires { requires L::depends_on_rate; };
 /// What a formulation can be made of.
 template <class L>
 concept Law = PointLaw<L> || LawPerElement<L> || LawWithInternalVariables<L>;

@@ -35,7 +35,8 @@ struct LocalStepsOptions {
 /// Levels follow from 2/√λ_max(M_e⁻¹ K_e), with two rings of overlap (see make_schedule); they change at the ends
 /// of macro steps, which a call takes. Driven nodes go with the finest step. Velocities belong to the
 /// displacements after each call, so that one evaluates all elements once more than it takes macro steps:
-/// ask for several where nothing happens in between. Bodies whose laws have internal variables are refused.
+/// ask for several where nothing happens in between. Internal variables are committed where the step of their
+/// element ends; laws whose stress depends on how fast they deform (KelvinVoigt) are refused.
 ///
 /// State and energy are checked as CentralDifference does, at the ends of macro steps.
 class LocalSteps {
@@ -61,9 +62,10 @@ class LocalSteps {
   /// Takes macro steps; they are the steps that the body counts.
   template <DeformableBody TheBody>
   Advanced operator()(TheBody& body, int macro_steps = 1) {
-    static_assert(!TheBody::has_internal_variables,
-                  "LocalSteps takes no laws with internal variables: they would have to be "
-                  "committed by level; use CentralDifference");
+    static_assert(!TheBody::parts_type::has_dashpots,
+                  "LocalSteps takes no laws whose stress depends on how fast they deform "
+                  "(KelvinVoigt): what a macro step begins with would lack it; use "
+                  "CentralDifference");
     if (macro_steps < 0) throw Error("LocalSteps: ", macro_steps, " steps; give 0 or more");
     auto& parts = body.parts();
     auto& state = parts.state;
@@ -94,6 +96,19 @@ class LocalSteps {
     }
     return detail::advanced(parts, begun, step_, false);
   }
+  /// Takes macro steps and lets an Adaptation look after each, as a loop over `step(body); adapt(body);` does. All
+  /// is awake meanwhile.
+  template <DeformableBody TheBody, class TheAdaptation>
+  Advanced operator()(TheBody& body, int macro_steps, TheAdaptation& adapt) {
+    std::int64_t const begun = body.steps(), goal = begun + macro_steps;
+    do {
+      auto const left = std::min<std::int64_t>(goal - body.steps(), adapt.steps_to_look(body));
+      (*this)(body, static_cast<int>(left));
+      if (body.steps() < begun) break;
+      if (macro_steps > 0) adapt(body);
+    } while (body.steps() < goal);
+    return detail::advanced(body.parts(), begun, step_, body.steps() < begun);
+  }
   /// See CentralDifference::check.
   template <DeformableBody TheBody>
   Advanced check(TheBody& body) {
@@ -111,6 +126,10 @@ class LocalSteps {
   void begin(Parts& parts) {
     synchronize_velocities(parts);
     wake_all(parts);
+    if (Parts::has_internal_variables && parts.state.step_size != 0) {
+      commit_at(parts, std::as_const(parts).u());
+      set_step_size(parts, 0);  // each element has its own
+    }
     parts.watched_energy = leapfrog_energy<Parts>;  // without a step of its own: the total
     auto& own = parts.state.integrator;
     bool const resumed = own.active && own.macro_step > 0 && parts.integrator == nullptr;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/body/internal_variables.hpp>
 #include <pliant/constraint/conditions.hpp>
 #include <pliant/solver/impulse_kernels.hpp>
 
@@ -22,9 +23,31 @@ MovingNodes<typename Parts::T, Parts::dim> moving_nodes(Parts& parts, double mac
           external_forces(parts),   {macro_step, schedule.finest, parts.state.damping}};
 }
 
-/// Adds the impulses of the elements and terms whose level is at least `lowest`, over the finest step.
+/// Calls visit(table, elements, laws, level) for the patches of each level that is at least `lowest`, with laws that see
+/// the step of their level, of a macro step of `elapsed` s; 0: no time has passed.
+template <class Parts, class Visit>
+void for_each_level(Parts& parts, int lowest, double elapsed, Visit const& visit) {
+  auto const& schedule = *parts.schedule;
+  std::size_t type = 0;
+  parts.for_each_type([&](auto& table, auto&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    auto const& lists = schedule.patches[type++];
+    for (int level = lowest; level <= schedule.finest; ++level) {
+      auto const& list = lists[static_cast<std::size_t>(level)];
+      if (list.size() < 2) continue;  // no patch
+      auto const elements = over(table.elements, list);
+      if constexpr (Table::Laws::internal_variable_count > 0)
+        visit(table, elements, laws_over(parts, table, std::ldexp(elapsed, -level)), level);
+      else
+        visit(table, elements, table.laws, level);
+    }
+  });
+}
+
+/// Adds the impulses of the elements and terms whose level is at least `lowest`, over the finest step. `elapsed`: see
+/// for_each_level.
 template <class Parts>
-void accumulate_impulses(Parts& parts, int lowest) {
+void accumulate_impulses(Parts& parts, int lowest, double elapsed = 0) {
   using T = typename Parts::T;
   auto const& schedule = *parts.schedule;
   auto const& backend = parts.backend;
@@ -39,25 +62,20 @@ void accumulate_impulses(Parts& parts, int lowest) {
           schedule.node_counts[static_cast<std::size_t>(schedule.term_level)],
           ScaleRows<T>{parts.layout.f.data(), schedule.nodes.data(), weight(schedule.term_level)});
   }
-  std::size_t type = 0;
-  parts.for_each_type([&](auto& table, auto&) {
-    using Table = std::remove_cvref_t<decltype(table)>;
-    auto const& lists = schedule.patches[type++];
-    table.with_geometry([&](auto geometry) {
-      for (int level = lowest; level <= schedule.finest; ++level) {
-        auto const& list = lists[static_cast<std::size_t>(level)];
-        if (list.size() < 2) continue;  // no patch
-        backend.template accumulate<Table::groups>(
-            over(table.elements, list),
-            ImpulseKernel<T, typename Table::Laws, geometry.value>{table.laws, weight(level)},
-            parts.f(), at.rest, at.u);
-      }
-    });
-  });
+  for_each_level(
+      parts, lowest, elapsed, [&](auto& table, auto const& elements, auto const& laws, int level) {
+        using Table = std::remove_cvref_t<decltype(table)>;
+        table.with_geometry([&](auto geometry) {
+          backend.template accumulate<Table::groups>(
+              elements, ImpulseKernel<T, typename Table::Laws, geometry.value>{laws, weight(level)},
+              parts.f(), at.rest, at.u);
+        });
+      });
   parts.layout.interpolation.add_transpose(backend, parts.f());
 }
 
-/// One moment of a macro step at which nothing below a level acts: impulses, and the nodes that take them.
+/// One moment of a macro step at which nothing below a level acts: impulses, the nodes that take them, and internal
+/// variables, which come to the present displacements. Where no step ends, no time has passed since they did.
 template <class Parts>
 void act(Parts& parts, double macro_step, int lowest, Halves halves) {
   using T = typename Parts::T;
@@ -65,7 +83,12 @@ void act(Parts& parts, double macro_step, int lowest, Halves halves) {
   auto const& backend = parts.backend;
   auto const& schedule = *parts.schedule;
   Index const count = schedule.node_counts[static_cast<std::size_t>(lowest)];
-  accumulate_impulses(parts, lowest);
+  double const elapsed = halves.ends ? macro_step : 0;
+  accumulate_impulses(parts, lowest, elapsed);
+  if constexpr (Parts::has_internal_variables)
+    for_each_level(parts, lowest, elapsed, [&](auto&, auto const& elements, auto const& laws, int) {
+      commit_by(parts, elements, laws, std::as_const(parts).u());
+    });
   auto const nodes = moving_nodes(parts, macro_step);
   typename Parts::ConstField const v = std::as_const(parts).v(), impulses{parts.layout.f.data()};
   double* const work = parts.state.work.data();

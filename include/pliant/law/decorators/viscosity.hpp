@@ -57,6 +57,7 @@ struct KelvinVoigt {
     T viscosity;  // η, Pa s: not negative
 
     static constexpr bool takes_inversion = pliant::takes_inversion<L<T>>;
+    static constexpr bool depends_on_rate = true;
 
     void check() const {
       detail::check_parameters(elastic);
