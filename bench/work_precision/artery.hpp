@@ -31,21 +31,12 @@ inline std::array<double, 6> fibres_at(Point<3> const& p) {
 }
 
 /// The group of a formulation; under a law with fibres with those in the middles of the elements.
-template <class F, class M, class Law>
-Group<F> group(M const& mesh, Law const& law) {
+template <class F, class Law>
+Group<F> group(Law const& law) {
   Group<F> group;
-  if constexpr (requires {
-                  group.law = law;
-                  group.values.push_back(fibres_at({}));
-                }) {
+  if constexpr (requires { group.law = law; }) {
     group.law = law;
-    for (auto const& element : mesh.template elements<typename F::element>()) {
-      Point<3> middle{};
-      for (Index node : element)
-        for (std::size_t k = 0; k < 3; ++k)
-          middle[k] += mesh.nodes[static_cast<std::size_t>(node)][k] / F::element::nodes;
-      group.values.push_back(fibres_at(middle));
-    }
+    if constexpr (element_values<F> > 0) group.values_at = fibres_at;
   }
   return group;
 }

@@ -137,8 +137,8 @@ struct ArteryRing {
     return artery::wall<E>(std::numbers::pi / 2, 0.2e-3, {n, 4 * n, n / 2});
   }
   template <class F, class M>
-  static Group<F> group(M const& mesh) {
-    return artery::group<F>(mesh, artery::media);
+  static Group<F> group(M const&) {
+    return artery::group<F>(artery::media);
   }
   template <class TheBody>
   static void hold(TheBody& body) {

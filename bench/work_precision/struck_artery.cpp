@@ -26,8 +26,8 @@ struct StruckArtery {
     return artery::wall<E>(std::numbers::pi, height, {3, 48, 30});
   }
   template <class F, class M>
-  static Group<F> group(M const& mesh) {
-    return artery::group<F>(mesh, adventitia);
+  static Group<F> group(M const&) {
+    return artery::group<F>(adventitia);
   }
   template <class TheBody>
   static void begin(TheBody& body) {

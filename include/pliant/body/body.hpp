@@ -212,8 +212,7 @@ class Body {
   static std::vector<std::vector<double>> element_values(Mesh<Es...> const& mesh,
                                                          std::tuple<Group<Fs>...> const& groups,
                                                          Elastic const& material) {
-    return {detail::element_values_of<scalar, Es>(groups, material,
-                                                  mesh.template elements<Es>().size())...};
+    return {detail::element_values_of<scalar, Es>(groups, material, mesh)...};
   }
   template <std::size_t Nodes>
   void check_sets(std::vector<std::array<Index, Nodes>> const& sets) const {

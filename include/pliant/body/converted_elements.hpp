@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -84,13 +87,42 @@ std::vector<Tag> carried_groups(Parts const& parts, std::vector<std::vector<Tag>
       type);
 }
 
+/// What sets the values of a new element of a table's type by its place; empty where no group has values_at.
+template <class Table, class Parts>
+std::function<void(Point<Parts::dim> const&, std::span<double>)> setter_by_place(
+    Parts const& parts) {
+  bool any = false;
+  auto const for_each_group = [](Parts const& of, auto const& visit) {
+    [&]<int... G>(std::integer_sequence<int, G...>) {
+      (visit(std::get<Group<typename Table::template formulation<G>>>(of.groups)), ...);
+    }(std::make_integer_sequence<int, Table::groups>());
+  };
+  for_each_group(parts, [&]<class F>(Group<F> const& group) {
+    if constexpr (element_values<F> > 0) any = any || group.values_at;
+  });
+  if (!any) return {};
+  return [&parts, for_each_group](Point<Parts::dim> const& place, std::span<double> values) {
+    std::size_t first = 0;
+    for_each_group(parts, [&]<class F>(Group<F> const& group) {
+      if constexpr (element_values<F> > 0)
+        if (group.values_at)
+          std::ranges::copy(
+              values_of_place<typename Parts::T>(group, group.law_for(parts.material), place),
+              values.begin() + static_cast<std::ptrdiff_t>(first));
+      first += element_values<F>;
+    });
+  };
+}
+
 /// Of all element types of a body.
 template <class Parts>
-ElementValues element_values_of(Parts const& parts) {
-  ElementValues values;
+ElementValues<Parts::dim> element_values_of(Parts const& parts) {
+  ElementValues<Parts::dim> values;
   parts.for_each_type([&](auto const& to, auto const&) {
     using To = std::remove_cvref_t<decltype(to)>;
     values.widths.push_back(To::Laws::value_count);
+    auto& setter = values.set_by_place.emplace_back();
+    if constexpr (To::Laws::value_count > 0) setter = setter_by_place<To>(parts);
     auto& places = values.places.emplace_back();
     parts.for_each_type([&](auto const& from, auto const&) {
       using From = std::remove_cvref_t<decltype(from)>;

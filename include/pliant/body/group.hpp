@@ -2,27 +2,39 @@
 
 #include <array>
 #include <cmath>
-#include <initializer_list>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include <pliant/body/group_laws.hpp>
+#include <pliant/mesh/mesh.hpp>
 
 namespace pliant {
 
 namespace detail {
-/// Throws Error, and says where, when a law finds its parameters impossible.
-template <class L>
-void check_law(L const& law, std::initializer_list<MessagePiece> where) {
+/// Throws Error, and says where() that is, when a law finds its parameters impossible.
+template <class L, class Where>
+void check_law(L const& law, Where const& where) {
   if constexpr (requires { law.check(); }) {
     try {
       law.check();
     } catch (Error const& error) {
-      throw Error("body: ", message(where), " is impossible: ", error.what());
+      throw Error("body: the law ", where(), " is impossible: ", error.what());
     }
   }
 }
 }  // namespace detail
+
+/// Values of elements by the mean of an element's nodes at rest, m; nothing where a law reads none.
+template <class F>
+struct ValuesByPlace {
+  using type = std::function<std::array<double, element_values<F>>(Point<F::dim> const&)>;
+};
+template <class F>
+  requires(element_values<F> == 0)
+struct ValuesByPlace<F> {
+  struct type {};
+};
 
 /// The elements that share a formulation at this moment. All elements of a type start in the first
 /// group given for that type.
@@ -34,6 +46,9 @@ struct Group {
   /// Where the law has values per element (LawPerElement): those of each element of this type, in the
   /// user's order, or one row for all.
   std::vector<std::array<double, element_values<F>>> values{};
+  /// In place of `values`: those of an element, by the mean of its nodes at rest, m. Elements that a change of the mesh
+  /// makes are asked for too, where otherwise they have those of the element that they come from.
+  typename ValuesByPlace<F>::type values_at{};
 
   /// The law, in double. Throws Error for impossible parameters, and where there are none and the law takes none
   /// from an Elastic.
@@ -47,7 +62,9 @@ struct Group {
                       F::element::name(), " is not finite; give finite parameters");
         ++k;
       }
-      detail::check_law(*law, {"the law given to the group on ", F::element::name()});
+      detail::check_law(*law, [] {
+        return detail::message({"given to the group on ", F::element::name()});
+      });
       return *law;
     }
     if constexpr (LawFromElastic<L>)

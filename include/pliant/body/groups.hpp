@@ -1,5 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include <pliant/body/internal_variables.hpp>
 #include <pliant/constraint/conditions.hpp>
 
@@ -69,34 +75,62 @@ void assign_group(Parts& parts, std::vector<Index> const& elements) {
 
 namespace detail {
 
+/// Values of an element that where() names. Throws Error where they are not finite in T, or impossible.
+template <class T, class F, class Where>
+void check_values(typename F::template law<double> const& law,
+                  std::array<double, element_values<F>> const& values, Where const& where) {
+  Vector<double, element_values<F>> row;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(static_cast<T>(values[k])))
+      throw Error(
+          "body: value ", k, " of ", where(),
+          std::isfinite(values[k]) ? " is too large for single precision" : " is not finite",
+          "; mend the group's values");
+    row[static_cast<int>(k)] = values[k];
+  }
+  check_law(law.at(row), [&] { return "of " + where(); });
+}
+
+/// The values of an element by its place.
+template <class T, class F>
+std::array<double, element_values<F>> values_of_place(Group<F> const& group,
+                                                      typename F::template law<double> const& law,
+                                                      Point<F::dim> const& place) {
+  auto const values = group.values_at(place);
+  check_values<T, F>(law, values, [&] {
+    return message({"an element ", F::element::name(), " around ", place});
+  });
+  return values;
+}
+
 /// What laws read per element, for the elements of one type: (elements, values), by the user's number.
-template <class T, Element E, class... Fs>
+template <class T, Element E, class M, class... Fs>
 std::vector<double> element_values_of(std::tuple<Group<Fs>...> const& groups,
-                                      Elastic const& material, std::size_t count) {
+                                      Elastic const& material, M const& mesh) {
+  auto const& elements = mesh.template elements<E>();
+  std::size_t const count = elements.size();
   std::vector<std::vector<double>> columns;  // by value
   auto const take = [&]<class F>(Group<F> const& group) {
     if constexpr (std::same_as<typename F::element, E> && element_values<F> > 0) {
-      if (group.values.size() != count && group.values.size() != 1)
+      auto const law = group.law_for(material);
+      auto values = group.values;
+      if (group.values_at) {
+        if (!values.empty())
+          throw Error("body: a group on ", E::name(),
+                      " has values and values_at; give one of them");
+        for (auto const& element : elements)
+          values.push_back(values_of_place<T>(group, law, mean_of_nodes(mesh, element)));
+      }
+      if (values.size() != count && values.size() != 1)
         throw Error("body: a group's law reads ", element_values<F>,
                     " values per element; give values for 1 or for all ", count, " ", E::name(),
-                    " elements, not for ", group.values.size());
+                    " elements, not for ", values.size());
+      for (std::size_t e = 0; e < values.size(); ++e)
+        check_values<T, F>(law, values[e], [&] { return message({E::name(), " element ", e}); });
       for (std::size_t k = 0; k < element_values<F>; ++k) {
         columns.emplace_back(count);
-        for (std::size_t e = 0; e < count; ++e) {
-          double const x = group.values[group.values.size() == 1 ? 0 : e][k];
-          if (!std::isfinite(static_cast<T>(x)))
-            throw Error("body: value ", k, " of ", E::name(), " element ", e,
-                        std::isfinite(x) ? " is too large for single precision" : " is not finite",
-                        "; mend the group's values");
-          columns.back()[e] = x;
-        }
-      }
-      auto const law = group.law_for(material);
-      for (std::size_t e = 0; e < group.values.size(); ++e) {
-        Vector<double, element_values<F>> row;
-        for (int k = 0; k < element_values<F>; ++k)
-          row[k] = group.values[e][static_cast<std::size_t>(k)];
-        detail::check_law(law.at(row), {"the law of ", E::name(), " element ", e});
+        for (std::size_t e = 0; e < count; ++e)
+          columns.back()[e] = values[values.size() == 1 ? 0 : e][k];
       }
     }
   };

@@ -96,6 +96,17 @@ auto nodal(Mesh<Es...> const& mesh, std::array<Index, Nodes> const& element) {
   return rest;
 }
 
+/// The mean of an element's nodes, m.
+template <std::size_t Nodes, Element... Es>
+Point<Mesh<Es...>::dim> mean_of_nodes(Mesh<Es...> const& mesh,
+                                      std::array<Index, Nodes> const& element) {
+  Point<Mesh<Es...>::dim> mean{};
+  for (Index const node : element)
+    for (std::size_t k = 0; k < mean.size(); ++k)
+      mean[k] += mesh.nodes[static_cast<std::size_t>(node)][k] / static_cast<double>(Nodes);
+  return mean;
+}
+
 /// The nodes on some facets, ascending, each once.
 template <int Dim>
 std::vector<Index> nodes_of(std::vector<Facet<Dim>> const& facets) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,10 +21,13 @@
 namespace pliant {
 
 /// What laws read per element: how many values elements of each type have, and which of an old type's those are that an
-/// element takes along into another type: by type and old type, for each value its place; −1 where that has none.
+/// element takes along into another type: by type and old type, for each value its place; −1 where that has none. Then, by
+/// type, what sets values of a new element by the mean of its nodes at rest, m: empty where nothing does.
+template <int Dim>
 struct ElementValues {
   std::vector<std::size_t> widths;
   std::vector<std::vector<std::vector<int>>> places;
+  std::vector<std::function<void(Point<Dim> const&, std::span<double> values)>> set_by_place;
 };
 
 namespace detail {
@@ -239,9 +244,10 @@ void share_volumes(M const& mesh, std::vector<typename Transfer<M::dim>::Family>
 }
 
 /// The values that laws read, of the elements of a type after a change: (elements, values).
-template <class M>
-std::vector<double> carried_values(Topology<M> const& before, Transfer<M::dim> const& transfer,
-                                   ElementValues const& values, std::size_t type) {
+template <Element E, class M>
+std::vector<double> carried_values(Topology<M> const& before, M const& mesh,
+                                   Transfer<M::dim> const& transfer,
+                                   ElementValues<M::dim> const& values, std::size_t type) {
   std::size_t const width = values.widths[type];
   auto const& own = before.element_values;
   if (width == 0) return {};
@@ -261,7 +267,17 @@ std::vector<double> carried_values(Topology<M> const& before, Transfer<M::dim> c
         taken.push_back(own[old][first + static_cast<std::size_t>(place)]);
     lists[old] = std::move(taken);
   }
-  return transfer.carry_elements(lists, type, width);
+  auto carried = transfer.carry_elements(lists, type, width);
+  if (auto const& set = values.set_by_place[type]) {
+    std::size_t e = 0;
+    for (auto const& origin : transfer.origins(type)) {
+      if (origin.child != Transfer<M::dim>::Origin::same)
+        set(mean_of_nodes(mesh, mesh.template elements<E>()[e]),
+            std::span(carried).subspan(e * width, width));
+      e += static_cast<std::size_t>(origin.count);
+    }
+  }
+  return carried;
 }
 
 }  // namespace detail

@@ -37,7 +37,7 @@ struct TopologyPlan {
 template <class M>
 auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElements const& marked,
                  RefinementLimits const& limits, KeptParts<M::dim> const& kept,
-                 ElementValues const& values) -> std::optional<TopologyPlan<M>> {
+                 ElementValues<M::dim> const& values) -> std::optional<TopologyPlan<M>> {
   constexpr int dim = M::dim;
   auto const check = [&](char const* verb, std::vector<std::vector<Index>> const& lists) {
     if (!lists.empty()) detail::check_lists(before->mesh, verb, lists);
@@ -105,8 +105,10 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   for (auto const& [name, facets] : before->mesh.boundaries)
     mesh.boundaries.emplace(name, transfer.carry_facets(facets));
   mesh.slaves = changed.tree->slaves();
-  for (std::size_t type = 0; type < values.widths.size(); ++type)
-    topology->element_values.push_back(detail::carried_values(*before, transfer, values, type));
+  detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+    topology->element_values.push_back(
+        detail::carried_values<E>(*before, mesh, transfer, values, type));
+  });
   topology->interpolation = Interpolation(mesh.slaves);
   topology->tree = changed.tree;
   auto const split_before = [&](Index c) { return old.tree->cell(c).is_split(); };
