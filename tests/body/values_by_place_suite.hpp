@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pliant/adaptation/estimator/law_discrepancy.hpp>
+#include <pliant/adaptation/force_costs.hpp>
 #include <pliant/adaptation/refinement.hpp>
 
 #include "support/fields.hpp"
@@ -102,6 +104,31 @@ TEST_CASE("elements of another degree have the values of their place", "[body]")
     fresh.set_displacements(stretched(fresh.mesh().nodes));
     CHECK(difference(body.forces(), fresh.forces()) <= 1e-12 * largest(fresh.forces()));
   });
+}
+
+TEST_CASE("what asks a group for its values finds those by place", "[body]") {
+  using Rubber = Formulation<Quad4, Gauss<2>, NeoHookean>;
+  Reference<double> const backend;
+  auto const mesh = quarter();
+  std::vector<std::array<double, 2>> listed;
+  for (auto const& element : mesh.template elements<Quad4>())
+    listed.push_back(stiffer_upwards(mean_of_nodes(mesh, element)));
+  auto const body_of_group = [&](Group<Graded> const& group) {
+    Body body{backend, mesh, soft, Group<Graded>{group}, Group<Rubber>{}};
+    body.set_displacements(stretched(mesh.nodes));
+    return body;
+  };
+  auto by_place = body_of_group({.values_at = stiffer_upwards}),
+       by_list = body_of_group({.values = listed});
+
+  double const found = estimate(by_place, LawDiscrepancy<Rubber>{});
+
+  CHECK(found > 0);
+  CHECK(found == Approx(estimate(by_list, LawDiscrepancy<Rubber>{})).epsilon(1e-12));
+  auto const costs = [](auto const& body) {
+    return detail::counted_costs(body.parts(), detail::TypeList<Rubber, Graded>{});
+  };
+  CHECK(costs(by_place) == costs(by_list));
 }
 
 TEST_CASE("values by place that cannot be are refused, with the body as it was", "[body]") {

@@ -192,7 +192,7 @@ auto surroundings(Parts const& parts, Table const& table,
   if constexpr (Rules::reads_young)
     [&]<class... Fs>(TypeList<Fs...>) {
       around.young = {{{static_cast<T>(
-          young_at_rest(parts.template law_of<Fs>(), std::get<Group<Fs>>(parts.groups)))}...}};
+          young_at_rest(parts.template law_of<Fs>(), first_values<Fs>(parts)))}...}};
     }(typename Table::formulations{});
   around.found = w.found.data();
   around.elements = table.count();

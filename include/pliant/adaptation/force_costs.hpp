@@ -12,17 +12,16 @@ namespace pliant {
 
 namespace detail {
 
-/// A law for one element, whatever it reads: by the group's first values, and its points at rest.
-template <class L, class G>
-auto law_of_one_element(L const& law, G const& group) {
+/// A law for one element that reads `values`, its points at rest.
+template <class L, std::size_t N>
+auto law_of_one_element(L const& law, std::array<double, N> const& values) {
   if constexpr (LawWithInternalVariables<L>) {
     auto const now = law.over(0);
     return now.after(now.equilibrated(Tensor<double, 3>::zero()));
   } else if constexpr (LawPerElement<L>) {
-    Vector<double, L::element_values> values;
-    for (int k = 0; k < L::element_values; ++k)
-      values[k] = group.values.front()[static_cast<std::size_t>(k)];
-    return law_of_one_element(law.at(values), group);
+    Vector<double, L::element_values> row;
+    for (std::size_t k = 0; k < N; ++k) row[static_cast<int>(k)] = values[k];
+    return law_of_one_element(law.at(row), values);
   } else {
     return law;
   }
@@ -43,7 +42,7 @@ double count_force(Parts const& parts) {
       u(a, k) = Counted(0);
     }
   auto const law =
-      prepared<F>(law_of_one_element(parts.template law_of<F>(), std::get<Group<F>>(parts.groups)));
+      prepared<F>(law_of_one_element(parts.template law_of<F>(), first_values<F>(parts)));
   auto const before = Counted::count();
   (void)force<F>(law, rest, u);
   constexpr int moved = 4 * E::nodes * E::dim;  // positions, displacements, forces in and out

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <pliant/adaptation/criterion/criterion.hpp>
 
 namespace pliant::detail {
@@ -21,17 +23,16 @@ template <class C>
 inline constexpr bool some_reads_young<C> = tuple_reads_young<decltype(C::criteria)>;
 
 /// Young's modulus of a law at rest, Pa, as a bar along the first axis has it; of a sheet, as it has in plane
-/// stress. Of a law with values per element, that of the first element.
-template <class L, class G>
-double young_at_rest(L const& law, G const& group) {
+/// stress. Of a law that reads values of elements with these.
+template <class L, std::size_t N = 0>
+double young_at_rest(L const& law, std::array<double, N> const& values = {}) {
   if constexpr (LawWithInternalVariables<L>) {
     auto const now = law.over(std::numeric_limits<double>::infinity());
-    return young_at_rest(now.after(now.equilibrated(Tensor<double, 3>::zero())), group);
+    return young_at_rest(now.after(now.equilibrated(Tensor<double, 3>::zero())), values);
   } else if constexpr (LawPerElement<L>) {
-    Vector<double, L::element_values> values;
-    for (int k = 0; k < L::element_values; ++k)
-      values[k] = group.values.front()[static_cast<std::size_t>(k)];
-    return young_at_rest(law.at(values), group);
+    Vector<double, L::element_values> row;
+    for (std::size_t k = 0; k < N; ++k) row[static_cast<int>(k)] = values[k];
+    return young_at_rest(law.at(row), values);
   } else {
     constexpr int dim = SolidLaw<L> ? 3 : 2;
     auto const rest = Tensor<double, dim>::zero();

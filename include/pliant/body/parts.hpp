@@ -182,4 +182,21 @@ concept DeformableBody = requires(std::remove_const_t<TheBody>& body) {
   { body.steps() } -> std::convertible_to<std::int64_t>;
 };
 
+/// What the law of F reads of the first element of its type, or zeros where there is none.
+template <class F, class Parts>
+std::array<double, element_values<F>> first_values(Parts const& parts) {
+  std::array<double, element_values<F>> values{};
+  if constexpr (element_values<F> > 0) {
+    using Layout = typename Parts::layout_type;
+    using Table = typename Layout::template Table<typename F::element>;
+    auto const& all =
+        parts.state.topology->element_values[Layout::template type_of<typename F::element>];
+    constexpr auto first =
+        std::size_t{Table::Laws::template first_value<Table::template group_of<F>>()};
+    for (std::size_t k = 0; k < values.size() && first + k < all.size(); ++k)
+      values[k] = all[first + k];
+  }
+  return values;
+}
+
 }  // namespace pliant
