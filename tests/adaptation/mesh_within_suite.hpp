@@ -104,6 +104,98 @@ TEST_CASE("a body that swings holds its mesh between steps", "[adaptation]") {
   });
 }
 
+using Held4 = Formulation<Quad4, Gauss<2>, Hooke>;
+using Held9 = Formulation<Quad9, Gauss<3>, Hooke>;
+
+/// Both degrees, all elements linear.
+template <class B>
+auto body_of_degrees(B const& backend, int across = 16) {
+  auto const quads = mesh::rectangle({.size = {4, 1}, .cells = {across, across / 4}});
+  Mesh<Quad4, Quad9> mesh{quads.nodes, {}};
+  mesh.elements<Quad4>() = quads.template elements<Quad4>();
+  return Body{backend, mesh, soft, Group<Held4>{}, Group<Held9>{}};
+}
+template <class E, class TheBody>
+double count_of(TheBody const& body) {
+  return static_cast<double>(body.mesh().template elements<E>().size());
+}
+
+TEST_CASE("a mesh raises degrees where that is worth more, and lowers them behind",
+          "[adaptation]") {
+  on_each_backend<FewBackends>([](auto const& backend) {
+    auto body = body_of_degrees(backend);
+    bump(body, 1);
+    double const error = estimate(body, RecoveredStress{}) / 300;
+    auto adapt =
+        Adaptation{within<Held4, Held9>(RecoveredStress{}, {.error = error, .max_level = 4})};
+    auto refining = body_of_degrees(backend);
+    auto refine_alone =
+        Adaptation{within<Held4>(RecoveredStress{}, {.error = error, .max_level = 4})};
+    auto const evaluations = [](auto const& of) {
+      return detail::evaluations_of_mesh(of.parts(),
+                                         within<Held4, Held9>(RecoveredStress{}, {.error = 1}));
+    };
+    for (double place : {1.0, 1.5, 2.5}) {
+      look(body, adapt, place);
+      look(refining, refine_alone, place);
+      CHECK(estimate(body, RecoveredStress{}) < 1.2 * error);
+      CHECK(count_of<Quad9>(body) > 10);
+      CHECK(count_of<Quad4>(body) > 10);
+      // A smooth bump wants fewer evaluations of the higher degree.
+      CHECK(evaluations(body) < 0.7 * evaluations(refining));
+    }
+    look(body, adapt, 1, 0);
+    CHECK(count_of<Quad9>(body) == 0);
+    CHECK(count_of<Quad4>(body) == 64);
+  });
+}
+
+TEST_CASE("a budget holds for both degrees", "[adaptation]") {
+  on_each_backend<FewBackends>([](auto const& backend) {
+    auto body = body_of_degrees(backend);
+    double const budget = 1500;
+    auto const rule = within<Held4, Held9>(RecoveredStress{}, {.evaluations_per_step = budget});
+    auto adapt = Adaptation{rule};
+    for (double place : {1.0, 1.3, 2.0, 3.0}) {
+      look(body, adapt, place);
+      double const now = detail::evaluations_of_mesh(std::as_const(body).parts(), rule);
+      CHECK(now > 0.85 * budget);
+      CHECK(now < 1.1 * budget);
+    }
+  });
+}
+
+inline double seconds_shown = 0;
+
+TEST_CASE("a budget in milliseconds asks the clock what an element takes", "[adaptation]") {
+  on_each_backend<FewBackends>([](auto const& backend) {
+    auto body = body_on(backend, coarse());
+    seconds_shown = 0;
+    double per_element = 1e-6;
+    auto adapt =
+        Adaptation{within<Held<Tri3>>(RecoveredStress{}, {.milliseconds_per_step = 1,
+                                                          .clock = [] { return seconds_shown; }})}
+            .every(4);
+    CentralDifference step;
+    auto const run = [&] {
+      for (int k = 0; k < 80; ++k) {
+        bump(body, 2);
+        step(body);
+        seconds_shown += per_element * count(body);
+        adapt(body);
+      }
+    };
+
+    run();
+    CHECK(count(body) > 900);
+    CHECK(count(body) < 1100);
+    per_element = 2e-6;
+    run();
+    CHECK(count(body) > 450);
+    CHECK(count(body) < 550);
+  });
+}
+
 TEST_CASE("limits of a mesh are in range", "[adaptation]") {
   auto const makes = [](MeshWithinOptions const& options) {
     (void)within<Held<Tri3>>(RecoveredStress{}, options);
@@ -112,6 +204,7 @@ TEST_CASE("limits of a mesh are in range", "[adaptation]") {
   CHECK_THROWS_WITH(makes({.error = 0}), says("a positive number"));
   CHECK_THROWS_WITH(makes({.error = 1, .release = 2}), says("release"));
   CHECK_THROWS_WITH(makes({.error = 1, .max_level = -1}), says("max_level"));
+  CHECK_THROWS_WITH(makes({.milliseconds_per_step = -1}), says("a positive number"));
 }
 
 }  // namespace pliant::test::mesh_within_suite

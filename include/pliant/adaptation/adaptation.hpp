@@ -89,9 +89,17 @@ class Adaptation {
     static_assert(List::template act_on<TheBody>,
                   "a rule is for an element type that the body's mesh does not have");
     if constexpr (List::holds_mesh)
-      detail::hold_mesh(body, std::get<0>(rules_.rules));
+      hold_mesh(body, std::get<0>(rules_.rules));
     else
       look_at_elements(body.parts(), forces);
+  }
+  template <DeformableBody TheBody, class TheRule>
+  void hold_mesh(TheBody& body, TheRule const& rule) const {
+    bool const timed = rules_.limits_milliseconds();
+    if (timed) take_time(body.parts());
+    detail::hold_mesh(body, rule,
+                      detail::budget_now(rule.options, last_look(body.parts(), body.steps())));
+    if (timed) start_time(body.parts());
   }
   template <class Parts>
   void look_at_elements(Parts& parts, Forces forces) const {
@@ -183,20 +191,31 @@ class Adaptation {
     return {parts, rules_, evaluations};
   }
 
+  /// What limits what a step takes.
+  auto const& limits() const {
+    if constexpr (List::holds_mesh)
+      return std::get<0>(rules_.rules).options;
+    else
+      return rules_.choosing();
+  }
   /// Measures what steps have taken since the look before, where a budget is in milliseconds.
   template <class Parts>
   void take_time(Parts& parts) const {
-    if constexpr (List::chooses) {
-      double const evaluations = look_at(parts).evaluations_now();
-      detail::take_time(parts, rules_.choosing(), looker(parts), evaluations,
+    if constexpr (List::chooses || List::holds_mesh) {
+      double const evaluations = [&] {
+        if constexpr (List::chooses)
+          return look_at(parts).evaluations_now();
+        else
+          return detail::evaluations_of_mesh(std::as_const(parts), std::get<0>(rules_.rules));
+      }();
+      detail::take_time(parts, limits(), looker(parts), evaluations,
                         last_look(parts, parts.state.steps));
     }
   }
   template <class Parts>
   void start_time(Parts& parts) const {
-    if constexpr (List::chooses)
-      detail::start_time(parts, rules_.choosing(), looker(parts),
-                         last_look(parts, parts.state.steps));
+    if constexpr (List::chooses || List::holds_mesh)
+      detail::start_time(parts, limits(), looker(parts), last_look(parts, parts.state.steps));
   }
   template <class Parts>
   Looker& looker(Parts& parts) const {

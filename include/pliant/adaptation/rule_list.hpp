@@ -64,6 +64,8 @@ struct RuleList {
   bool limits_milliseconds() const {
     if constexpr (chooses)
       return std::isfinite(choosing().milliseconds_per_step);
+    else if constexpr (holds_mesh)
+      return std::isfinite(std::get<0>(rules).options.milliseconds_per_step);
     else
       return false;
   }
@@ -73,11 +75,11 @@ struct RuleList {
     auto const allowance = step_allowance(parts);
     if (!allowance) return false;
     auto const is_stiffer = [&]<class... From, class... To>(TypeList<From...>, TypeList<To...>) {
-      auto const young = [&]<class F>(Group<F> const& group) {
-        return young_at_rest(parts.template law_of<F>(), group);
+      auto const young = [&]<class F>(TypeList<F>) {
+        return young_at_rest(parts.template law_of<F>(), first_values<F>(parts));
       };
-      return std::max({young(std::get<Group<To>>(parts.groups))...}) >
-             allowance->growth * std::min({young(std::get<Group<From>>(parts.groups))...});
+      return std::max({young(TypeList<To>{})...}) >
+             allowance->growth * std::min({young(TypeList<From>{})...});
     };
     auto const stiffens = [&]<class R>(R const&) {
       if constexpr (SwitchingRule<R>)

@@ -1,0 +1,171 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pliant::detail {
+
+/// What changes of a mesh are worth, in joules per evaluation: those worth more than a limit are made, and undone those
+/// that are worth less where they are.
+class MeshOffers {
+ public:
+  /// Elements of one degree that are alike: what a division makes of one.
+  struct Kind {
+    double factor;  // of the error
+    int children;
+    double evaluations;  // of one element
+  };
+  /// Elements of a kind, and those of a higher or a lower degree on the same cell.
+  struct Kinds {
+    Kind own;
+    Kind const *higher = nullptr, *lower = nullptr;
+  };
+  /// What raising makes of an error, and lowering: more than that undoes, since smooth solutions lose more, and elements
+  /// that go back and forth cost more than a few that are raised too long.
+  static constexpr double raising = 1.0 / 16, lowering = 64;
+
+  /// `release`: what is there is taken to be worth 1/release times as much as what is not.
+  explicit MeshOffers(double release) : release_(release) {}
+
+  /// An element that may be divided so often. Returns its number.
+  std::size_t add_element(double error, Kinds const& kinds, int divisions) {
+    elements_.push_back({error, &kinds, divisions});
+    error_ += error;
+    evaluations_ += kinds.own.evaluations;
+    return elements_.size() - 1;
+  }
+  /// Elements, by these numbers, that may be merged.
+  void add_family(std::vector<std::size_t> const& members) {
+    double sum = 0;
+    for (std::size_t e : members) {
+      elements_[e].family = families_.size();
+      sum += elements_[e].error;
+    }
+    Kind const& kind = elements_[members.front()].kinds->own;
+    families_.push_back(
+        {sum, {1 / kind.factor, -(static_cast<double>(members.size()) - 1) * kind.evaluations}});
+  }
+
+  enum class Action { none, divide, raise, lower };
+  Action action(std::size_t e, double limit) const { return action(elements_[e], limit); }
+  bool merges(std::size_t family, double limit) const {
+    auto const& own = families_[family];
+    return worth(own.error, own.merged) < release_ * limit;
+  }
+
+  struct Outcome {
+    double error, evaluations;
+  };
+  Outcome at(double limit) const {
+    Outcome found{error_, evaluations_};
+    auto const make = [&](double error, Change const& change) {
+      found.error += error * (change.factor - 1);
+      found.evaluations += change.evaluations;
+    };
+    for (auto const& own : elements_)
+      if (auto const chosen = action(own, limit); chosen != Action::none)
+        make(own.error, change(own, chosen));
+    for (std::size_t k = 0; k < families_.size(); ++k)
+      if (merges(k, limit)) make(families_[k].error, families_[k].merged);
+    return found;
+  }
+  /// The largest limit that keeps what is left of the error, or the least that keeps the budget where that is larger;
+  /// infinite: there is none.
+  double limit_for(double error, double evaluations) const {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    auto const widen = [&](double of, Change const& change) {
+      double const own = worth(of, change);
+      if (!change.is_there() || !(own > 0)) return;
+      least = std::min(least, own);
+      most = std::max(most, own);
+    };
+    for (auto const& own : elements_)
+      for (Action each : {Action::divide, Action::raise, Action::lower})
+        widen(own.error, change(own, each));
+    for (auto const& own : families_) widen(own.error, own.merged);
+    if (most == 0) return 1;  // nothing is wrong anywhere: all is undone
+    double const low = least / 2, high = 2 * most / release_;
+    auto const search = [&](auto const& is_low) {
+      double a = low, b = high;
+      for (int k = 0; k < 60; ++k) {
+        double const middle = std::sqrt(a * b);
+        (is_low(at(middle)) ? a : b) = middle;
+      }
+      return std::pair{a, b};
+    };
+    // Not all at once: what is left after half of the error is best known then.
+    double const aim = std::max(error, error_ / 2);
+    double limit =
+        std::isfinite(error) ? search([&](Outcome const& o) { return o.error <= aim; }).first : low;
+    if (at(limit).evaluations > evaluations)
+      limit = search([&](Outcome const& o) { return o.evaluations > evaluations; }).second;
+    return limit;
+  }
+
+ private:
+  static constexpr auto no_family = static_cast<std::size_t>(-1);
+  /// By which factor an error changes, and by how much the evaluations; nothing where they do not.
+  struct Change {
+    double factor = 1, evaluations = 0;
+    bool is_there() const { return evaluations != 0; }
+  };
+  struct Element {
+    double error;  // J
+    Kinds const* kinds;
+    int divisions;
+    std::size_t family = no_family;
+  };
+  struct Family {
+    double error;  // J
+    Change merged;
+  };
+
+  static Change change(Element const& own, Action action) {
+    auto const& [kind, higher, lower] = *own.kinds;
+    if (action == Action::divide && own.divisions > 0)
+      return {kind.factor, (kind.children - 1) * kind.evaluations};
+    if (action == Action::raise && higher != nullptr)
+      return {raising, higher->evaluations - kind.evaluations};
+    if (action == Action::lower && lower != nullptr)
+      return {lowering, lower->evaluations - kind.evaluations};
+    return {};
+  }
+  /// J per evaluation.
+  static double worth(double error, Change const& change) {
+    return change.is_there() ? error * (1 - change.factor) / change.evaluations : 0;
+  }
+  /// What is left of an error and what it costs at a price, the least over divisions.
+  static double least(double error, Kind const& kind, int divisions, double price) {
+    double evaluations = kind.evaluations, best = error + price * evaluations;
+    for (int k = 0; k < divisions; ++k) {
+      error *= kind.factor;
+      evaluations *= kind.children;
+      double const now = error + price * evaluations;
+      if (now >= best) break;
+      best = now;
+    }
+    return best;
+  }
+  /// The first step to where the error and its price are least.
+  Action action(Element const& own, double limit) const {
+    auto const& [kind, higher, lower] = *own.kinds;
+    if (higher != nullptr && least(raising * own.error, *higher, own.divisions, limit) <
+                                 least(own.error, kind, own.divisions, limit))
+      return Action::raise;
+    if (worth(own.error, change(own, Action::divide)) > limit) return Action::divide;
+    auto const lowered = change(own, Action::lower);
+    bool const lowers = lowered.is_there() && worth(own.error, lowered) < release_ * limit &&
+                        !(own.family != no_family && merges(own.family, limit));
+    return lowers ? Action::lower : Action::none;
+  }
+
+  double release_, error_ = 0, evaluations_ = 0;
+  std::vector<Element> elements_;
+  std::vector<Family> families_;
+};
+
+}  // namespace pliant::detail
