@@ -65,8 +65,8 @@ TEST_CASE("a mesh holds a budget while what it resolves wanders, and spends it w
   on_each_backend<FewBackends>([](auto const& backend) {
     auto body = body_on(backend, coarse());
     double const budget = 1000;
-    auto adapt =
-        Adaptation{within<Held<Tri3>>(RecoveredStress{}, {.evaluations_per_step = budget})};
+    auto adapt = Adaptation{
+        within<Held<Tri3>>(RecoveredStress{}, {.evaluations_per_step = budget, .max_level = 5})};
     for (double place : {1.0, 1.3, 1.6, 2.0, 2.5, 3.0}) {
       look(body, adapt, place);
       CHECK(count(body) > 0.9 * budget);
@@ -154,7 +154,8 @@ TEST_CASE("a budget holds for both degrees", "[adaptation]") {
   on_each_backend<FewBackends>([](auto const& backend) {
     auto body = body_of_degrees(backend);
     double const budget = 1500;
-    auto const rule = within<Held4, Held9>(RecoveredStress{}, {.evaluations_per_step = budget});
+    auto const rule =
+        within<Held4, Held9>(RecoveredStress{}, {.evaluations_per_step = budget, .max_level = 5});
     auto adapt = Adaptation{rule};
     for (double place : {1.0, 1.3, 2.0, 3.0}) {
       look(body, adapt, place);
