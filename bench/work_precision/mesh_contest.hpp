@@ -70,6 +70,18 @@ void add_degrees(std::vector<Contestant>& contestants, Options const& options) {
   }
 }
 
+/// The degree and the size of each element by what they are worth: each round halves what is estimated.
+template <class Problem, Element E, Element Quadratic>
+void add_within(std::vector<Contestant>& contestants, Options const& options) {
+  using Low = Formulation<E, Full<E>, Problem::template law>;
+  using High = Formulation<Quadratic, Full<Quadratic>, Problem::template law>;
+  char text[80];
+  std::snprintf(text, sizeof text, "%s and %s, within", E::name(), Quadratic::name());
+  add_adaptive<Problem, Low, High>(contestants, options, text, [] {
+    return Adaptation{within<Low, High>(RecoveredStress{}, {.error = 1e-12})};
+  });
+}
+
 /// Uniform meshes of some elements, under their full rules.
 template <class Problem, Element... Es>
 void add_elements(std::vector<Contestant>& contestants, Options const& options) {
@@ -88,6 +100,7 @@ void compare_meshes(Options const& options, std::vector<Contestant> contestants 
   add_rules<Problem, Quad9>(contestants, options, shares);
   add_degrees<Problem, Tri3, Tri6>(contestants, options);
   add_degrees<Problem, Quad4, Quad9>(contestants, options);
+  add_within<Problem, Quad4, Quad9>(contestants, options);
   hold_contest(Problem::name, contestants, options);
 }
 
@@ -111,6 +124,7 @@ void compare_solids(Options const& options) {
   add_rules<Problem, Tet4>(contestants, options, shares);
   add_rules<Problem, Tet10>(contestants, options, shares);
   add_degrees<Problem, Hex8, Hex27>(contestants, options);
+  add_within<Problem, Hex8, Hex27>(contestants, options);
 #endif
   hold_contest(Problem::name, contestants, options);
 }

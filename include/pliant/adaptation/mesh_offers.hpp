@@ -9,8 +9,8 @@
 
 namespace pliant::detail {
 
-/// What changes of a mesh are worth, in joules per evaluation: those worth more than a limit are made, and undone those
-/// that are worth less where they are.
+/// What changes of a mesh are worth, in joules per evaluation: those worth more than one limit are made, and undone where they
+/// are those worth less than another.
 class MeshOffers {
  public:
   /// Elements of one degree that are alike: what a division makes of one.
@@ -50,32 +50,36 @@ class MeshOffers {
         {sum, {1 / kind.factor, -(static_cast<double>(members.size()) - 1) * kind.evaluations}});
   }
 
+  struct Limits {
+    double make, undo;  // J per evaluation
+  };
   enum class Action { none, divide, raise, lower };
-  Action action(std::size_t e, double limit) const { return action(elements_[e], limit); }
-  bool merges(std::size_t family, double limit) const {
+  Action action(std::size_t e, Limits const& limits) const { return action(elements_[e], limits); }
+  bool merges(std::size_t family, Limits const& limits) const {
     auto const& own = families_[family];
-    return worth(own.error, own.merged) < release_ * limit;
+    return worth(own.error, own.merged) < release_ * limits.undo;
   }
 
   struct Outcome {
     double error, evaluations;
   };
-  Outcome at(double limit) const {
+  Outcome at(Limits const& limits) const {
     Outcome found{error_, evaluations_};
     auto const make = [&](double error, Change const& change) {
       found.error += error * (change.factor - 1);
       found.evaluations += change.evaluations;
     };
     for (auto const& own : elements_)
-      if (auto const chosen = action(own, limit); chosen != Action::none)
+      if (auto const chosen = action(own, limits); chosen != Action::none)
         make(own.error, change(own, chosen));
     for (std::size_t k = 0; k < families_.size(); ++k)
-      if (merges(k, limit)) make(families_[k].error, families_[k].merged);
+      if (merges(k, limits)) make(families_[k].error, families_[k].merged);
     return found;
   }
-  /// The largest limit that keeps what is left of the error, or the least that keeps the budget where that is larger;
-  /// infinite: there is none.
-  double limit_for(double error, double evaluations) const {
+  /// The largest limits that keep what is left of the error, or the least that keep the budget where these are larger;
+  /// infinite: there is none. No more is made than leaves a quarter of the error: what is left then is best known. Undone is what neither
+  /// asks for in the end.
+  Limits limits_for(double error, double evaluations) const {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     auto const widen = [&](double of, Change const& change) {
       double const own = worth(of, change);
@@ -87,23 +91,29 @@ class MeshOffers {
       for (Action each : {Action::divide, Action::raise, Action::lower})
         widen(own.error, change(own, each));
     for (auto const& own : families_) widen(own.error, own.merged);
-    if (most == 0) return 1;  // nothing is wrong anywhere: all is undone
+    if (most == 0) return {1, 1};  // nothing is wrong anywhere: all is undone
     double const low = least / 2, high = 2 * most / release_;
     auto const search = [&](auto const& is_low) {
       double a = low, b = high;
       for (int k = 0; k < 60; ++k) {
         double const middle = std::sqrt(a * b);
-        (is_low(at(middle)) ? a : b) = middle;
+        (is_low(middle) ? a : b) = middle;
       }
       return std::pair{a, b};
     };
-    // Not all at once: what is left after half of the error is best known then.
-    double const aim = std::max(error, error_ / 2);
-    double limit =
-        std::isfinite(error) ? search([&](Outcome const& o) { return o.error <= aim; }).first : low;
-    if (at(limit).evaluations > evaluations)
-      limit = search([&](Outcome const& o) { return o.evaluations > evaluations; }).second;
-    return limit;
+    bool const has_error = std::isfinite(error);
+    double const end = has_error ? search([&](double l) {
+                                     return at({l, l}).error <= error;
+                                   }).first
+                                 : low;
+    if (at({end, end}).evaluations > evaluations) {
+      double const limit = search([&](double l) {
+                             return at({l, l}).evaluations > evaluations;
+                           }).second;
+      return {limit, limit};
+    }
+    if (!has_error || error >= error_ / 4) return {end, end};
+    return {search([&](double l) { return at({l, end}).error <= error_ / 4; }).first, end};
   }
 
  private:
@@ -151,15 +161,15 @@ class MeshOffers {
     return best;
   }
   /// The first step to where the error and its price are least.
-  Action action(Element const& own, double limit) const {
+  Action action(Element const& own, Limits const& limits) const {
     auto const& [kind, higher, lower] = *own.kinds;
-    if (higher != nullptr && least(raising * own.error, *higher, own.divisions, limit) <
-                                 least(own.error, kind, own.divisions, limit))
+    if (higher != nullptr && least(raising * own.error, *higher, own.divisions, limits.make) <
+                                 least(own.error, kind, own.divisions, limits.make))
       return Action::raise;
-    if (worth(own.error, change(own, Action::divide)) > limit) return Action::divide;
+    if (worth(own.error, change(own, Action::divide)) > limits.make) return Action::divide;
     auto const lowered = change(own, Action::lower);
-    bool const lowers = lowered.is_there() && worth(own.error, lowered) < release_ * limit &&
-                        !(own.family != no_family && merges(own.family, limit));
+    bool const lowers = lowered.is_there() && worth(own.error, lowered) < release_ * limits.undo &&
+                        !(own.family != no_family && merges(own.family, limits));
     return lowers ? Action::lower : Action::none;
   }
 

@@ -55,9 +55,9 @@ inline void check_limits(MeshWithinOptions const& options) {
 /// Refines the elements of F whose estimated error drops most per cost and merges the families whose error rises least per
 /// cost saved, at each look anew: as few elements as keep what is estimated at most `error`, and never more than
 /// `evaluations_per_step` or what `milliseconds_per_step` allow, which come first. Errors of smooth solutions are taken to fall
-/// by 4^degree where an element is refined; at singular places that takes more looks. A look aims at half of the error at
-/// the least. To keep levels within one, neighbours are refined along, beyond
-/// the budget until the next look merges others. Throws Error for options out of range.
+/// by 4^degree where an element is refined; at singular places that takes more looks. A look makes no more than leaves
+/// a quarter of the error, and undoes only what is not wanted in the end. To keep levels within one, neighbours are refined along,
+/// beyond the budget until the next look merges others. Throws Error for options out of range.
 template <class F, class E>
 auto within(E estimator, MeshWithinOptions const& options) {
   static_assert(Estimator<E, F>, "within<F>(estimator, ...): an estimator of elements of F");
@@ -163,7 +163,7 @@ void hold_mesh(TheBody& body, MeshWithinRule<Estimate, Fs...> const& rule, doubl
     ++k;
   };
   (add(TypeList<Fs>{}), ...);
-  double const limit = offers.limit_for(rule.options.error, evaluations);
+  auto const limits = offers.limits_for(rule.options.error, evaluations);
 
   MarkedElements marked;
   auto const types = element_counts(parts.state.topology->mesh).size();
@@ -173,14 +173,14 @@ void hold_mesh(TheBody& body, MeshWithinRule<Estimate, Fs...> const& rule, doubl
   k = 0;
   auto const mark = [&](std::size_t type) {
     for (std::size_t e = 0; e < counts[k]; ++e) {
-      auto const action = offers.action(first[k] + e, limit);
+      auto const action = offers.action(first[k] + e, limits);
       for (auto const& [list, wanted] : {std::pair{&marked.refine, MeshOffers::Action::divide},
                                          {&marked.raise, MeshOffers::Action::raise},
                                          {&marked.lower, MeshOffers::Action::lower}})
         if (action == wanted) (*list)[type].push_back(static_cast<Index>(e));
     }
     for (auto const& members : families[k])
-      if (offers.merges(family++, limit))
+      if (offers.merges(family++, limits))
         marked.coarsen[type].insert(marked.coarsen[type].end(), members.begin(), members.end());
     ++k;
   };
