@@ -26,14 +26,16 @@ void run(char const* name, Scene scene, storm::Options const& options) {
   try {
     auto const r = storm.run();
     std::printf(
-        "%-28s %lld steps, %lld epochs, %lld restarts, %lld roll-backs, %lld refused, %lld drives, "
+        "%-28s %lld steps, %lld of them local, %lld epochs, %lld restarts, %lld roll-backs, %lld "
+        "refused, %lld drives, "
         "%lld pressures, %.0f switches, sleep in %lld epochs, up to %lld nodes, ledger within "
         "%.1e\n",
-        name, static_cast<long long>(r.steps), static_cast<long long>(r.epochs),
-        static_cast<long long>(r.restarts), static_cast<long long>(r.retries),
-        static_cast<long long>(r.refused), static_cast<long long>(r.driven),
-        static_cast<long long>(r.pressed), r.switched, static_cast<long long>(r.slept),
-        static_cast<long long>(r.largest_mesh), r.worst_ledger_error);
+        name, static_cast<long long>(r.steps), static_cast<long long>(r.local),
+        static_cast<long long>(r.epochs), static_cast<long long>(r.restarts),
+        static_cast<long long>(r.retries), static_cast<long long>(r.refused),
+        static_cast<long long>(r.driven), static_cast<long long>(r.pressed), r.switched,
+        static_cast<long long>(r.slept), static_cast<long long>(r.largest_mesh),
+        r.worst_ledger_error);
     for (auto const& [event, missed] : r.missed)
       std::printf("  the ledger misses %.1e of the largest energy in events \"%s\"\n", missed,
                   event.c_str());

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include <pliant/body/compare.hpp>
+#include <pliant/solver/local_steps.hpp>
 
 #include "support/backends.hpp"
 #include "support/fields.hpp"
@@ -27,6 +28,7 @@ struct Failure : std::runtime_error {
 struct Report {
   std::int64_t steps = 0, restarts = 0, retries = 0, refused = 0, epochs = 0, driven = 0,
                pressed = 0, slept = 0;   // slept: epochs in which patches did
+  std::int64_t local = 0;                // steps that were macro steps of LocalSteps
   std::int64_t largest_mesh = 0;         // nodes
   double switched = 0;                   // elements that changed their group
   std::map<std::string, double> missed;  // by the ledger, of each kind of event, over the same
@@ -85,6 +87,7 @@ class Storm {
     ++report_.epochs;
     event_ = "begin";
     rests_ = random_.below(3) == 0;
+    local_ = !options_.ledger && random_.below(3) == 0;
     slept_ = false;
     motions_.clear();
     kept_.reset();
@@ -113,7 +116,13 @@ class Storm {
     ++report_.restarts;
   }
   /// The integrator that a body is loaded with is the one that advanced it.
-  void bind(TheBody& body) { step_(body, 0); }
+  void bind(TheBody& body) { advance(body, 0); }
+  void advance(TheBody& body, int steps) {
+    if (local_)
+      local_steps_(body, steps);
+    else
+      step_(body, steps);
+  }
   void give_motions(TheBody& body) {
     for (auto const& [name, motion] : motions_)
       body.release(body.drive(std::vector<Index>{0}, motion, {.name = name}));
@@ -174,9 +183,11 @@ class Storm {
       auto const before = one_->steps();
       event_ = "steps";
       bool went = true;
-      booked([&] { went = both([&](auto& body) { step_(body, steps); }); });
+      booked([&] { went = both([&](auto& body) { advance(body, steps); }); });
       if (!went) throw Failure("an ordinary step fails: " + last_error_);
-      report_.steps += std::max<std::int64_t>(one_->steps() - before, 1);
+      auto const taken = std::max<std::int64_t>(one_->steps() - before, 1);
+      report_.steps += taken;
+      if (local_) report_.local += taken;
       event_ = "sleep";
       if (rests_) booked([&] { both([&](auto& body) { let_rest(body); }); });
       event_ = "switching";
@@ -187,7 +198,7 @@ class Storm {
     slept_ = slept_ || one_->parts().awake;
     report_.largest_mesh = std::max(report_.largest_mesh, std::int64_t{one_->nodes()});
     if (!std::isfinite(test::largest(one_->displacements()))) throw Failure("not finite");
-    auto const what = random_.below(14);
+    auto const what = random_.below(15);
     if (what == 11) {  // not for the ledger: the energy is another one
       happen(what);
       missed_ = missed_of_kept_;
@@ -241,7 +252,7 @@ class Storm {
         event_ = "read";
         (void)total_energy(*one_);
         (void)one_->forces();
-        both([&](auto& body) { step_(body); });  // after which velocities lag behind in both
+        both([&](auto& body) { advance(body, 1); });  // after which velocities lag behind in both
         break;
       case 10:  // nor does what was just saved
         event_ = "load again";
@@ -267,6 +278,12 @@ class Storm {
         both([&](auto& body) { body.set_velocities(v); });
         break;
       }
+      case 13:
+        event_ = "the other integrator";
+        if (options_.ledger) break;
+        local_ = !local_;
+        both([&](auto& body) { bind(body); });
+        break;
       default: {
         event_ = "damping";
         if (options_.ledger) break;
@@ -384,6 +401,8 @@ class Storm {
                            .check_interval = 32,
                            .refresh_interval = 100,
                            .energy_growth = options_.ledger ? 0.1 : 0.9}};
+  LocalSteps local_steps_{{.safety = 0.3, .check_interval = 32, .refresh_interval = 100}};
+  bool local_ = false;  // which of the two steps
   std::map<std::string, Motion<dim>> motions_;
   std::optional<std::string> kept_;
   bool rests_ = false, slept_ = false;  // in this epoch: whether patches may sleep, and did
