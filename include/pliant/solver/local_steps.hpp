@@ -71,6 +71,7 @@ class LocalSteps {
     auto& state = parts.state;
     std::int64_t const begun = state.steps, goal = begun + macro_steps;
     begin(parts);
+    if (macro_steps == 0) return detail::advanced(parts, begun, step_, false);
     auto& own = state.integrator;
     std::int64_t checked = -1;                                // at which step
     if (!parts.has_checkpoint) own.next_watch = state.steps;  // changed by hand
