@@ -1,5 +1,10 @@
 #include <deal.II/base/config.h>
 
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
 // Debian's deal.II is built for processors without vectors. Its templates are compiled anew here, for the vectors of
 // this one.
 #undef DEAL_II_VECTORIZATION_WIDTH_IN_BITS
@@ -35,11 +40,12 @@
 // visits sides.
 namespace dealii::internal::MatrixFreeFunctions {
 template <>
-inline std::pair<dealii::ReferenceCell, dealii::hp::QCollection<2>> get_face_quadrature_collection<3>(
-    Quadrature<3> const& points, bool) {
+inline std::pair<dealii::ReferenceCell, dealii::hp::QCollection<2>>
+get_face_quadrature_collection<3>(Quadrature<3> const& points, bool) {
   if (points.size() <= 4)
     return {ReferenceCells::Tetrahedron, dealii::hp::QCollection<2>(QGaussSimplex<2>(1))};
-  return {ReferenceCells::Hexahedron, dealii::hp::QCollection<2>(QGauss<2>(points.size() == 8 ? 2 : 3))};
+  return {ReferenceCells::Hexahedron,
+          dealii::hp::QCollection<2>(QGauss<2>(points.size() == 8 ? 2 : 3))};
 }
 template <>
 inline std::pair<Quadrature<2>, Quadrature<2>> get_unique_face_quadratures<3>(
@@ -205,8 +211,8 @@ class DealII : public Peer {
     return nodes;
   }
   void make_cells(PeerMesh const& mesh) {
-    auto const type = mesh.simplex ? dealii::ReferenceCells::Tetrahedron
-                                   : dealii::ReferenceCells::Hexahedron;
+    auto const type =
+        mesh.simplex ? dealii::ReferenceCells::Tetrahedron : dealii::ReferenceCells::Hexahedron;
     std::vector<int> corner(type.n_vertices(), -1);
     for (unsigned v = 0; v < corner.size(); ++v)
       for (std::size_t a = 0; a < mesh.places.size(); ++a) {

@@ -10,12 +10,13 @@ namespace pliant::bench {
 
 /// A mesh, in the order in which it is to be kept, and what it is made of.
 struct PeerMesh {
-  bool simplex;                               // tetrahedra, or else hexahedra
-  int degree;                                 // of the shape functions
-  std::vector<std::array<double, 3>> nodes;   // m
-  std::vector<int> elements;                  // (elements, nodes of one)
-  std::vector<std::array<double, 3>> places;  // of an element's nodes in its cell: [0, 1]³ or corners 0, e₀, e₁, e₂
-  double lambda, mu;                          // Lamé's parameters, Pa
+  bool simplex;                              // tetrahedra, or else hexahedra
+  int degree;                                // of the shape functions
+  std::vector<std::array<double, 3>> nodes;  // m
+  std::vector<int> elements;                 // (elements, nodes of one)
+  std::vector<std::array<double, 3>>
+      places;         // of an element's nodes in its cell: [0, 1]³ or corners 0, e₀, e₁, e₂
+  double lambda, mu;  // Lamé's parameters, Pa
 };
 
 enum class PeerLaw { saint_venant_kirchhoff, neo_hookean };

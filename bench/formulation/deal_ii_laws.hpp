@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deal.II/base/tensor.h>
+#include <deal.II/base/vectorization.h>
 
 #include <pliant/openmp/pack_functions.hpp>
 
@@ -35,9 +36,8 @@ struct PeerSaintVenantKirchhoff {
   /// δH S + F δS, with 2 δE = FᵀδH + δHᵀF.
   Gradient derivative(Gradient const& h, Gradient const& dh) const {
     Gradient const f = deformation_gradient(h), product = dealii::transpose(f) * dh;
-    return dh * second(h) + f * of_strain([&](unsigned i, unsigned j) {
-             return product[i][j] + product[j][i];
-           });
+    return dh * second(h) +
+           f * of_strain([&](unsigned i, unsigned j) { return product[i][j] + product[j][i]; });
   }
 
  private:

@@ -1,129 +1,18 @@
 #include <dlfcn.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <ctime>
 #include <fstream>
-#include <functional>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include <Eigen/SparseCore>
-
-#include <pliant/openmp.hpp>
-#include <pliant/pliant.hpp>
-#include <pliant/solver/assemble.hpp>
-
-#include "deal_ii.hpp"
-#include "support/formulations.hpp"
-#include "support/problem.hpp"
+#include "peer_contest.hpp"
 
 // Pliant's forces and tangent products beside those of other libraries, on one core in double precision: deal.II's
 // MatrixFree, and for linear elements the product with the assembled stiffness by Eigen and a plain loop over elements
-// with atomic additions. All compute on one mesh, agree to 1e-10 or stop the program, and run in turns; the least times
-// count. It prints a table and writes JSON. Arguments: the JSON file, turns, then libraries of the target
-// forces_of_deal_ii, by several compilers if wanted; the one of this build without any.
+// with atomic additions. All compute on one mesh, agree to 1e-10 of the largest value or stop the program, and run in
+// turns; the least times count. It prints a table in M elements/s and writes JSON. Arguments: the JSON file, turns, and libraries
+// of the target forces_of_deal_ii, by several compilers if wanted: Pliant is put over the fastest.
 namespace pliant::bench {
 
-using Rows = std::vector<Point<3>>;
-using Core = OpenMP<double>;
-
-/// What is timed, and how it did.
-struct Contestant {
-  std::string name;
-  std::function<void()> work;
-  std::function<Rows()> result;
-  double least = 1e30;  // s
-};
-
-struct Row {
-  std::string element, law, product;
-  long elements;
-  std::vector<std::pair<std::string, double>> rates;  // M elements/s; Pliant first
-};
-
-double seconds(std::function<void()> const& work) {
-  using Clock = std::chrono::steady_clock;
-  auto const start = Clock::now();
-  work();
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// By the numbers that the mesh of an OrderedMesh has inside a body.
-template <Element E>
-Rows in_order(OrderedMesh<E> const& ordered, Rows const& by_user) {
-  Rows rows(by_user.size());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[i] = by_user[static_cast<std::size_t>(ordered.numbering.user_node[i])];
-  return rows;
-}
-
-template <Element E>
-PeerMesh peer_mesh(OrderedMesh<E> const& ordered) {
-  constexpr bool simplex = SimplexCell<typename E::cell>;
-  PeerMesh mesh{simplex, E::degree, in_order(ordered, ordered.mesh.nodes), {}, {}, soft.lame_lambda(),
-                soft.lame_mu()};
-  for (auto const& element : std::get<0>(ordered.numbering.tables))
-    mesh.elements.insert(mesh.elements.end(), element.begin(), element.end());
-  for (int a = 0; a < E::nodes; ++a) {
-    auto& place = mesh.places.emplace_back();
-    for (int k = 0; k < 3; ++k)
-      place[static_cast<std::size_t>(k)] = simplex ? E::place(a)[k] : (E::place(a)[k] + 1) / 2;
-  }
-  return mesh;
-}
-
-/// Puts the nodes between the corners into the middle of their edges.
-template <Element E>
-void straighten(Mesh<E>& mesh) {
-  constexpr auto edges = E::edges();
-  for (auto const& element : mesh.template elements<E>())
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      auto const node = [&](std::size_t a) -> auto& {
-        return mesh.nodes[static_cast<std::size_t>(element[a])];
-      };
-      for (std::size_t k = 0; k < 3; ++k)
-        node(E::cell::corners + e)[k] =
-            (node(static_cast<std::size_t>(edges[e][0]))[k] + node(static_cast<std::size_t>(edges[e][1]))[k]) / 2;
-    }
-}
-
-/// Gives up where results differ by more than rounding.
-void demand_agreement(std::vector<Contestant> const& all, std::string const& what) {
-  auto const expected = all.front().result();
-  double largest = 0;
-  for (auto const& row : expected)
-    for (double x : row) largest = std::max(largest, std::abs(x));
-  for (auto const& other : all) {
-    auto const rows = other.result();
-    double apart = rows.size() == expected.size() ? 0 : largest;
-    for (std::size_t i = 0; apart < largest && i < rows.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (double const d = std::abs(rows[i][k] - expected[i][k]); !(d <= apart)) apart = d;
-    if (apart <= 1e-10 * largest && largest > 0) continue;
-    std::fprintf(stderr, "%s: %s is apart from Pliant by %.2g of the largest value, %.3g\n",
-                 what.c_str(), other.name.c_str(), apart / largest, largest);
-    std::exit(1);
-  }
-}
-
-/// A first call brings its own data into the caches, then two are timed.
-void run_in_turns(std::vector<Contestant>& all, int turns) {
-  for (int turn = 0; turn < turns; ++turn)
-    for (auto& one : all) {
-      one.work();
-      for (int k = 0; k < 2; ++k) one.least = std::min(one.least, seconds(one.work));
-    }
-}
-
-using Library = std::function<MakePeer>;
-
-/// Throws nothing: says what is wrong and ends.
-Library loaded(char const* file) {
+MakePeer* loaded(char const* file) {
   void* const library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
   void* const function = library == nullptr ? nullptr : dlsym(library, make_peer_name);
   if (function == nullptr) {
@@ -133,151 +22,102 @@ Library loaded(char const* file) {
   return reinterpret_cast<MakePeer*>(function);
 }
 
-template <Element E>
-class Contest {
-  using Nodes = std::vector<std::array<Index, E::nodes>>;
+std::string compiler() {
+#if defined(__clang__)
+  return "clang++ " + std::to_string(__clang_major__);
+#else
+  return "g++ " + std::to_string(__GNUC__);
+#endif
+}
 
- public:
-  Contest(std::string name, OrderedMesh<E> const& ordered, std::vector<Library> const& libraries)
-      : name_(std::move(name)),
-        ordered_(ordered),
-        problem_(backend_, ordered),
-        u_(in_order(ordered, shaken(ordered.mesh.nodes, 1))),
-        du_(in_order(ordered, shaken(ordered.mesh.nodes, 2))),
-        plain_(zeros<double>(backend_, node_stride * static_cast<std::size_t>(problem_.nodes))) {
-    auto const mesh = peer_mesh(ordered);
-    for (auto const& make : libraries) {
-      peers_.emplace_back(make(mesh));
-      peers_.back()->set_displacements(u_, du_);
-    }
-  }
+std::string today() {
+  std::time_t const now = std::time(nullptr);
+  char text[16];
+  std::strftime(text, sizeof(text), "%F", std::gmtime(&now));
+  return text;
+}
 
-  template <template <class> class L, Geometry How>
-  void run(PeerLaw law, int turns, std::vector<Row>& table) {
-    using F = Usual<E, L>;
-    using Laws = GroupLaws<double, F>;
-    auto const laws = soft_laws<double, F>();
-    auto all = contestants(ForceKernel<Laws, How>{laws}, problem_.rest(), problem_.u());
-    for (auto& peer : peers_) add_peer(all, *peer, [&peer, law] { peer->force(law); });
-    finish<F>(all, "force", turns, table);
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
 
-    all = contestants(TangentKernel<double, Laws, How>{laws, 1.0}, problem_.rest(), problem_.u(),
-                      problem_.du());
-    for (auto& peer : peers_) add_peer(all, *peer, [&peer, law] { peer->tangent_product(law); });
-    if constexpr (E::degree == 1) add_assembled<F>(all);
-    finish<F>(all, "tangent product", turns, table);
-  }
+void print_head() {
+  std::printf("Pliant by %s on one core, double precision, M elements/s\n\n", compiler().c_str());
+  std::printf(
+      "| element | law | product | Pliant | deal.II, its fastest | ratio | assembled, by Eigen | "
+      "plain "
+      "loop |\n|---|---|---|---|---|---|---|---|\n");
+}
+void print(Row const& row) {
+  Contestant const* best = nullptr;
+  for (auto const& one : row.all)
+    if (one.kind == Kind::deal_ii && (best == nullptr || one.least < best->least)) best = &one;
+  std::printf("| %s | %s | %s | %.3g |", row.element.c_str(), row.law.c_str(), row.product.c_str(),
+              row.rate(Kind::pliant));
+  if (best == nullptr)
+    std::printf(" – | – |");
+  else
+    std::printf(" %.3g (%s) | **%.2f** |", row.rate(*best), best->name.c_str(),
+                row.rate(Kind::pliant) / row.rate(*best));
+  for (Kind const kind : {Kind::assembled, Kind::plain})
+    if (double const rate = row.rate(kind); rate > 0)
+      std::printf(" %.3g |", rate);
+    else
+      std::printf(" – |");
+  std::printf("\n");
+  std::fflush(stdout);
+}
 
- private:
-  /// Pliant's loop, and for linear elements a plain one with the same kernel.
-  template <class Kernel, class... Fields>
-  std::vector<Contestant> contestants(Kernel const& kernel, Fields... fields) {
-    std::vector<Contestant> all;
-    all.push_back({"Pliant",
-                   [=, this] {
-                     problem_.clear_forces(backend_);
-                     backend_.template accumulate<1>(problem_.elements, kernel, problem_.f(),
-                                                     fields...);
-                   },
-                   [this] { return rows_of(problem_.f_values); }});
-    if constexpr (E::degree == 1)
-      all.push_back({"plain loop with atomics",
-                     [=, this] { accumulate_plainly(kernel, fields...); },
-                     [this] { return rows_of(plain_); }});
-    return all;
+void write(std::string const& file, std::vector<Row> const& table, std::string const& command) {
+  std::ofstream out(file);
+  out.precision(4);
+  out << "{\n \"context\": {\n  \"date\": \"" << today() << "\",\n  \"machine\": \"" << processor()
+      << "\",\n  \"compiler\": \"" << compiler()
+      << "\",\n  \"unit\": \"M elements/s on one core, double\""
+      << ",\n  \"command\": \"" << command << "\"\n },\n \"rows\": [";
+  char const* between = "\n";
+  for (auto const& row : table) {
+    out << between << "  {\n   \"element\": \"" << row.element << "\",\n   \"law\": \"" << row.law
+        << "\",\n   \"product\": \"" << row.product << "\",\n   \"elements\": " << row.elements
+        << ",\n   \"compiler\": \"" << compiler() << "\"";
+    for (auto const& one : row.all) out << ",\n   \"" << one.name << "\": " << row.rate(one);
+    if (double const peer = row.rate(Kind::deal_ii); peer > 0)
+      out << ",\n   \"Pliant over the fastest deal.II\": " << row.rate(Kind::pliant) / peer;
+    out << "\n  }";
+    between = ",\n";
   }
-  static void add_peer(std::vector<Contestant>& all, Peer& peer, std::function<void()> work) {
-    all.push_back({peer.name(), std::move(work), [&peer] { return peer.result(); }});
+  out << "\n ]\n}\n";
+  if (!out.flush()) {
+    std::fprintf(stderr, "cannot write %s\n", file.c_str());
+    std::exit(1);
   }
-  /// The product with the stiffness of the same elements, whose order is that of the body.
-  template <class F>
-  void add_assembled(std::vector<Contestant>& all) {
-    Mesh<E> mesh{in_order(ordered_, ordered_.mesh.nodes), {ordered_.numbering.tables}};
-    Body const body{backend_, mesh, soft, Group<F>{}};
-    auto const flat = [](Rows const& rows) {
-      return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd const>(
-          rows.front().data(), 3 * static_cast<Eigen::Index>(rows.size())));
-    };
-    using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-    auto const k = std::make_shared<Matrix>(-assemble(body, flat(u_)).stiffness);
-    auto const du = std::make_shared<Eigen::VectorXd>(flat(du_));
-    auto const product = std::make_shared<Eigen::VectorXd>(du->size());
-    all.push_back({"assembled, by Eigen", [=] { product->noalias() = *k * *du; },
-                   [=] {
-                     Rows rows(static_cast<std::size_t>(product->size()) / 3);
-                     std::copy_n(product->data(), product->size(), rows.front().data());
-                     return rows;
-                   }});
-  }
-  template <class Kernel, class... Fields>
-  void accumulate_plainly(Kernel const& kernel, Fields const&... fields) {
-    std::fill_n(plain_.data(), plain_.size(), 0.0);
-    auto const& elements = std::get<0>(ordered_.numbering.tables);
-    for (auto const& nodes : elements) {
-      auto const gather = [&](auto const& field) {
-        Nodal<E, double> values;
-        for (int a = 0; a < E::nodes; ++a)
-          for (int k = 0; k < 3; ++k) values(a, k) = field(nodes[static_cast<std::size_t>(a)], k);
-        return values;
-      };
-      auto const shares = kernel(GroupNumber<0>{}, gather(fields)...);
-      for (int a = 0; a < E::nodes; ++a)
-        for (int k = 0; k < 3; ++k) {
-          double& sum = plain_.data()[node_stride * nodes[static_cast<std::size_t>(a)] + k];
-#pragma omp atomic
-          sum += shares(a, k);
-        }
-    }
-  }
-  Rows rows_of(Core::Array<double> const& values) const {
-    Rows rows(static_cast<std::size_t>(problem_.nodes));
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      std::copy_n(values.data() + node_stride * i, 3, rows[i].data());
-    return rows;
-  }
-  template <class F>
-  void finish(std::vector<Contestant>& all, std::string const& product, int turns,
-              std::vector<Row>& table) {
-    for (auto& one : all) one.work();
-    demand_agreement(all, name_ + ", " + law_name<F>() + ", " + product);
-    run_in_turns(all, turns);
-    Row row{name_, law_name<F>(), product, problem_.elements.count(), {}};
-    for (auto const& one : all)
-      row.rates.emplace_back(one.name, 1e-6 * static_cast<double>(row.elements) / one.least);
-    table.push_back(std::move(row));
-    print(table.back());
-  }
-  static void print(Row const& row) {
-    std::printf("| %s | %s | %s |", row.element.c_str(), row.law.c_str(), row.product.c_str());
-    for (auto const& [name, rate] : row.rates) std::printf(" %s %.3g |", name.c_str(), rate);
-    std::printf("\n");
-    std::fflush(stdout);
-  }
-
-  std::string name_;
-  OrderedMesh<E> const& ordered_;
-  Core backend_{{.threads = 1}};
-  Problem<Core, E> problem_;
-  Rows u_, du_;
-  Core::Array<double> plain_;
-  std::vector<std::unique_ptr<Peer>> peers_;
-};
+}
 
 }  // namespace pliant::bench
 
 int main(int argc, char** argv) {
   using namespace pliant;
   using namespace pliant::bench;
-  int const turns = argc > 2 ? std::atoi(argv[2]) : 15;
-  std::vector<Library> libraries;
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: %s JSON TURNS [LIBRARY...]\n", argv[0]);
+    return 1;
+  }
+  int const turns = std::max(1, std::atoi(argv[2]));
+  std::vector<MakePeer*> libraries;
   for (int k = 3; k < argc; ++k) libraries.push_back(loaded(argv[k]));
   std::vector<Row> table;
+  print_head();
   auto const compare = [&]<class E, Geometry How>(std::string const& name, double elements) {
     OrderedMesh<E> ordered(cells_for<E>(elements));
     if constexpr (How == Geometry::straight) straighten(ordered.mesh);
     Contest<E> contest(name, ordered, libraries);
+    auto const begin = table.size();
     contest.template run<SaintVenantKirchhoff, How>(PeerLaw::saint_venant_kirchhoff, turns, table);
     contest.template run<NeoHookean, How>(PeerLaw::neo_hookean, turns, table);
+    for (auto k = begin; k < table.size(); ++k) print(table[k]);
   };
   constexpr auto isoparametric = Geometry::isoparametric;
   compare.operator()<Tet4, isoparametric>("Tet4", 2e5);
@@ -285,4 +125,8 @@ int main(int argc, char** argv) {
   compare.operator()<Tet10, isoparametric>("Tet10, curved", 5e4);
   compare.operator()<Hex8, isoparametric>("Hex8", 2e5);
   compare.operator()<Hex27, isoparametric>("Hex27", 2.5e4);
+  write(argv[1], table,
+        "OMP_NUM_THREADS=1 bench/forces_against_peers JSON " + std::to_string(turns) +
+            " libforces_of_deal_ii.so of g++ and of clang++; targets forces_against_peers, "
+            "forces_of_deal_ii");
 }
