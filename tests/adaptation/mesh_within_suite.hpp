@@ -150,6 +150,29 @@ TEST_CASE("a mesh raises degrees where that is worth more, and lowers them behin
   });
 }
 
+TEST_CASE("far from the error that is asked for nothing is undone", "[adaptation]") {
+  on_each_backend<FewBackends>([](auto const& backend) {
+    auto body = body_of_degrees(backend);
+    auto const rule = within<Held4, Held9>(RecoveredStress{}, {.error = 1e-14, .max_level = 4});
+    auto adapt = Adaptation{rule};
+    // A slope everywhere; then a corner too where the gradient has no limit, beside which that is worth little at first.
+    auto const bend = [&](double corner) {
+      auto u = body.mesh().nodes;
+      for (auto& p : u)
+        p = {corner * std::pow(std::hypot(p[0], p[1]), 0.3) + 1e-4 * std::sin(3 * p[0]), 0};
+      body.set_displacements(u);
+    };
+    double evaluations = 0;
+    for (int k = 0; k < 8; ++k) {
+      bend(k < 3 ? 0 : 0.01);
+      adapt.now(body);
+      double const now = detail::evaluations_of_mesh(std::as_const(body).parts(), rule);
+      CHECK(now >= evaluations);
+      evaluations = now;
+    }
+  });
+}
+
 TEST_CASE("a budget holds for both degrees", "[adaptation]") {
   on_each_backend<FewBackends>([](auto const& backend) {
     auto body = body_of_degrees(backend);
