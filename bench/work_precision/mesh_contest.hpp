@@ -70,7 +70,7 @@ void add_degrees(std::vector<Contestant>& contestants, Options const& options) {
   }
 }
 
-/// The degree and the size of each element by what they are worth: each round halves what is estimated.
+/// The degree and the size of each element by what they are worth: no round makes more than leaves a quarter of what is estimated.
 template <class Problem, Element E, Element Quadratic>
 void add_within(std::vector<Contestant>& contestants, Options const& options) {
   using Low = Formulation<E, Full<E>, Problem::template law>;

@@ -77,8 +77,8 @@ class MeshOffers {
     return found;
   }
   /// The largest limits that keep what is left of the error, or the least that keep the budget where these are larger;
-  /// infinite: there is none. No more is made than leaves a quarter of the error: what is left then is best known. Undone is what neither
-  /// asks for in the end.
+  /// infinite: there is none. Towards an error no more is made than leaves a quarter of what there is: the rest is best known
+  /// then. Undone is what neither asks for in the end.
   Limits limits_for(double error, double evaluations) const {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     auto const widen = [&](double of, Change const& change) {

@@ -55,9 +55,9 @@ inline void check_limits(MeshWithinOptions const& options) {
 /// Refines the elements of F whose estimated error drops most per cost and merges the families whose error rises least per
 /// cost saved, at each look anew: as few elements as keep what is estimated at most `error`, and never more than
 /// `evaluations_per_step` or what `milliseconds_per_step` allow, which come first. Errors of smooth solutions are taken to fall
-/// by 4^degree where an element is refined; at singular places that takes more looks. A look makes no more than leaves
-/// a quarter of the error, and undoes only what is not wanted in the end. To keep levels within one, neighbours are refined along,
-/// beyond the budget until the next look merges others. Throws Error for options out of range.
+/// by 4^degree where an element is refined; at singular places that takes more looks. Towards an error a look makes no more
+/// than leaves a quarter of what there is, and undoes only what is not wanted in the end. To keep levels within one, neighbours
+/// are refined along, beyond the budget until the next look merges others. Throws Error for options out of range.
 template <class F, class E>
 auto within(E estimator, MeshWithinOptions const& options) {
   static_assert(Estimator<E, F>, "within<F>(estimator, ...): an estimator of elements of F");
