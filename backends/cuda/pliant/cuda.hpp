@@ -127,10 +127,9 @@ class Cuda {
       if constexpr (nodes == detail::FanPlanner::nodes && C == 3) {
         if (active.elements.has_fans()) {
           if constexpr (SymmetricKernel<Kernel>)
-            accumulate_fans<Groups>(active, kernel, out, fields...);
-          else
-            accumulate_by_elements<Groups>(active, kernel, out, fields...);
-          return;
+            if (active.most > detail::few_patches)
+              return accumulate_fans<Groups>(active, kernel, out, fields...);
+          return accumulate_by_elements<Groups>(active, kernel, out, fields...);
         }
       }
       using Memory = detail::PatchMemory<T, C, (Fields::components + ... + 0)>;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <span>
 #include <vector>
 
 #include <pliant/adaptation/relaxation.hpp>
@@ -117,29 +119,61 @@ int rings_reached(Parts const& parts, std::int64_t steps) {
   double const width = std::pow(nodes_of_patch, 1.0 / Parts::dim);
   return std::max(1, static_cast<int>(std::lround(static_cast<double>(steps) / width)));
 }
+/// f(p) for each patch whose mark is 1, not 0; few are, where most sleep.
+template <class F>
+void for_each_marked(std::vector<std::uint8_t> const& marks, F const& f) {
+  auto const* const end = marks.data() + marks.size();
+  for (auto const* at = marks.data(); at != end; ++at) {
+    at = static_cast<std::uint8_t const*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
+    if (!at) return;
+    f(static_cast<std::size_t>(at - marks.data()));
+  }
+}
 /// Marks so many rings of neighbours too: what sleeps would throw a wave back that comes before the next look.
 template <class Parts>
 void mark_reached(Parts const& parts, int rings, std::vector<std::uint8_t>& stirred) {
-  for (int ring = 0; ring < rings; ++ring) {
-    auto const inner = stirred;
-    for (std::size_t p = 0; p < inner.size(); ++p)
-      if (inner[p])
-        for (Index const other : parts.patch_nodes->neighbours[p])
-          stirred[static_cast<std::size_t>(other)] = 1;
+  for (int ring = 0; ring < rings; ++ring)
+    for_each_marked(std::vector(stirred), [&](std::size_t p) {
+      for (Index const other : parts.patch_nodes->neighbours[p])
+        stirred[static_cast<std::size_t>(other)] = 1;
+    });
+}
+
+/// How State::rest goes on where `passed` steps were taken since the last look.
+struct NextRest {
+  std::int32_t passed, for_steps;
+  std::int32_t operator()(std::int32_t rest, std::uint8_t stirred) const {
+    std::int32_t const longer = rest + passed, still = longer >= for_steps ? -1 : longer;
+    return stirred ? 0 : rest < 0 ? rest : still;
   }
+};
+/// Whether some patches fall asleep or wake, which changes a sign. As a minimum, of which compilers take many together.
+inline bool some_change(NextRest next, std::span<std::int32_t const> rest,
+                        std::span<std::uint8_t const> stirred) {
+  std::int32_t least = 0;
+  for (std::size_t p = 0; p < rest.size(); ++p)
+    least = std::min(least, next(rest[p], stirred[p]) ^ rest[p]);
+  return least < 0;
+}
+inline void go_on(NextRest next, std::span<std::int32_t> rest,
+                  std::span<std::uint8_t const> stirred) {
+  for (std::size_t p = 0; p < rest.size(); ++p) rest[p] = next(rest[p], stirred[p]);
 }
 
 /// Those that are about to fall asleep while their points relax are not at rest.
 template <class Parts>
-void keep_awake_what_relaxes(Parts& parts, SleepRule const& rule, std::vector<std::int32_t>& rest) {
-  auto const& before = parts.state.rest;
-  auto const falls_asleep = [&](std::size_t p) { return rest[p] < 0 && before[p] >= 0; };
+void stir_what_relaxes(Parts& parts, SleepRule const& rule, NextRest const& next,
+                       std::vector<std::uint8_t>& stirred) {
+  auto const& rest = parts.state.rest;
+  auto const falls_asleep = [&](std::size_t p) {
+    return rest[p] >= 0 && next(rest[p], stirred[p]) < 0;
+  };
   bool some = false;
   for (std::size_t p = 0; p < rest.size(); ++p) some = some || falls_asleep(p);
   if (!some) return;
   auto const relaxing = find_relaxing(parts, rule);
   for (std::size_t p = 0; p < rest.size(); ++p)
-    if (falls_asleep(p) && relaxing[p]) rest[p] = 0;
+    if (falls_asleep(p) && relaxing[p]) stirred[p] = 1;
 }
 }  // namespace detail
 
@@ -167,20 +201,13 @@ void look_for_rest(Parts& parts, SleepRule const& rule) {
   state.rest_seen = state.steps;
   auto stirred = detail::find_stirred(parts, rule);
   detail::mark_reached(parts, detail::rings_reached(parts, passed), stirred);
-  auto rest = state.rest;
-  for (std::size_t p = 0; p < count; ++p) {
-    if (stirred[p])
-      rest[p] = 0;
-    else if (rest[p] >= 0 && (rest[p] += passed) >= rule.for_steps)
-      rest[p] = -1;
-  }
-  if constexpr (Parts::has_internal_variables) detail::keep_awake_what_relaxes(parts, rule, rest);
-  bool const changed = !std::ranges::equal(
-      rest, state.rest, [](std::int32_t a, std::int32_t b) { return (a < 0) == (b < 0); });
-  if (changed)
-    change_rest(parts, [&] { state.rest = std::move(rest); });
+  detail::NextRest const next{passed, static_cast<std::int32_t>(rule.for_steps)};
+  if constexpr (Parts::has_internal_variables)
+    detail::stir_what_relaxes(parts, rule, next, stirred);
+  if (detail::some_change(next, state.rest, stirred))
+    change_rest(parts, [&] { detail::go_on(next, state.rest, stirred); });
   else
-    state.rest = std::move(rest);
+    detail::go_on(next, state.rest, stirred);
 }
 
 /// What sleeps in a body.

@@ -65,6 +65,10 @@ constexpr FanTuning fan_tuning() {
   return sizeof(T) == 4 ? FanTuning{128, 7, 768, 128, 600000} : FanTuning{128, 4, 768, 128, 300000};
 }
 
+/// Lists of so few patches are not accumulated in fans, of which a thread takes one element after the other, but an element
+/// in a thread: a block for each multiprocessor or fewer waits for memory most of the time.
+inline constexpr Index few_patches = 128;
+
 /// Kernels of few operations need few registers.
 template <class Kernel>
 concept LightKernel = requires { requires Kernel::few_operations; };
