@@ -7,29 +7,9 @@
 #include <pliant/adaptation/move_where_noted.hpp>
 #include <pliant/adaptation/ranking.hpp>
 #include <pliant/adaptation/refinement.hpp>
+#include <pliant/adaptation/rules_on.hpp>
 
 namespace pliant::detail {
-
-template <class R, class Table>
-concept On = std::same_as<typename R::from::element, typename Table::element>;
-
-template <class Table, class R>
-inline constexpr bool has_target = true;
-template <class Table, SwitchingRule R>
-inline constexpr bool has_target<Table, R> =
-    Table::template group_of<typename R::to> < Table::groups;
-
-/// The rules of a list that look at a table.
-template <class Table, class... Rules>
-auto rules_on(std::tuple<Rules...> const& rules) {
-  auto const one = []<class R>(R const& rule) {
-    if constexpr (On<R, Table>)
-      return std::tuple<R>{rule};
-    else
-      return std::tuple<>{};
-  };
-  return std::apply([&](auto const&... rule) { return std::tuple_cat(one(rule)...); }, rules);
-}
 
 /// One check of one element type: `decide` evaluates all criteria and changes nothing that a user
 /// sees, `act` moves elements between groups, `mark` lists those to refine, to coarsen, to raise and to lower. None waits for the
