@@ -66,7 +66,7 @@ TEMPLATE_TEST_CASE("the divergence is the transpose of the gradient", "[formulat
 }
 
 TEMPLATE_TEST_CASE("where an element lies is not rounded into its gradients", "[formulation]", Tri3,
-                   Tet4, Quad4, Hex8, General) {
+                   Tet4, Tri6, Tet10, Quad4, Hex8, General) {
   using E = TestType;
   constexpr auto table = tabulate<E, Gauss<2>, double>();
   Random random;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pliant/element/quadratic_simplex.hpp>
-#include <pliant/formulation/coefficients.hpp>
+#include <pliant/formulation/simplex_coefficients.hpp>
 #include <pliant/formulation/tensor_coefficients.hpp>
 
 namespace pliant {
