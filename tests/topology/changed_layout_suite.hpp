@@ -96,9 +96,9 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
   int stay = 0, change = 0;
   body.on_change([&](TopologyChange<Own> const& made) {
     if (!made.before.tree) return;
-    auto const before = elements_in_order(made.before, first, {});
-    auto const after = elements_in_order(made.after, first,
-                                         changed_cells(made.after, first.size(), made.transfer));
+    auto const before = elements_in_order(made.before, first);
+    OrderBefore<1> const known{{before.elements[0]}, {before.blocks[0].first}};
+    auto const after = elements_in_order(made.after, first, &known, &made.transfer);
     auto const& [now, then] = std::pair(after.blocks[0], before.blocks[0]);
     auto const old = old_elements(made);
     REQUIRE(now.first.size() == then.first.size());

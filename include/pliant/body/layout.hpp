@@ -59,13 +59,14 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   Array<DirectionMask> held;  // (nodes)
   Array<T> load;  // (nodes, 4): loads with those of slaves handed on; empty where not needed
   std::tuple<Table<Es>...> tables;
+  std::array<std::vector<Index>, sizeof...(Es)> first_of_block;  // elements, by the type
   InterpolationOn<B> interpolation;
 
   /// `first`: the order of the body's first mesh; null: this is it.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups, std::shared_ptr<CellOrder const> first = nullptr)
       : first_order(std::move(first)) {
-    make(backend, topology, material, groups, {}, nullptr,
+    make(backend, topology, material, groups, nullptr, nullptr,
          [&] { return detail::lumped_masses(topology.mesh, material.density); });
   }
   /// The same from the layout before a change.
@@ -73,13 +74,18 @@ struct Layout<B, Mesh<Es...>, Fs...> {
          std::tuple<Group<Fs>...> const& groups, Layout const& before,
          Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched)
       : first_order(before.first_order) {
-    auto const changed = changed_cells(topology, first_order->size(), transfer);
-    make(backend, topology, material, groups, changed, &before, [&] {
+    make(backend, topology, material, groups, &before, &transfer, [&] {
       return detail::changed_masses(topology.mesh, material.density, before.own_masses, transfer,
                                     touched);
     });
   }
 
+  OrderBefore<sizeof...(Es)> order() const {
+    OrderBefore<sizeof...(Es)> kept;
+    std::apply([&](auto const&... table) { kept.elements = {table.user_element...}; }, tables);
+    std::ranges::copy(first_of_block, kept.first.begin());
+    return kept;
+  }
   Index internal_of(Index user) const { return internal_node[static_cast<std::size_t>(user)]; }
 
   template <class E>
@@ -117,16 +123,21 @@ struct Layout<B, Mesh<Es...>, Fs...> {
  private:
   static constexpr Index few_nodes = 16384;
 
-  /// find_own_masses() gives own_masses. `changed`: see elements_in_order; `before`: the layout before a change, or null.
+  /// find_own_masses() gives own_masses. `before`, `transfer`: the layout before a change and what that means, or null.
   template <class FindOwnMasses>
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-            std::tuple<Group<Fs>...> const& groups, std::vector<char> const& changed,
-            Layout const* before, FindOwnMasses const& find_own_masses) {
+            std::tuple<Group<Fs>...> const& groups, Layout const* before,
+            Transfer<dim> const* transfer, FindOwnMasses const& find_own_masses) {
     auto const& mesh = topology.mesh;
     HostThreads const threads(backend, mesh);
     OrderedElements<sizeof...(Es)> ordered;
     bool const is_first = !first_order || !topology.tree;
-    if (!is_first) ordered = elements_in_order(topology, *first_order, changed);
+    if (!is_first && before != nullptr) {
+      auto const order_before = before->order();
+      ordered = elements_in_order(topology, *first_order, &order_before, transfer);
+    } else if (!is_first) {
+      ordered = elements_in_order(topology, *first_order);
+    }
     auto numbering =
         is_first ? Numbering<Es...>(mesh) : Numbering<Es...>(mesh, std::move(ordered.elements));
     if (is_first) ordered.blocks = first_blocks(mesh);
@@ -143,6 +154,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
                      scratch),
        ...);
     }(std::index_sequence_for<Es...>());
+    for (std::size_t type = 0; type < first_of_block.size(); ++type)
+      first_of_block[type] = std::move(ordered.blocks[type].first);
 
     upload_rest(backend, mesh);
     f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
