@@ -62,7 +62,7 @@ Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
              .material = parts.material,
              .groups = parts.groups,
              .layout = std::move(layout)};
-  copy_state(parts.backend, parts.state, next.state);
+  copy_state_without_arrays(parts.backend, parts.state, next.state);
   next.state.topology = std::move(topology);
   next.state.prescribed = std::move(prescribed);
   next.state.load = {};
@@ -200,9 +200,7 @@ ChangedTopology<Parts> change_topology(
   }
   std::size_t type = 0;
   next.for_each_type([&](auto& table, auto& of_type) {
-    std::vector<Tag> internal(table.user_element.size());
-    for (std::size_t e = 0; e < internal.size(); ++e)
-      internal[e] = tags[type][static_cast<std::size_t>(table.user_element[e])];
+    auto const internal = table.tags_in_internal_order(tags[type]);
     of_type.tags.upload(internal);
     auto const& own = points[type++];
     of_type.internal_variables.upload(table.in_internal_order(own.rows));

@@ -55,7 +55,24 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
       });
     return columns;
   }
+  /// The groups of elements, in internal order.
+  std::vector<Tag> tags_in_internal_order(std::vector<Tag> const& user) const {
+    std::vector<Tag> internal(user.size(), 0);
+    for (std::size_t e = 0; groups > 1 && e < user.size(); ++e)
+      internal[e] = user[static_cast<std::size_t>(user_element[e])];
+    return internal;
+  }
   /// The inverse, of what an array holds.
+  std::vector<Tag> tags_in_user_order(typename B::template Array<Tag> const& array) const {
+    std::vector<Tag> user(user_element.size(), 0);
+    if constexpr (groups > 1) {
+      auto const internal = download<Tag>(array);
+      for (std::size_t e = 0; e < user.size(); ++e)
+        user[static_cast<std::size_t>(user_element[e])] = internal[e];
+    }
+    return user;
+  }
+  /// The inverse of in_internal_order, of what an array holds.
   std::vector<double> in_user_order(typename B::template Array<scalar> const& array) const {
     auto const columns = download<scalar>(array);
     std::vector<double> rows(columns.size());

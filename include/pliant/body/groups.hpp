@@ -20,10 +20,7 @@ std::vector<Tag> user_groups(Parts const& parts) {
   std::vector<Tag> tags;
   parts.for_each_type([&](auto const& table, auto const& elements) {
     if constexpr (std::same_as<typename std::remove_cvref_t<decltype(table)>::element, E>) {
-      auto const internal = download<Tag>(elements.tags);
-      tags.resize(internal.size());
-      for (std::size_t e = 0; e < tags.size(); ++e)
-        tags[static_cast<std::size_t>(table.user_element[e])] = internal[e];
+      tags = table.tags_in_user_order(elements.tags);
     }
   });
   return tags;
@@ -47,9 +44,7 @@ void assign_group(Parts& parts, std::vector<Index> const& elements) {
                       "; they are numbered 0 to ", table.count() - 1);
         user[static_cast<std::size_t>(e)] = static_cast<Tag>(group);
       }
-      std::vector<Tag> internal(user.size());
-      for (std::size_t e = 0; e < user.size(); ++e)
-        internal[e] = user[static_cast<std::size_t>(table.user_element[e])];
+      auto const internal = table.tags_in_internal_order(user);
       auto const old = download<Tag>(state.tags);
       if (internal == old) return;
       change_by_hand(parts, [&] {

@@ -99,14 +99,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
   /// A field given per node in the user's order, padded and in internal order.
   std::vector<T> padded(std::vector<Point<dim>> const& values) const {
-    std::vector<T> field(static_cast<std::size_t>(node_stride) * values.size(), T(0));
-    detail::for_each_on_host(static_cast<Index>(values.size()), few_nodes, [&](Index node) {
-      auto const i = static_cast<std::size_t>(node);
-      for (std::size_t k = 0; k < dim; ++k)
-        field[node_stride * static_cast<std::size_t>(internal_node[i]) + k] =
-            static_cast<T>(values[i][k]);
-    });
-    return field;
+    return padded([&](std::size_t i, std::size_t k) { return values[i][k]; });
   }
   /// The inverse of `padded`.
   std::vector<Point<dim>> in_user_order(Array<T> const& array) const {
@@ -122,6 +115,19 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
  private:
   static constexpr Index few_nodes = 16384;
+
+  /// The same of value(node, k).
+  template <std::invocable<std::size_t, std::size_t> Value>
+  std::vector<T> padded(Value const& value) const {
+    std::vector<T> field(static_cast<std::size_t>(node_stride) * internal_node.size(), T(0));
+    detail::for_each_on_host(nodes, few_nodes, [&](Index node) {
+      auto const i = static_cast<std::size_t>(node);
+      for (std::size_t k = 0; k < dim; ++k)
+        field[node_stride * static_cast<std::size_t>(internal_node[i]) + k] =
+            static_cast<T>(value(i, k));
+    });
+    return field;
+  }
 
   /// find_own_masses() gives own_masses. `before`, `transfer`: the layout before a change and what that means, or null.
   template <class FindOwnMasses>
@@ -212,12 +218,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   void upload_rest(B const& backend, Mesh<Es...> const& mesh) {
     auto const box = detail::extent(mesh);
     middle = box.middle;
-    std::vector<Point<dim>> relative = mesh.nodes;
-    detail::for_each_on_host(nodes, few_nodes, [&](Index i) {
-      for (std::size_t k = 0; k < dim; ++k)
-        relative[static_cast<std::size_t>(i)][k] -= box.middle[k];
-    });
-    auto const places = padded(relative);
+    auto const places =
+        padded([&](std::size_t i, std::size_t k) { return mesh.nodes[i][k] - box.middle[k]; });
     detail::for_each_on_host(static_cast<Index>(places.size()), few_nodes, [&](Index i) {
       if (!std::isfinite(places[static_cast<std::size_t>(i)]))
         throw Error("body: the mesh reaches over ", 2 * box.reach, " m, which ", 8 * sizeof(T),

@@ -166,12 +166,25 @@ struct CopyMember {
     }
   }
 };
+/// Makes a member what another is, but for arrays.
+struct CopyMemberOnHost {
+  template <class U>
+  void operator()(char const*, U const& from, U& to) const {
+    if constexpr (requires { to = from; }) to = from;
+  }
+};
 }  // namespace detail
 
 /// Makes `to` the same as `from`, of the same body. Meshes and conditions are shared, arrays copied.
 template <class B, class S>
 void copy_state(B const& backend, S const& from, S& to) {
   S::for_each_member(detail::CopyMember<B>{backend}, from, to);
+}
+/// The same but for arrays that belong to a topology: they stay as they are.
+template <class B, class S>
+void copy_state_without_arrays(B const& backend, S const& from, S& to) {
+  S::for_each_member(detail::CopyMemberOnHost{}, from, to);
+  detail::CopyMember<B>{backend}("work", from.work, to.work);
 }
 
 }  // namespace pliant

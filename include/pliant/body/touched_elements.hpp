@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>

@@ -10,6 +10,7 @@
 #include <pliant/constraint/slave.hpp>
 #include <pliant/element/element.hpp>
 #include <pliant/error.hpp>
+#include <pliant/math/each_once.hpp>
 
 namespace pliant {
 
@@ -112,9 +113,9 @@ template <int Dim>
 std::vector<Index> nodes_of(std::vector<Facet<Dim>> const& facets) {
   std::vector<Index> nodes;
   for (auto const& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
-  std::sort(nodes.data(), nodes.data() + nodes.size());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+  if (nodes.empty()) return nodes;
+  auto const end = static_cast<std::size_t>(std::ranges::max(nodes)) + 1;
+  return detail::each_once(std::move(nodes), end);
 }
 
 }  // namespace pliant

@@ -12,7 +12,7 @@
 
 #include <pliant/formulation/mass.hpp>
 #include <pliant/topology/cell_changes.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>

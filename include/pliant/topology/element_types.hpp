@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <pliant/mesh/mesh.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
 // The element types of a mesh, by their place among them.

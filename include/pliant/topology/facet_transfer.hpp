@@ -52,14 +52,24 @@ class FacetTransfer {
     std::vector<Facet<Dim>> carried;
     carried.reserve(facets.size());
     std::vector<bool> done(merged_.size(), false);
-    for (auto const& facet : facets) {
-      auto const whole = parts_.find(facet);
+    auto const stays = [&](Facet<Dim> const& facet) {
+      return !parts_.may_have(facet) && (whole_.empty() || !whole_.may_have(renumber(facet)));
+    };
+    for (auto facet = facets.begin(); facet != facets.end();) {
+      if (auto const end = std::find_if_not(facet, facets.end(), stays); end != facet) {
+        auto const first = carried.insert(carried.end(), facet, end);
+        std::transform(first, carried.end(), first, renumber);
+        facet = end;
+        continue;
+      }
+      auto const whole = parts_.find(*facet);
       if (!whole) {
-        add_parts(renumber(facet), carried);
+        add_parts(renumber(*facet), carried);
       } else if (!done[*whole]) {
         done[*whole] = true;
-        add_parts(renumber(whole_of(merged_[*whole], facet)), carried);
+        add_parts(renumber(whole_of(merged_[*whole], *facet)), carried);
       }
+      ++facet;
     }
     return carried;
   }

@@ -14,7 +14,7 @@
 #include <pliant/error.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/nodes_between.hpp>
 #include <pliant/topology/refinement_results.hpp>

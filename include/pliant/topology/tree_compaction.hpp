@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <pliant/config.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
 namespace pliant::detail {

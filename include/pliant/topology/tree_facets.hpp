@@ -8,7 +8,7 @@
 #include <pliant/config.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/transfer.hpp>
 
 namespace pliant {

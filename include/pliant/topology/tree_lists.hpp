@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <pliant/config.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/topology/shared_list.hpp>
 #include <pliant/topology/tree_cell.hpp>
 

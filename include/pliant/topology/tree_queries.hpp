@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <pliant/topology/cell_tree.hpp>
-#include <pliant/topology/each_once.hpp>
+#include <pliant/math/each_once.hpp>
 
 namespace pliant {
 

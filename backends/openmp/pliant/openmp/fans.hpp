@@ -12,6 +12,11 @@
 
 namespace pliant::detail {
 
+/// Whether elements are of one group.
+inline bool are_alike(Tag const* tags, Index count) {
+  return count < 2 || std::equal(tags + 1, tags + count, tags);
+}
+
 /// Consecutive elements of one group in a fan. Element k has the corners `ends`, ends + 1, ring + k, ring + k + 1.
 struct FanRun {
   Index ends, ring;  // corners
@@ -159,6 +164,10 @@ class Fans {
   }
   template <class Visit>
   void for_each_run(Index patch, Tag const* tags, Visit const& visit) const {
+    Index const first = patch * patch_size_;
+    auto const size = std::min(patch_size_, static_cast<Index>(elements_.size()) - first);
+    if (are_alike(tags + first, size))
+      return for_each_fan(patch, [&](FanRun const& fan) { visit(int{tags[first]}, fan); });
     for_each_fan(patch, [&](FanRun const& fan) {
       Index const* const members = elements_.data() + fan.elements;
       for (int from = 0, to = 0; from < fan.size; from = to) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -85,9 +86,14 @@ class Patches {
     Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
     Index* next = order_.data() + first;
     auto bound = bounds_.begin() + patch * (groups_ + 1);
+    bool const alike = are_alike(tag_data_ + first, last - first);
     for (int g = 0; g < groups_; ++g) {
       *bound++ = static_cast<Index>(next - order_.data());
-      for (Index e = first; e < last; ++e)
+      if (alike && tag_data_[first] == g) {
+        std::iota(next, next + (last - first), first);
+        next += last - first;
+      }
+      for (Index e = first; !alike && e < last; ++e)
         if (tag_data_[e] == g) *next++ = e;
     }
     *bound = static_cast<Index>(next - order_.data());
