@@ -147,12 +147,14 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M>
   });
   plan.after->interpolation.hand_masses(components(impulse), M::dim);
   Point<dim> taken{};
-  for (std::size_t i = 0; i < v.size(); ++i)
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (impulse[i] == Point<dim>{}) continue;
     for (std::size_t k = 0; k < dim; ++k)
       if (held[i] >> k & 1)
         taken[k] += impulse[i][k];
       else if (layout.mass_list[i] > 0)
         v[i][k] += impulse[i][k] / layout.mass_list[i];
+  }
   return taken;
 }
 

@@ -125,9 +125,9 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   };
   auto energies = energies_but_strain(parts);
   auto const give_back = [&](auto const& touched, auto const& layout, auto const& held,
-                             auto const& v_before, auto& v) {
-    return detail::give_momentum_back(plan, touched, parts.material.density, layout, held, v_before,
-                                      v);
+                             auto v_before, auto& v) {
+    return detail::give_momentum_back(plan, touched, parts.material.density, layout, held,
+                                      std::move(v_before), v);
   };
   auto changed = change_topology(parts, plan.after, plan.transfer, give_back);
   auto& next = changed.parts;

@@ -52,8 +52,8 @@ Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfe
 
 }  // namespace detail
 
-/// The parts of a body as they would be on another topology: its state with arrays at rest, which wait to be
-/// filled. put_in_force makes them the body's.
+/// The parts of a body as they would be on another topology: its state with arrays of elements at rest, and none of
+/// nodes, which wait to be filled. put_in_force makes them the body's.
 template <class Parts>
 Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
                std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
@@ -71,7 +71,7 @@ Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
   next.term_makers = parts.term_makers;
   next.watched_energy = parts.watched_energy;
   next.revision = parts.revision;
-  make_arrays(next);
+  make_arrays_of_elements(next);
   return next;
 }
 
@@ -147,7 +147,7 @@ ChangedTopology<Parts> change_topology(
   if (parts.state.load.size() > 0) loads = old.in_user_order(parts.state.load);
 
   u = transfer.carry_nodes(std::move(u));
-  auto const v_before = v;
+  auto v_before = v;
   v = transfer.carry_nodes(std::move(v));
   detail::TouchedElements<typename Parts::mesh_type> const touched(*parts.state.topology, *topology,
                                                                    transfer);
@@ -178,7 +178,7 @@ ChangedTopology<Parts> change_topology(
   std::vector<DirectionMask> held(topology->mesh.nodes.size(), 0);  // by the user's number
   for (auto const& condition : prescribed->conditions)
     for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
-  Point<dim> const taken = give_back(touched, layout, held, v_before, v);
+  Point<dim> const taken = give_back(touched, layout, held, std::move(v_before), v);
 
   // As they are, and not by the body's setters, which stop driven nodes.
   ChangedTopology<Parts> changed{
@@ -189,14 +189,13 @@ ChangedTopology<Parts> change_topology(
   state.rest.clear();
   state.record.totals = detail::closed_totals(parts);
   state.record.born = state.steps;
-  state.u.upload(next.layout.padded(u));
-  state.v.upload(next.layout.padded(v));
+  state.u = upload(next.backend, next.layout.padded(u));
+  state.v = upload(next.backend, next.layout.padded(v));
   next.layout.interpolation.apply(next.backend, next.u());
   next.layout.interpolation.apply(next.backend, next.v());
   if (!loads.empty()) {
     loads = transfer.carry_sums(std::move(loads));
-    state.load = zeros<T>(next.backend, next.layout.rest.size());
-    state.load.upload(next.layout.padded(loads));
+    state.load = upload(next.backend, next.layout.padded(loads));
   }
   std::size_t type = 0;
   next.for_each_type([&](auto& table, auto& of_type) {

@@ -7,14 +7,9 @@
 // What a user sets of a body's state. The setters are those of Body, where units and errors are documented.
 namespace pliant {
 
-/// The arrays of a state that is at rest, for the present topology, and the tags of its elements.
+/// The arrays that a state has of elements, at rest, for the present topology, and the tags of these.
 template <class Parts>
-void make_arrays(Parts& parts) {
-  auto& state = parts.state;
-  state.u = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
-  state.v = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
-  if (state.work.size() == 0)  // else it is kept: work does not belong to a topology
-    state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
+void make_arrays_of_elements(Parts& parts) {
   parts.for_each_type([&](auto& table, auto& elements) {
     using Table = std::remove_reference_t<decltype(table)>;
     elements.tags = table.elements.take_tags();
@@ -26,6 +21,15 @@ void make_arrays(Parts& parts) {
     if constexpr (Table::Laws::reads_elements)
       table.laws.data = {table.values.data(), elements.internal_variables.data(), table.count()};
   });
+}
+/// All arrays of a first state, at rest.
+template <class Parts>
+void make_arrays(Parts& parts) {
+  auto& state = parts.state;
+  state.u = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
+  state.v = zeros<typename Parts::T>(parts.backend, parts.layout.rest.size());
+  state.work = zeros<double>(parts.backend, static_cast<std::size_t>(Work::count));
+  make_arrays_of_elements(parts);
 }
 
 namespace detail {

@@ -78,6 +78,10 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto topology = std::make_shared<Topology<M>>();
   M& mesh = topology->mesh;
   mesh.nodes = changed.tree->points();
+  auto const first_moved =
+      std::ranges::find_if(parts.renumbered,
+                           [&, node = Index{0}](Index now) mutable { return now != node++; }) -
+      parts.renumbered.begin();
   detail::ElementChanges<M> element_changes(mesh, *old.cells, *old.tree, changes.families, changed);
   detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
     auto changed_elements = element_changes.template of<E>(type);
@@ -90,7 +94,8 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
         elements.insert(elements.end(), from, from + origin.count);
         if (parts.renumbered.empty()) continue;
         for (auto e = first; e < elements.size(); ++e)
-          for (Index& node : elements[e]) node = parts.renumbered[static_cast<std::size_t>(node)];
+          if (std::ranges::max(elements[e]) >= first_moved)
+            for (Index& node : elements[e]) node = parts.renumbered[static_cast<std::size_t>(node)];
       } else {
         std::ranges::copy(changed.tree->tree().element_nodes(changed_elements.cells[first]),
                           elements.emplace_back().begin());

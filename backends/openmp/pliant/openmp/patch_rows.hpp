@@ -159,13 +159,18 @@ class PatchRows {
   /// Rows ascend with the patch, so inside a node too.
   void fold(std::vector<Index> const& foreign, Index nodes) {
     auto const by_node = group_by_key(foreign, nodes);
+    std::size_t count = 0;  // without a branch for each node
+    folded_.resize(foreign.size() + 1);
+    fold_first_.resize(foreign.size() + 1);
     for (Index node = 0; node < nodes; ++node) {
       Index const first = by_node.first[static_cast<std::size_t>(node)];
-      if (first == by_node.first[static_cast<std::size_t>(node) + 1]) continue;
-      folded_.push_back(node);
-      fold_first_.push_back(first);
+      folded_[count] = node;
+      fold_first_[count] = first;
+      if (first != by_node.first[static_cast<std::size_t>(node) + 1]) ++count;
     }
-    fold_first_.push_back(static_cast<Index>(foreign.size()));
+    folded_.resize(count);
+    fold_first_.resize(count + 1);
+    fold_first_.back() = static_cast<Index>(foreign.size());
     fold_rows_ = by_node.order;
     for (Index& fold_row : fold_rows_) fold_row += nodes;
     row_folds_.resize(foreign.size());
