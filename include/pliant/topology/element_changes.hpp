@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <pliant/formulation/mass.hpp>
-#include <pliant/topology/cell_changes.hpp>
 #include <pliant/math/each_once.hpp>
+#include <pliant/topology/cell_changes.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -156,10 +156,11 @@ class ElementChanges {
   /// Gives cells that stay their new numbers.
   void renumber(ChangedElements<dim>& list) const {
     if (changed_.coarsening.renumbered.cells.empty()) return;
+    Index const first_moved = changed_.coarsening.renumbered.first_cell;
     std::size_t e = 0;
     for (auto const& origin : list.origins) {
       auto const end = e + at(origin.count);
-      if (origin.child != Origin::same) e = end;
+      if (origin.child != Origin::same || list.cells[end - 1] < first_moved) e = end;
       for (; e < end; ++e) list.cells[e] = changed_.renumbered(list.cells[e]);
     }
   }

@@ -12,9 +12,9 @@
 
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
-#include <pliant/math/each_once.hpp>
 #include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/nodes_between.hpp>
 #include <pliant/topology/refinement_results.hpp>
@@ -140,8 +140,8 @@ class Hierarchy {
     for (NewNode const& node : inside)
       if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
     for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i)
+    std::size_t next = at(done.renumbered.first_node);
+    for (std::size_t i = next; i < points_.size(); ++i)
       if (done.renumbered.nodes[i] >= 0) points_[next++] = points_[i];
     points_.resize(next);
     return done;

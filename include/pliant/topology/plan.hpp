@@ -78,10 +78,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto topology = std::make_shared<Topology<M>>();
   M& mesh = topology->mesh;
   mesh.nodes = changed.tree->points();
-  auto const first_moved =
-      std::ranges::find_if(parts.renumbered,
-                           [&, node = Index{0}](Index now) mutable { return now != node++; }) -
-      parts.renumbered.begin();
+  Index const first_moved = changed.coarsening.renumbered.first_node;
   detail::ElementChanges<M> element_changes(mesh, *old.cells, *old.tree, changes.families, changed);
   detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
     auto changed_elements = element_changes.template of<E>(type);

@@ -157,6 +157,7 @@ struct CellConversion {
 /// New numbers by old ones; −1: gone. What stays keeps its order.
 struct Renumbering {
   std::vector<Index> nodes, cells;
+  Index first_node = 0, first_cell = 0;  ///< those before keep their numbers
 };
 
 }  // namespace pliant

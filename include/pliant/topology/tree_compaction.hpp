@@ -76,14 +76,12 @@ class TreeCompaction {
   /// Moves up what stays.
   Renumbering renumber(std::vector<bool> const& cell_used) {
     auto const& i = lists_.initial;
-    auto const node = numbers(node_used_, i.nodes), cell = numbers(cell_used, i.cells),
-               edge = numbers(edge_used_, i.edges), side = numbers(side_used_, i.sides);
+    Numbers const node(node_used_, i.nodes), cell(cell_used, i.cells), edge(edge_used_, i.edges),
+        side(side_used_, i.sides);
     keep(lists_.cells, cell_used, i.cells);
     keep(lists_.edges, edge_used_, i.edges);
     keep(lists_.sides, side_used_, i.sides);
-    auto const move = [](Index& number, std::vector<Index> const& to) {
-      if (number >= 0) number = to[at(number)];
-    };
+    auto const move = [](Index& number, Numbers const& to) { number = to(number); };
     for (Index& c : lists_.divided) move(c, cell);
     auto const move_within_cell = [&](TreeCell& c) {
       move(c.first_child, cell);
@@ -127,17 +125,27 @@ class TreeCompaction {
       for (Index& p : s.nodes) move(p, node);
       for (Index& e : s.edges) move(e, edge);
     }
-    lists_.nodes = static_cast<Index>(std::ranges::count(node_used_, true));
-    return {node, cell};
+    lists_.nodes = node.count;
+    return {node.list(), cell.list(), i.nodes, i.cells};
   }
-  /// All before `first` are.
-  static std::vector<Index> numbers(std::vector<bool> const& used, Index first) {
-    std::vector<Index> list(used.size());
-    std::iota(list.begin(), list.begin() + first, Index{0});
-    Index next = first;
-    for (std::size_t k = at(first); k < used.size(); ++k) list[k] = used[k] ? next++ : -1;
-    return list;
-  }
+  /// New numbers of what is used, as all before `first` is.
+  struct Numbers {
+    Index first, count;
+    std::vector<Index> others;  // from `first` on
+
+    Numbers(std::vector<bool> const& used, Index begin) : first(begin), count(begin) {
+      others.reserve(used.size() - at(first));
+      for (std::size_t k = at(first); k < used.size(); ++k)
+        others.push_back(used[k] ? count++ : Index{-1});
+    }
+    Index operator()(Index old) const { return old < first ? old : others[at(old - first)]; }
+    [[nodiscard]] std::vector<Index> list() const {
+      std::vector<Index> all(at(first));
+      std::iota(all.begin(), all.end(), Index{0});
+      all.insert(all.end(), others.begin(), others.end());
+      return all;
+    }
+  };
   /// Moves up what is used; all before `first` is.
   template <class V>
   static void keep(SharedList<V>& list, std::vector<bool> const& used, Index first) {
