@@ -136,7 +136,6 @@ template <class Parts, class GiveBack>
 ChangedTopology<Parts> change_topology(
     Parts& parts, std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
     Transfer<Parts::dim> const& transfer, GiveBack const& give_back) {
-  using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   synchronize_velocities(parts);
   auto const& old = parts.layout;
