@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <pliant/backend/field.hpp>
+#include <pliant/backend/host_array.hpp>
 #include <pliant/backend/patch_list.hpp>
 
 // What a backend must offer: arrays, loops over nodes, loops over elements. A backend knows nothing
@@ -207,6 +208,14 @@ std::vector<U> download(A const& array) {
   std::vector<U> values(array.size());
   array.download(values);
   return values;
+}
+/// The same to look at: not copied where they lie on the host.
+template <class U, class A>
+auto on_host(A const& array) {
+  if constexpr (std::same_as<A, HostArray<U>>)
+    return std::span<U const>(array.data(), array.size());
+  else
+    return download<U>(array);
 }
 
 }  // namespace pliant

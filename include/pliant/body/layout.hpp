@@ -103,8 +103,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
   /// The inverse of `padded`.
   std::vector<Point<dim>> in_user_order(Array<T> const& array) const {
-    std::vector<T> field(static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes));
-    array.download(field);
+    auto const& field = on_host<T>(array);
     std::vector<Point<dim>> values(static_cast<std::size_t>(nodes));
     for (std::size_t i = 0; i < values.size(); ++i)
       for (std::size_t k = 0; k < dim; ++k)
