@@ -87,7 +87,9 @@ void make_room_for_forces(Parts& parts) {
   std::size_t const rows = static_cast<std::size_t>(parts.layout.nodes + scratch);
   if (parts.layout.f.size() < node_stride * rows)
     parts.layout.f = zeros<typename Parts::T>(parts.backend, node_stride * rows);
-  forget_forces(parts);
+  else
+    clear_rows(parts, parts.f());
+  parts.forces_current = parts.forces_complete = false;
   parts.scratch.reset();
   parts.schedule.reset();
   ++parts.revision;

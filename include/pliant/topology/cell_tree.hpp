@@ -8,8 +8,8 @@
 
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
-#include <pliant/topology/cell_division.hpp>
 #include <pliant/math/each_once.hpp>
+#include <pliant/topology/cell_division.hpp>
 #include <pliant/topology/number_table.hpp>
 #include <pliant/topology/tree_compaction.hpp>
 #include <pliant/topology/tree_lists.hpp>

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include <pliant/mesh/mesh.hpp>
 #include <pliant/math/each_once.hpp>
+#include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
 // The element types of a mesh, by their place among them.

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <pliant/config.hpp>
+#include <pliant/math/each_once.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
-#include <pliant/math/each_once.hpp>
 #include <pliant/topology/transfer.hpp>
 
 namespace pliant {

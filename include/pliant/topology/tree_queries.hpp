@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/topology/cell_tree.hpp>
 #include <pliant/math/each_once.hpp>
+#include <pliant/topology/cell_tree.hpp>
 
 namespace pliant {
 
