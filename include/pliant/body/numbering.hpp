@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ranges>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -73,16 +72,12 @@ struct Numbering {
   void fill_table(Mesh<Es...> const& mesh) {
     auto const& elements = mesh.template elements<E>();
     auto& table = std::get<I>(tables);
-    auto const in_order = std::views::transform(
-        user_element[I],
-        [&](Index e) -> Connectivity<E> const& { return elements[static_cast<std::size_t>(e)]; });
-    detail::HostParts const parts(static_cast<Index>(elements.size()),
-                                  detail::few_elements(E::nodes));
-    if (parts.count() == 1) return table.assign(in_order.begin(), in_order.end());  // without zeros
     table.resize(elements.size());
-    parts([&](Index from, Index to, int) {
-      std::copy(in_order.begin() + from, in_order.begin() + to, table.begin() + from);
-    });
+    detail::for_each_on_host(static_cast<Index>(elements.size()), detail::few_elements(E::nodes),
+                             [&](Index i) {
+                               auto const at = static_cast<std::size_t>(i);
+                               table[at] = elements[static_cast<std::size_t>(user_element[I][at])];
+                             });
   }
 
   template <std::size_t Nodes>
