@@ -665,6 +665,62 @@ TEST_CASE("a budget in milliseconds follows what steps take", "[adaptation]") {
   });
 }
 
+TEST_CASE("under local steps a budget counts an element as often as its level is evaluated",
+          "[adaptation]") {
+  on_each_backend<FewBackends>([]<class B>(B const& backend) {
+    int const rows = B::orders_by_group ? 24 : 6;
+    auto mesh = mesh::rectangle({.size = {8, 1}, .cells = {96, rows}});
+    for (auto& p : mesh.nodes) p[0] = p[0] * (0.1 + 0.9 * p[0] / 8);
+    auto body = three_laws(backend, mesh);
+    body.clamp(mesh.boundary("left"));
+    body.clamp(mesh.boundary("right"));
+    body.set_damping(1);
+    LocalSteps step;
+    load_at(body, 1);
+    step(body, 1);
+    auto const counted = [&](auto& of) {
+      auto const& parts = of.parts();
+      auto const& table = parts.layout.template table<Quad4>();
+      auto const groups = of.template groups_of<Quad4>();
+      std::pair<double, double> sums;  // with levels, and without
+      for (std::size_t k = 0; k < groups.size(); ++k) {
+        auto const e = static_cast<std::size_t>(table.user_element[k]);
+        auto const patch = k / static_cast<std::size_t>(table.elements.patch_size());
+        double const cost = some_costs[groups[e]] / some_costs[2];
+        sums.first += std::ldexp(cost, parts.schedule->patch_levels[0][patch]);
+        sums.second += cost;
+      }
+      return sums;
+    };
+    auto const [least, without] = counted(body);
+    REQUIRE(least > 1.5 * without);  // levels differ
+    double const budget = 1.3 * least;
+    auto const rule =
+        within<Linear, Turning, Rubber>({.evaluations_per_step = budget, .costs = some_costs});
+    for (int k = 0; k < 12; ++k) {
+      load_at(body, 1 + 0.5 * k);
+      step(body, 8);
+
+      Adaptation{rule}.now(body);
+
+      double const spent = counted(body).first;
+      CHECK(spent <= budget * (1 + 1e-6));
+      CHECK(spent >= 0.9 * budget);
+      CHECK(evaluations_per_step(body, rule) == Approx(spent));
+    }
+    std::stringstream file;
+    body.save(file);
+    auto again = three_laws(backend, mesh);
+    again.clamp(mesh.boundary("left"));
+    again.clamp(mesh.boundary("right"));
+    again.load(file);
+    Adaptation{rule}.now(body);
+    Adaptation{rule}.now(again);
+    CHECK(again.template groups_of<Quad4>() == body.template groups_of<Quad4>());
+    CHECK(evaluations_per_step(again, rule) == evaluations_per_step(body, rule));
+  });
+}
+
 TEST_CASE("what sleeps stays, costs nothing, and leaves its budget to others", "[adaptation]") {
   on_each_backend<MainAlone>([]<class B>(B const& backend) {
     int const rows = B::orders_by_group ? 48 : 6;

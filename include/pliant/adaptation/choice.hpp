@@ -117,7 +117,9 @@ auto cheapest(CheapestOptions const& options) {
 /// than cost `evaluations_per_step` or `milliseconds_per_step`. What even the cheapest groups cost, and what elements
 /// that must stay cost, is spent whatever the budget. A budget in milliseconds follows what steps took since the look
 /// before: half of the newest, half of before, in the saved state; before something is measured nothing switches. Such
-/// runs do not repeat to the bit; the others do, where the backend does. Looks cost as those of `cheapest`, and some passes
+/// runs do not repeat to the bit; the others do, where the backend does. Under LocalSteps a step is a macro step,
+/// and a force of an element counts as often as its level is evaluated in one; levels follow from stability and are no
+/// choice of accuracy: they weigh what is chosen, and nothing spends on them. Looks cost as those of `cheapest`, and some passes
 /// over the values found. Throws Error for options out of range.
 template <class... Fs>
 auto within(WithinOptions<int{sizeof...(Fs)}> const& options) {

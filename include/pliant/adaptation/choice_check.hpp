@@ -6,6 +6,7 @@
 #include <pliant/adaptation/force_costs.hpp>
 #include <pliant/adaptation/sleep_look.hpp>
 #include <pliant/adaptation/spending.hpp>
+#include <pliant/solver/make_schedule.hpp>
 
 namespace pliant {
 
@@ -33,7 +34,9 @@ struct PresentCost {
   Choice choice;
   PLIANT_HOST_DEVICE double operator()(Index e) const {
     int const place = choice.place_of(e);
-    return place < 0 || choice.sleeps(e) ? 0 : choice.table.cost[place];
+    return place < 0 || choice.sleeps(e)
+               ? 0
+               : choice.table.cost[place] * static_cast<double>(choice.updates(e));
   }
 };
 
@@ -90,6 +93,24 @@ std::array<double, sizeof...(Fs)> costs_of(Parts const& parts, ChoiceRule<Fs...>
   return costs;
 }
 
+/// At which levels of local steps the patches of a type are evaluated; empty where one step serves all. It follows from
+/// the state: where nothing has made a schedule since it was loaded, one is made for the answer alone.
+template <class E, class Parts>
+std::vector<StepLevel> levels_of_patches(Parts& parts) {
+  constexpr std::size_t type = Parts::layout_type::template type_of<E>;
+  bool whole = parts.state.integrator.macro_step > 0;
+  parts.for_each_type([&](auto& table, auto& elements) {
+    whole = whole && elements.step_levels.size() == static_cast<std::size_t>(table.count());
+  });
+  if (!whole) return {};
+  if (parts.schedule) return parts.schedule->patch_levels[type];
+  make_schedule(parts);
+  forget_forces(parts);
+  auto levels = parts.schedule->patch_levels[type];
+  parts.schedule.reset();
+  return levels;
+}
+
 /// What TableCheck is for rules that compare values with thresholds, for one that chooses.
 template <class Parts, class Table, class Elements, class TheRule>
 class ChoiceCheck;
@@ -115,6 +136,9 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
       : Base(parts, table, elements), rule_(rule), evaluations_(evaluations) {}
 
   void prepare() const {
+    auto const levels = levels_of_patches<typename Table::element>(parts_);
+    workspace().patch_levels = {};
+    if (!levels.empty()) workspace().patch_levels = upload(backend(), levels);
     (void)choice();  // throws where costs do not ascend
     if (reserve()) ++parts_.revision;
   }
@@ -184,6 +208,7 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
             own.since,
             own.step,
             asleep,
+            w.patch_levels.size() > 0 ? w.patch_levels.data() : nullptr,
             table_.elements.patch_size(),
             static_cast<T>(rule_.tolerance),
             static_cast<T>(rule_.release),
@@ -198,22 +223,26 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
 }  // namespace detail
 
 /// What the elements of a choice cost in their present groups, in forces of one element in the last group per step:
-/// what WithinOptions::evaluations_per_step limits. Elements that sleep cost nothing.
+/// what WithinOptions::evaluations_per_step limits. Elements that sleep cost nothing; under
+/// LocalSteps a step is a macro step, in which an element counts 2^level times, by the level of its patch.
 template <DeformableBody TheBody, class... Fs>
-double evaluations_per_step(TheBody const& body, ChoiceRule<Fs...> const& rule) {
+double evaluations_per_step(TheBody& body, ChoiceRule<Fs...> const& rule) {
   using E = typename ChoiceRule<Fs...>::element;
-  auto const& parts = body.parts();
+  auto& parts = body.parts();
   auto const& table = parts.layout.template table<E>();
   using Table = std::remove_cvref_t<decltype(table)>;
   auto const costs = detail::costs_of(parts, rule);
   auto const groups = body.template groups_of<E>();
   auto const asleep = asleep_elements<E>(body);
+  auto const levels = detail::levels_of_patches<E>(parts);
   std::array const places{Table::template group_of<Fs>...};
   double sum = 0;
-  for (std::size_t e = 0; e < groups.size(); ++e) {
+  for (std::size_t internal = 0; internal < groups.size(); ++internal) {
+    auto const e = static_cast<std::size_t>(table.user_element[internal]);
+    auto const patch = internal / static_cast<std::size_t>(table.elements.patch_size());
     auto const place = std::ranges::find(places, int{groups[e]}) - places.begin();
     if (place < ChoiceRule<Fs...>::count && !asleep[e])
-      sum += costs[static_cast<std::size_t>(place)];
+      sum += std::ldexp(costs[static_cast<std::size_t>(place)], levels.empty() ? 0 : levels[patch]);
   }
   return sum;
 }

@@ -5,6 +5,7 @@
 
 #include <pliant/adaptation/choice.hpp>
 #include <pliant/body/criteria_workspace.hpp>
+#include <pliant/body/step_schedule.hpp>
 
 namespace pliant::detail {
 
@@ -50,6 +51,7 @@ struct ChoiceOfElement {
   std::int64_t const* since;   // (elements)
   std::int64_t const* step;    // (1): of this look
   std::uint8_t const* asleep;  // (patches); null: none sleeps
+  StepLevel const* levels;     // (patches), of local steps; null: one step serves all
   Index patch_size;
   T tolerance, release;
   std::int64_t stay;
@@ -70,6 +72,13 @@ struct ChoiceOfElement {
     return own == own ? own : T(0);
   }
   PLIANT_HOST_DEVICE bool sleeps(Index e) const { return asleep && asleep[e / patch_size]; }
+  /// How many forces of its own a step of the body takes: local steps evaluate a patch 2^level times.
+  PLIANT_HOST_DEVICE std::int64_t updates(Index e) const {
+    return std::int64_t{1} << (levels ? levels[e / patch_size] : 0);
+  }
+  PLIANT_HOST_DEVICE std::int64_t whole_cost(Index e, int place) const {
+    return table.whole[place] * updates(e);
+  }
   /// Whether it stays where it is in any case.
   PLIANT_HOST_DEVICE bool is_fixed(Index e) const {
     bool known = true;
@@ -86,7 +95,7 @@ struct ChoiceOfElement {
   PLIANT_HOST_DEVICE Offer<T> offer(Index e, int from, int present) const {
     Offer<T> best;
     for (int k = from + 1; k < Count; ++k) {
-      T const cost = static_cast<T>(table.cost[k] - table.cost[from]);
+      T const cost = static_cast<T>(table.cost[k] - table.cost[from]) * static_cast<T>(updates(e));
       T const worth = (error(e, from) - error(e, k)) / cost;
       if (best.worth < worth || (best.to >= 0 && worth == best.worth)) best = {k, worth};
     }

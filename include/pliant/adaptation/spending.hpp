@@ -37,7 +37,7 @@ struct SpendingDigit {
     if (search == Spending::total)
       return {0, weigh == Weigh::error ? whole_error(e, from)
                  : choice.sleeps(e)    ? 0
-                                       : choice.table.whole[from]};
+                                       : choice.whole_cost(e, from)};
     if (ranking->state != Ranking<T>::searching || choice.is_fixed(e)) return none;
     auto offer = choice.offer(e, from, present);
     for (int k = 0; k < taken && offer.to >= 0; ++k) {
@@ -48,7 +48,7 @@ struct SpendingDigit {
     auto const key = ordered_bits(offer.worth);
     auto const weight = weigh == Weigh::error
                             ? whole_error(e, from) - whole_error(e, offer.to)
-                            : choice.table.whole[offer.to] - choice.table.whole[from];
+                            : choice.whole_cost(e, offer.to) - choice.whole_cost(e, from);
     if (search == Spending::worth) return digit(key, weight);
     return key == ranking->key ? digit(static_cast<std::uint32_t>(choice.number[e]), weight) : none;
   }

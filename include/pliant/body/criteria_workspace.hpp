@@ -80,14 +80,15 @@ struct CriteriaWorkspace {
   Array<T> means;   // (blocks, nodes and scratch rows, 4), of criteria that take means
   Array<T> found;   // (slots, elements): the values of those
   Array<Tag> next;  // (elements): the group after the check
-  Array<std::uint32_t> mesh_marks;  // (elements): bit r: rule r refines it, or would merge it
-  Array<Index> number;              // (elements): the user's
-  Array<Candidate> candidates;      // (elements): of the rule whose cut is searched
-  Array<int> levels;                // (elements): how often each was refined
-  Array<std::int64_t> histogram;    // (histogram_bins), zero between searches
-  Array<Ranking<T>> rankings;       // (rules)
-  Array<std::int64_t> noted;        // (patches): the last look that had to look at it; see Screen
-  Array<Index> flagged;             // on the host: a list of these, for over()
+  Array<std::uint32_t> mesh_marks;   // (elements): bit r: rule r refines it, or would merge it
+  Array<Index> number;               // (elements): the user's
+  Array<Candidate> candidates;       // (elements): of the rule whose cut is searched
+  Array<int> levels;                 // (elements): how often each was refined
+  Array<std::uint8_t> patch_levels;  // (patches): of local steps, where a choice counts them
+  Array<std::int64_t> histogram;     // (histogram_bins), zero between searches
+  Array<Ranking<T>> rankings;        // (rules)
+  Array<std::int64_t> noted;         // (patches): the last look that had to look at it; see Screen
+  Array<Index> flagged;              // on the host: a list of these, for over()
   /// Copies of what a check changes, to be put back when refinement throws.
   struct Kept {
     Array<Tag> tags;
