@@ -6,26 +6,46 @@
 
 namespace pliant {
 
+namespace detail {
+/// Where the entry (k, l) of a symmetric tensor is kept.
+PLIANT_HOST_DEVICE constexpr int symmetric_place(int k, int l) {
+  return k <= l ? l * (l + 1) / 2 + k : k * (k + 1) / 2 + l;
+}
+/// The node of a quadratic simplex between two corners; the corner itself where they are the same.
+template <SimplexCell Cell>
+PLIANT_HOST_DEVICE constexpr int middle_of(int a, int b) {
+  constexpr auto edges = Cell::edges();
+  for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
+    auto const& edge = edges[static_cast<std::size_t>(e)];
+    if ((edge[0] == a && edge[1] == b) || (edge[0] == b && edge[1] == a)) return Cell::corners + e;
+  }
+  return a;
+}
+}  // namespace detail
+
 /// The differences of the corners, and how much the middles of edges differ from what those say: a quarter of the second
 /// derivatives, which are constant. A derivative along ξ_k has d + 1 terms, where shape functions have one for each node.
 template <CurvedSimplex E, class S>
 struct Coefficients<E, S> {
+  using Cell = typename E::cell;
   static constexpr int dim = E::dim;
   S corner[dim][dim];                   // v_k − v_0 of corner k + 1 at [k]
-  S quarter[dim * (dim + 1) / 2][dim];  // ∂²v/∂ξ_k∂ξ_l / 4 at place(k, l)
+  S quarter[dim * (dim + 1) / 2][dim];  // ∂²v/∂ξ_k∂ξ_l / 4 at symmetric_place(k, l)
 
   PLIANT_HOST_DEVICE static Coefficients of(Nodal<E, S> const& v) {
     Coefficients d;
     for_each_pair([&](auto k, auto l) PLIANT_INLINE {
-      constexpr int to_k = middle(0, k + 1), to_l = middle(0, l + 1),
-                    between = middle(k + 1, l + 1);
+      constexpr int to_k = detail::middle_of<Cell>(0, k + 1),
+                    to_l = detail::middle_of<Cell>(0, l + 1),
+                    between = detail::middle_of<Cell>(k + 1, l + 1),
+                    c = detail::symmetric_place(k, l);
       for (int i = 0; i < dim; ++i) {
         S const half = v(to_l, i) - v(0, i);
         if constexpr (k == l) {
           d.corner[k][i] = v(k + 1, i) - v(0, i);
-          d.quarter[place(k, k)][i] = d.corner[k][i] - (half + half);
+          d.quarter[c][i] = d.corner[k][i] - (half + half);
         } else {
-          d.quarter[place(k, l)][i] = v(between, i) - v(to_k, i) - half;
+          d.quarter[c][i] = v(between, i) - v(to_k, i) - half;
         }
       }
     });
@@ -70,17 +90,18 @@ struct Coefficients<E, S> {
     for (int i = 0; i < dim; ++i) {
       S sum = S(0);
       unroll<dim>([&](auto k) PLIANT_INLINE {
-        S const& own = quarter[place(k, k)][i];
+        S const& own = quarter[detail::symmetric_place(k, k)][i];
         f(k + 1, i) = corner[k][i] + own;
         S half = -(own + own);
         unroll<dim>([&](auto l) PLIANT_INLINE {
-          if constexpr (k != l) half = half - quarter[place(k, l)][i];
+          S const& mixed = quarter[detail::symmetric_place(k, l)][i];
+          if constexpr (k != l) half = half - mixed;
           if constexpr (k < l) {
-            f(middle(k + 1, l + 1), i) = quarter[place(k, l)][i];
-            sum = sum + quarter[place(k, l)][i];
+            f(detail::middle_of<Cell>(k + 1, l + 1), i) = mixed;
+            sum = sum + mixed;
           }
         });
-        f(middle(0, k + 1), i) = half;
+        f(detail::middle_of<Cell>(0, k + 1), i) = half;
         sum = sum + f(k + 1, i) + half;
       });
       f(0, i) = -sum;
@@ -89,19 +110,6 @@ struct Coefficients<E, S> {
   }
 
  private:
-  PLIANT_HOST_DEVICE static constexpr int place(int k, int l) {
-    return k <= l ? l * (l + 1) / 2 + k : k * (k + 1) / 2 + l;
-  }
-  /// The node between two corners; the corner itself where they are the same.
-  PLIANT_HOST_DEVICE static constexpr int middle(int a, int b) {
-    constexpr auto edges = E::cell::edges();
-    for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
-      auto const& edge = edges[static_cast<std::size_t>(e)];
-      if ((edge[0] == a && edge[1] == b) || (edge[0] == b && edge[1] == a))
-        return E::cell::corners + e;
-    }
-    return a;
-  }
   /// f(k, l) for k ≤ l.
   template <class F>
   PLIANT_HOST_DEVICE static void for_each_pair(F const& f) {
@@ -116,7 +124,7 @@ struct Coefficients<E, S> {
     unroll<dim>([&](auto l) PLIANT_INLINE {
       T const x = T(4) * table.monomial[q][power(Table::exponents, l)];
       unroll<dim>([&](auto k) PLIANT_INLINE {
-        f(k, std::integral_constant<int, place(k, l)>(), k == l ? x - T(2) : x);
+        f(k, std::integral_constant<int, detail::symmetric_place(k, l)>(), k == l ? x - T(2) : x);
       });
     });
   }
