@@ -97,16 +97,34 @@ struct AddRowSums {
     backend.template accumulate<2>(elements, RowSumKernel<Laws<T>>{laws<T>()}, out, rest, u);
   }
 };
-/// Of every third patch.
+/// Of one component: how many elements in groups a node has.
+struct CountElements {
+  template <int G, class S, int N, int C>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, Matrix<S, N, C> const&) const {
+    Matrix<S, N, 1> ones;
+    for (int a = 0; a < N; ++a) ones(a, 0) = S(1);
+    return ones;
+  }
+};
+struct AddCounts {
+  template <class B, class E, class Out, class In>
+  void operator()(B const& backend, E const& elements, Out out, In rest, In, In) const {
+    using T = typename B::scalar;
+    backend.template accumulate<2>(elements, CountElements{}, NodeField<T, 1>{out.data}, rest);
+  }
+};
+/// Of every third patch, from a list with room for so many.
 template <class Add>
 struct OverSome {
   Index patch_size;
+  std::size_t room;
   Add add{};
   template <class B, class E, class Out, class... In>
   void operator()(B const& backend, E const& elements, Out out, In... in) const {
     std::vector<Index> list{0};
     for (Index p = 0; p * patch_size < elements.count(); p += 3) list.push_back(p);
     list[0] = static_cast<Index>(list.size()) - 1;
+    list.resize(std::max(list.size(), room + 1));
     auto const active = upload(backend, list);
     add(backend, over(elements, active), out, in...);
     backend.synchronize();
@@ -158,7 +176,7 @@ TEST_CASE("kernels that know a first node run over a table in fans", "[cuda]") {
 
 /// What `compare` does, of some patches; hosts have other patches, so that tags leave out the rest.
 template <class T>
-void compare_some(Scene const& scene, int patch_size) {
+void compare_some(Scene const& scene, int patch_size, std::size_t room) {
   Reference<double> const host;
   Cuda<T> const gpu;
   auto tags = scene.tags;
@@ -168,14 +186,23 @@ void compare_some(Scene const& scene, int patch_size) {
   CudaElements<T, 4> const fans(gpu, scene.table, scene.tags, scene.nodes, {patch_size, 64},
                                 NodeOrder::any_even);
   REQUIRE(fans.has_fans());
-  check_equal<T>(sums(gpu, fans, scene, OverSome<AddForces>{patch_size}),
+  check_equal<T>(sums(gpu, fans, scene, OverSome<AddForces>{patch_size, room}),
                  sums(host, expected, scene, AddForces{}));
 }
 
 TEST_CASE("fans of the patches in a list accumulate, and no others", "[cuda]") {
   Scene const scene(9);
-  compare_some<float>(scene, 128);
-  compare_some<double>(scene, 768);
+  for (std::size_t room : {std::size_t{0}, std::size_t{detail::few_patches} + 1}) {
+    INFO("room for " << room);
+    compare_some<float>(scene, 128, room);
+    compare_some<double>(scene, 768, room);
+  }
+}
+
+TEST_CASE("other numbers of components accumulate over a table in fans", "[cuda]") {
+  Scene const scene(6);
+  compare<float>(scene, {768, 128}, AddCounts{});
+  compare<double>(scene, {768, 128}, AddCounts{});
 }
 
 TEST_CASE("tables have fans where they are large, and where that is allowed", "[cuda]") {

@@ -124,10 +124,10 @@ class Cuda {
     } else if constexpr (detail::scatters<T, nodes>) {
       accumulate_by_elements<Groups>(active, kernel, out, fields...);
     } else {
-      if constexpr (nodes == detail::FanPlanner::nodes && C == 3) {
+      if constexpr (nodes == detail::FanPlanner::nodes && C != 2) {  // tetrahedra
         if (active.elements.has_fans()) {
-          if constexpr (SymmetricKernel<Kernel>)
-            if (active.most > detail::few_patches)
+          if constexpr (C == 3 && SymmetricKernel<Kernel>)
+            if (active.list == nullptr || active.most > detail::few_patches)
               return accumulate_fans<Groups>(active, kernel, out, fields...);
           return accumulate_by_elements<Groups>(active, kernel, out, fields...);
         }

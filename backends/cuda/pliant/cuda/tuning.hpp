@@ -47,6 +47,7 @@ constexpr PatchTuning patch_tuning() {
   if (Nodes <= 4)
     return sizeof(T) == 4 ? PatchTuning{256, 5, true, 768, 256, 192, 300000}
                           : PatchTuning{256, 3, true, 384, 128, 96, 150000};
+  if (Nodes == 8) return {128, 2, false, 128, 128, 64, 100000};
   if (Nodes <= 10) return {128, 2, false, 64, 64, 64, 0};
   return {64, 4, false, 64, 64, 64, 0};
 }
@@ -66,8 +67,9 @@ constexpr FanTuning fan_tuning() {
 }
 
 /// Lists of so few patches are not accumulated in fans, of which a thread takes one element after the other, but an element
-/// in a thread: a block for each multiprocessor or fewer waits for memory most of the time.
-inline constexpr Index few_patches = 128;
+/// in a thread: where most multiprocessors have no block, all wait for memory. On an H100 39 patches take less than half the
+/// time so, and 127 half as much again (Tet4, float; bench/adaptation, sleep).
+inline constexpr Index few_patches = 64;
 
 /// Kernels of few operations need few registers.
 template <class Kernel>
