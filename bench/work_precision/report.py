@@ -280,7 +280,8 @@ OVERVIEW = ["L-shape", "slit plate", "hanging beam", "notched block", "twisted b
             "block with a thin arm, Tet4, Ogden", "twisting bar, Hex8, Ogden"]
 # Elements of one colour; plane and solid.
 COLOURS = dict(zip([("Tri3", "Tet4"), ("Quad4", "Hex8"), ("Tri6", "Tet10"), ("Quad8", "Hex20"), ("Quad9", "Hex27"),
-                    ("Tri3 to Tri6", "Tet4 to Tet10"), ("Quad4 to Quad9", "Hex8 to Hex27")],
+                    ("Tri3 to Tri6", "Tet4 to Tet10"), ("Quad4 to Quad9", "Hex8 to Hex27"),
+                    ("Tri3 and Tri6", "Tet4 and Tet10"), ("Quad4 and Quad9", "Hex8 and Hex27")],
                    matplotlib.colormaps["tab10"].colors))
 DASHES = {"uniform": "-", "uniform, float": "-.", "uniform, FBar": ":"}
 MARKS = "ovsDPX*<>"
