@@ -145,6 +145,11 @@ TEST_CASE("outer sides are found by their place", "[mesh]") {
   CHECK(nodes_of(lid) == nodes_of(mesh.boundary("top")));
 }
 
+TEST_CASE("nodes of facets are told each once, also those that no mesh has", "[mesh]") {
+  std::vector<Facet<3>> const facets{{4, -7, 2}, {2, 9, 4}};
+  CHECK(nodes_of(facets) == std::vector<Index>{-7, 2, 4, 9});
+}
+
 TEST_CASE("elements of nodes that the mesh has not are refused when its sides are looked for",
           "[mesh]") {
   for (Index wrong : {-1, 20}) {

@@ -114,8 +114,9 @@ std::vector<Index> nodes_of(std::vector<Facet<Dim>> const& facets) {
   std::vector<Index> nodes;
   for (auto const& facet : facets) nodes.insert(nodes.end(), facet.begin(), facet.end());
   if (nodes.empty()) return nodes;
-  auto const end = static_cast<std::size_t>(std::ranges::max(nodes)) + 1;
-  return detail::each_once(std::move(nodes), end);
+  auto const [least, largest] = std::ranges::minmax(nodes);
+  if (least < 0) return detail::each_once(std::move(nodes));  // who takes them refuses them
+  return detail::each_once(std::move(nodes), static_cast<std::size_t>(largest) + 1);
 }
 
 }  // namespace pliant
