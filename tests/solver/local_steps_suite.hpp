@@ -243,6 +243,26 @@ TEST_CASE("the work of what pulls at a body with local steps is booked", "[solve
   CHECK(std::abs(fine) < 0.1 * std::abs(coarse));
 }
 
+TEST_CASE("energy that comes with other levels is booked", "[solver]") {
+  using F = Formulation<Quad9, Gauss<3>, StableNeoHookean>;
+  auto body =
+      body_of<F>(Reference<double>{}, mesh::rectangle<Quad9>({.size = {1, 1}, .cells = {3, 3}}),
+                 {2e6, 0.3, 1e3});
+  FieldOf<2> to_the_middle;
+  for (auto const& x : body.mesh().nodes) to_the_middle.push_back({0.5 - x[0], 0.5 - x[1]});
+  body.set_displacements(to_the_middle);
+  body.set_damping(50);
+  LocalSteps step{{.safety = 0.8}};
+  step(body, 0);
+  double const before = total_energy(body) - booked_energy(body.parts());
+
+  step(body, 600);
+
+  REQUIRE(kinetic_energy(body) < 1e-3 * before);
+  CHECK(external_work(body).steps > 0.02 * before);
+  CHECK(std::abs(total_energy(body) - booked_energy(body.parts()) - before) < 0.05 * before);
+}
+
 /// A strip whose right half is split once, and there its right quarter again.
 template <class F, class B>
 auto split_strip(B const& backend) {

@@ -170,26 +170,41 @@ class LocalSteps {
     auto& own = parts.state.integrator;
     own.next_refresh = parts.state.steps + options_.refresh_interval;
     detail::keep_distortions(parts);
-    double const before = parts.schedule ? correction(parts) : 0;
-    double const coarsest =
-        detail::choose_coarsest_step(parts, options_.macro_step, options_.safety);
-    bool const anew = own.macro_step != options_.safety * coarsest;
-    own.macro_step = options_.safety * coarsest;
-    parts.for_each_type([&](auto& table, auto& elements) {
-      auto const count = static_cast<std::size_t>(table.count());
-      if (anew || elements.step_levels.size() != count)
-        elements.step_levels = zeros<StepLevel>(parts.backend, count);
-      parts.backend.for_each(table.count(),
-                             detail::AssignLevel<typename Parts::T>{
-                                 table.scratch.data(), elements.step_levels.data(),
-                                 4 / (coarsest * coarsest), 1 + options_.hysteresis});
+    change_steps(parts, [&] {
+      double const coarsest =
+          detail::choose_coarsest_step(parts, options_.macro_step, options_.safety);
+      bool const anew = own.macro_step != options_.safety * coarsest;
+      own.macro_step = options_.safety * coarsest;
+      parts.for_each_type([&](auto& table, auto& elements) {
+        auto const count = static_cast<std::size_t>(table.count());
+        if (anew || elements.step_levels.size() != count)
+          elements.step_levels = zeros<StepLevel>(parts.backend, count);
+        parts.backend.for_each(table.count(),
+                               detail::AssignLevel<typename Parts::T>{
+                                   table.scratch.data(), elements.step_levels.data(),
+                                   4 / (coarsest * coarsest), 1 + options_.hysteresis});
+      });
+      make_schedule(parts);
     });
-    make_schedule(parts);
-    // The energy that the steps keep depends on them.
-    if (std::isfinite(own.first_energy))
-      own.first_energy += before - correction(parts);
-    else
-      own.first_energy = own.last_energy - correction(parts);
+    if (!std::isfinite(own.first_energy)) own.first_energy = own.last_energy - correction(parts);
+  }
+
+  /// Calls change(), which changes the schedule or the size of steps, and books what that adds to the energy that they
+  /// keep.
+  template <class Parts, class Change>
+  static void change_steps(Parts& parts, Change const& change) {
+    auto& own = parts.state.integrator;
+    bool const compares = parts.schedule && std::isfinite(own.first_energy);
+    double const before = compares ? correction(parts) : 0;
+    change();
+    if (!compares) return;
+    double const added = before - correction(parts);
+    if (std::isfinite(added)) {
+      parts.state.energy_of_steps += added;
+      own.last_energy -= added;
+    } else {
+      detail::forget_energies(own);
+    }
   }
 
   /// What the total energy at the end of a macro step has over that of the steps around.
@@ -222,10 +237,7 @@ class LocalSteps {
       integrator.restore(parts);
     }
     void set_slower(double slower) const {
-      auto& own = parts.state.integrator;
-      double const before = parts.schedule ? correction(parts) : 0;
-      own.slower = slower;
-      if (parts.schedule) own.first_energy += before - correction(parts);
+      change_steps(parts, [&] { parts.state.integrator.slower = slower; });
     }
   };
   /// Whether the state is good; if not, it is rolled back. Keeps a good one.

@@ -55,6 +55,16 @@ struct LargestAt {
   }
 };
 
+/// One direction of a field.
+template <class T, int Dim>
+struct ComponentAt {
+  NodeField<T const, Dim> field;
+  int direction;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    return static_cast<double>(field(i, direction));
+  }
+};
+
 /// The one residual of implicit steps, in the memory of a body's backend and in its precision:
 ///   r(d) = F(u_θ) + loads − M (a_θ + c v_θ − g) − s K(u) v_θ
 /// over the unknowns, where θ marks what the scheme's rule makes of the step d (see StepRule), c is the mass damping and
@@ -96,12 +106,11 @@ class Balance {
 
   /// The matrix −∂r/∂d.
   ShiftedTangent<Parts> matrix(StepRule const& rule) {
-    double const by_speed = rule.force_weight * rule.velocity.d;
-    return {rule.inertia_weight * rule.acceleration.d + parts_.state.damping * by_speed,
+    return {inertia_factor(rule),
             mass_,
             rule.force_weight,
             {arrays().place.data()},
-            stiffness_damping_ * by_speed,
+            stiffness_damping_ * rule.force_weight * rule.velocity.d,
             std::as_const(parts_).u()};
   }
 
@@ -129,6 +138,25 @@ class Balance {
     parts_.layout.interpolation.apply_transpose(parts_.backend, f);
     set_sum(parts_.backend, nodes_, w, scaled(1, w), scaled(parts_.state.damping, speed));
     return sum_up(w);
+  }
+  /// Moves the step as a whole so that nothing is left of the residual's sum in directions in which no node is held or
+  /// driven: iterations leave of it what their tolerance lets them, and so the body's momentum would wander. The residual
+  /// in arrays() is of the step before that. Forces do not see a translation, but those of a user's terms may.
+  void balance_translations(StepRule const& rule) {
+    if (!parts_.terms.empty()) return;
+    DirectionMask held = 0;
+    for (auto const& condition : parts_.state.prescribed->conditions) held |= condition.directions;
+    auto const r = field(arrays().residual), d = field(arrays().increment);
+    double const inertia = inertia_factor(rule) * parts_.layout.mass_in_all;
+    Vector<T, dim> too_far{};
+    bool moves = false;
+    for (int k = 0; k < dim; ++k) {
+      if (held >> k & 1) continue;
+      double const left = parts_.backend.sum(nodes_, ComponentAt<T, dim>{{r.data}, k});
+      too_far[k] = static_cast<T>(-left / inertia);
+      moves = moves || too_far[k] != T(0);
+    }
+    if (moves) parts_.backend.for_each(nodes_, TakeAway<T, dim>{d, too_far});
   }
   /// a in balance with forces at the present u and v, into state.implicit.a; zero where nodes are held or driven.
   void find_acceleration() {
@@ -165,6 +193,11 @@ class Balance {
   static Scaled<T, dim> scaled(double factor, Field field) { return {factor, {field.data}}; }
 
  private:
+  /// That of M in the matrix, 1/s².
+  double inertia_factor(StepRule const& rule) const {
+    return rule.inertia_weight * rule.acceleration.d +
+           parts_.state.damping * rule.force_weight * rule.velocity.d;
+  }
   /// out = weight · row + (1 − weight) · what it was: the velocity or the acceleration.
   void set_row(Field out, StepRule::Row const& row, double weight) {
     auto& own = arrays();

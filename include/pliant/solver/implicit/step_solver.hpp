@@ -147,8 +147,11 @@ class StepSolver {
       // Where forces cancel to rounding, the displacement tells.
       if (now.residual <= std::max(tolerance_ * now.scale, nothing) || settled) {
         reached_ = now.scale > 0 ? now.residual / now.scale : 0;
-        return sizeof(T) == sizeof(double) || !options_.tolerance || now.residual <= nothing ||
-               reached_ <= tolerance_ || refine(h);
+        bool const enough = sizeof(T) == sizeof(double) || !options_.tolerance ||
+                            now.residual <= nothing || reached_ <= tolerance_;
+        if (!enough) return refine(h);
+        balance_.balance_translations(rule_);
+        return true;
       }
       if (iteration == options_.max_iterations) return false;
       double const enough = std::clamp(0.1 * tolerance_ * now.scale / now.residual, 1e-12, 0.1);
