@@ -5,6 +5,7 @@
 #include <pliant/body/compare.hpp>
 
 #include "support/formulations.hpp"
+#include "support/small_patches.hpp"
 
 namespace pliant::test::sleep_suite {
 
@@ -142,6 +143,34 @@ TEST_CASE("a wave goes through patches that slept as through others", "[adaptati
     CHECK(most > 0);
     CHECK(furthest_apart(plain, body) < 1e-3 * largest(plain.displacements()));
   });
+}
+
+TEST_CASE("patches are marked by how many others lie between them and what moves", "[adaptation]") {
+  auto const mesh = mesh::rectangle<Tri3>({.size = {10, 1}, .cells = {10, 1}});
+  Body body{SmallPatches<double, 1>{}, mesh, soft, Group<Tri>{}};
+  auto v = body.velocities();
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (mesh.nodes[i][0] == 0) v[i] = {0, 1};
+  body.set_velocities(v);
+  auto& parts = body.parts();
+  parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
+
+  auto const marks = detail::find_stirred(parts, {.below = slow, .for_steps = 16}, 3);
+
+  // The triangles of a cell share nodes with those of the cells beside it.
+  std::vector<int> by_place(marks.size());
+  for (std::size_t e = 0; e < marks.size(); ++e) {
+    Point<2> middle{};
+    auto const& own =
+        mesh.elements<Tri3>()[static_cast<std::size_t>(parts.layout.table<Tri3>().user_element[e])];
+    for (Index node : own) middle[0] += mesh.nodes[static_cast<std::size_t>(node)][0] / 3;
+    by_place[static_cast<std::size_t>(2 * middle[0])] = marks[e];
+  }
+  auto const cell_of = [](std::size_t place) { return static_cast<int>(place) / 2; };
+  for (std::size_t place = 0; place < by_place.size(); ++place) {
+    INFO(place);
+    CHECK(by_place[place] == (cell_of(place) < 4 ? cell_of(place) + 1 : 0));
+  }
 }
 
 TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adaptation]") {

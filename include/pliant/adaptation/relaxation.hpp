@@ -10,12 +10,20 @@
 // How far internal variables are from rest, in forces.
 namespace pliant::detail {
 
-/// Sets a flag that other threads may set at the same time.
-PLIANT_HOST_DEVICE void set_flag(std::uint8_t& flag) {
+/// Sets a flag, or another mark, that other threads may set at the same time.
+PLIANT_HOST_DEVICE void set_flag(std::uint8_t& flag, std::uint8_t mark = 1) {
 #if defined(__CUDA_ARCH__)
-  flag = 1;
+  flag = mark;
 #else
-  std::atomic_ref(flag).store(1, std::memory_order_relaxed);
+  std::atomic_ref(flag).store(mark, std::memory_order_relaxed);
+#endif
+}
+/// Reads one meanwhile.
+PLIANT_HOST_DEVICE std::uint8_t flag_of(std::uint8_t& flag) {
+#if defined(__CUDA_ARCH__)
+  return flag;
+#else
+  return std::atomic_ref(flag).load(std::memory_order_relaxed);
 #endif
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -63,29 +62,50 @@ struct HiddenForce {
   }
 };
 
-/// Patches with driven nodes do not sleep.
+/// Marks the patches beside those of one mark, where there is no mark yet, by the next one.
+struct MarkBeside {
+  Index const *first, *beside;
+  std::uint8_t* marks;
+  std::uint8_t mark;
+
+  PLIANT_HOST_DEVICE void operator()(Index p) const {
+    if (flag_of(marks[p]) != mark) return;
+    for (Index k = first[p]; k < first[p + 1]; ++k)
+      if (auto& other = marks[beside[k]]; flag_of(other) == 0)
+        set_flag(other, static_cast<std::uint8_t>(mark + 1));
+  }
+};
+
+/// Patches with driven nodes do not sleep: marks these, and no others.
 template <class Parts>
-void mark_driven(Parts const& parts, std::vector<std::uint8_t>& stirred) {
+void mark_driven(Parts const& parts, typename Parts::template Array<std::uint8_t>& marks) {
   auto const& rows = *parts.patch_nodes;
+  std::vector<std::uint8_t> driven;
   for (auto const& condition : parts.state.prescribed->conditions) {
     if (!condition.motion) continue;
+    driven.resize(marks.size());
     for (Index node : condition.nodes) {
       auto const i = static_cast<std::size_t>(parts.layout.internal_of(node));
       for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k)
-        stirred[static_cast<std::size_t>(rows.patches_of_node[static_cast<std::size_t>(k)])] = 1;
+        driven[static_cast<std::size_t>(rows.patches_of_node[static_cast<std::size_t>(k)])] = 1;
     }
   }
+  if (driven.empty())
+    parts.backend.for_each(rows.count(), FillValue<std::uint8_t>{marks.data(), 0});
+  else
+    marks.upload(driven);
 }
 
-/// Which patches are not at rest, 1 or 0.
+/// Which patches are not at rest, 1, so many rings of neighbours around them, more, and the others, 0. The neighbours,
+/// if they slept, would throw a wave back that comes before the next look.
 template <class Parts>
-std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule) {
+std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule, int rings) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
   auto& rows = *parts.patch_nodes;
   evaluate_forces(parts);
-  backend.for_each(rows.count(), FillValue<std::uint8_t>{rows.stirred.data(), 0});
+  mark_driven(parts, rows.stirred);
   NodeField<T const, dim> const kept{
       parts.awake && !parts.forces_complete ? parts.awake->kept.data() : nullptr};
   over_moving_nodes(parts,
@@ -102,9 +122,11 @@ std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule) {
                                         rows.patches.data(),
                                         rows.stirred.data()},
                     [&](auto const& of_node) { backend.for_each(parts.layout.nodes, of_node); });
-  auto stirred = download<std::uint8_t>(rows.stirred);
-  mark_driven(parts, stirred);
-  return stirred;
+  for (int ring = 0; ring < rings; ++ring)
+    backend.for_each(rows.count(),
+                     MarkBeside{rows.first_beside.data(), rows.beside.data(), rows.stirred.data(),
+                                static_cast<std::uint8_t>(ring + 1)});
+  return download<std::uint8_t>(rows.stirred);
 }
 
 }  // namespace detail
@@ -117,26 +139,8 @@ int rings_reached(Parts const& parts, std::int64_t steps) {
   double const nodes_of_patch =
       static_cast<double>(parts.layout.nodes) / parts.patch_nodes->count();
   double const width = std::pow(nodes_of_patch, 1.0 / Parts::dim);
-  return std::max(1, static_cast<int>(std::lround(static_cast<double>(steps) / width)));
-}
-/// f(p) for each patch whose mark is 1, not 0; few are, where most sleep.
-template <class F>
-void for_each_marked(std::vector<std::uint8_t> const& marks, F const& f) {
-  auto const* const end = marks.data() + marks.size();
-  for (auto const* at = marks.data(); at != end; ++at) {
-    at = static_cast<std::uint8_t const*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
-    if (!at) return;
-    f(static_cast<std::size_t>(at - marks.data()));
-  }
-}
-/// Marks so many rings of neighbours too: what sleeps would throw a wave back that comes before the next look.
-template <class Parts>
-void mark_reached(Parts const& parts, int rings, std::vector<std::uint8_t>& stirred) {
-  for (int ring = 0; ring < rings; ++ring)
-    for_each_marked(std::vector(stirred), [&](std::size_t p) {
-      for (Index const other : parts.patch_nodes->neighbours[p])
-        stirred[static_cast<std::size_t>(other)] = 1;
-    });
+  constexpr double most = 250;  // that marks can number
+  return static_cast<int>(std::lround(std::clamp(static_cast<double>(steps) / width, 1.0, most)));
 }
 
 /// How State::rest goes on where `passed` steps were taken since the last look.
@@ -199,8 +203,7 @@ void look_for_rest(Parts& parts, SleepRule const& rule) {
   auto const passed = static_cast<std::int32_t>(
       std::min<std::int64_t>(state.steps - state.rest_seen, rule.for_steps));
   state.rest_seen = state.steps;
-  auto stirred = detail::find_stirred(parts, rule);
-  detail::mark_reached(parts, detail::rings_reached(parts, passed), stirred);
+  auto stirred = detail::find_stirred(parts, rule, detail::rings_reached(parts, passed));
   detail::NextRest const next{passed, static_cast<std::int32_t>(rule.for_steps)};
   if constexpr (Parts::has_internal_variables)
     detail::stir_what_relaxes(parts, rule, next, stirred);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -20,11 +21,18 @@ struct PatchNodes {
 
   std::vector<Index> first_of_type;                   // (types + 1): patches
   std::vector<Index> first_of_node, patches_of_node;  // compressed rows
-  std::vector<std::vector<Index>> neighbours;         // (patches): that share a node
+  std::vector<Index> first_neighbour, neighbours;     // the same of patches, that share a node
   Array<Index> first, patches;                        // the rows in the backend's memory
+  Array<Index> first_beside, beside;                  // and those of neighbours
   Array<std::uint8_t> stirred;                        // (patches): scratch of looks
 
   Index count() const { return first_of_type.back(); }
+  /// The patches that share a node with this one.
+  std::span<Index const> beside_of(std::size_t patch) const {
+    auto const from = static_cast<std::size_t>(first_neighbour[patch]),
+               to = static_cast<std::size_t>(first_neighbour[patch + 1]);
+    return std::span(neighbours).subspan(from, to - from);
+  }
 };
 
 /// What follows from State::rest while patches sleep. A sleeping patch does not move: its nodes are held where they

@@ -70,20 +70,24 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   made.first_of_node = by_node.first;
   for (Index pair : by_node.order)
     made.patches_of_node.push_back(patches_of_pairs[static_cast<std::size_t>(pair)]);
-  made.neighbours.resize(static_cast<std::size_t>(made.count()));
+  std::vector<std::vector<Index>> neighbours(static_cast<std::size_t>(made.count()));
   for (std::size_t i = 0; i < nodes; ++i)
     for (Index a = made.first_of_node[i]; a < made.first_of_node[i + 1]; ++a)
       for (Index b = made.first_of_node[i]; b < made.first_of_node[i + 1]; ++b)
         if (a != b)
-          made.neighbours[static_cast<std::size_t>(
-                              made.patches_of_node[static_cast<std::size_t>(a)])]
+          neighbours[static_cast<std::size_t>(made.patches_of_node[static_cast<std::size_t>(a)])]
               .push_back(made.patches_of_node[static_cast<std::size_t>(b)]);
-  for (auto& list : made.neighbours) {
+  made.first_neighbour = {0};
+  for (auto& list : neighbours) {
     std::ranges::sort(list);
     list.erase(std::unique(list.begin(), list.end()), list.end());
+    made.neighbours.insert(made.neighbours.end(), list.begin(), list.end());
+    made.first_neighbour.push_back(static_cast<Index>(made.neighbours.size()));
   }
   made.first = upload(parts.backend, made.first_of_node);
   made.patches = upload(parts.backend, made.patches_of_node);
+  made.first_beside = upload(parts.backend, made.first_neighbour);
+  made.beside = upload(parts.backend, made.neighbours);
   made.stirred = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(made.count()));
   return made;
 }
@@ -169,7 +173,7 @@ void bring_up_to_rest(Parts& parts) {
   std::vector<typename Parts::template Array<Index>> beside;
   (void)fill_lists(parts, beside, [&](std::size_t p) {
     return asleep[p] && (has_added_terms(parts) ||
-                         std::ranges::any_of(patch_nodes.neighbours[p], [&](Index other) {
+                         std::ranges::any_of(patch_nodes.beside_of(p), [&](Index other) {
                            return !asleep[static_cast<std::size_t>(other)];
                          }));
   });
