@@ -7,21 +7,44 @@
 // The loops of a macro step with local time steps.
 namespace pliant::detail {
 
+/// One weight of all elements, and one of each.
+template <class T>
+struct SameWeight {
+  static constexpr bool reads_elements = false;
+  T value;
+  template <class Own>
+  PLIANT_HOST_DEVICE T operator()(Own const&) const {
+    return value;
+  }
+};
+template <class T>
+struct OwnWeight {
+  static constexpr bool reads_elements = true;
+  ElementField<T const, 1> values;
+  template <class Own>
+  PLIANT_HOST_DEVICE auto operator()(Own const& own) const {
+    return own(values)[0];
+  }
+};
+
 /// Adds weight · force of elements.
-template <class T, class Laws, Geometry How>
+template <class Laws, Geometry How, class Weight>
 struct ImpulseKernel {
-  static constexpr bool reads_elements = Laws::reads_elements;
+  static constexpr bool reads_elements = Laws::reads_elements || Weight::reads_elements;
   static constexpr bool few_operations = Laws::few_operations;
   static constexpr bool symmetric = Laws::symmetric;
   Laws groups;
-  T weight;
-  template <int G, class... V>
-  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
-    return groups.template apply<G>(
-        [this](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          return weight * force<typename Laws::template formulation<G>, How>(law, rest, u);
-        },
-        v...);
+  Weight weight;
+  template <int G, class First, class... V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, First const& first, V const&... v) const {
+    auto const weighted = [factor = weight(first)](auto const& law, auto const& rest,
+                                                   auto const& u) PLIANT_INLINE {
+      return factor * force<typename Laws::template formulation<G>, How>(law, rest, u);
+    };
+    if constexpr (reads_elements && !Laws::reads_elements)
+      return groups.template apply<G>(weighted, v...);
+    else
+      return groups.template apply<G>(weighted, first, v...);
   }
 };
 

@@ -23,23 +23,31 @@ MovingNodes<typename Parts::T, Parts::dim> moving_nodes(Parts& parts, double mac
           external_forces(parts),   {macro_step, schedule.finest, parts.state.damping}};
 }
 
-/// Calls visit(table, elements, laws, level) for the patches of each level that is at least `lowest`, with laws that see
-/// the step of their level, of a macro step of `elapsed` s; 0: no time has passed.
+/// Calls visit(table, elements, laws, weight) for the patches whose level is at least `lowest`, with laws that see the step
+/// of their level, of a macro step of `elapsed` s; 0: no time has passed. The weight of an element is the number of finest
+/// steps in its own.
 template <class Parts, class Visit>
 void for_each_level(Parts& parts, int lowest, double elapsed, Visit const& visit) {
+  using T = typename Parts::T;
   auto const& schedule = *parts.schedule;
   std::size_t type = 0;
   parts.for_each_type([&](auto& table, auto&) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    auto const& lists = schedule.patches[type++];
+    auto const& lists = schedule.patches[type];
+    auto const& weights = schedule.weights[type++];
     for (int level = lowest; level <= schedule.finest; ++level) {
       auto const& list = lists[static_cast<std::size_t>(level)];
       if (list.size() < 2) continue;  // no patch
       auto const elements = over(table.elements, list);
-      if constexpr (Table::Laws::internal_variable_count > 0)
-        visit(table, elements, laws_over(parts, table, std::ldexp(elapsed, -level)), level);
-      else
-        visit(table, elements, table.laws, level);
+      SameWeight<T> const weight{static_cast<T>(std::ldexp(1.0, schedule.finest - level))};
+      if constexpr (takes_levels_at_once<typename Parts::backend_type, Table>) {
+        visit(table, elements, table.laws, OwnWeight<T>{{weights.data(), table.count()}});
+        break;  // the list has the higher ones too
+      } else if constexpr (Table::Laws::internal_variable_count > 0) {
+        visit(table, elements, laws_over(parts, table, std::ldexp(elapsed, -level)), weight);
+      } else {
+        visit(table, elements, table.laws, weight);
+      }
     }
   });
 }
@@ -52,25 +60,25 @@ void accumulate_impulses(Parts& parts, int lowest, double elapsed = 0) {
   auto const& schedule = *parts.schedule;
   auto const& backend = parts.backend;
   auto const at = std::as_const(parts).here();
-  auto const weight = [&](int level) {
-    return static_cast<T>(std::ldexp(1.0, schedule.finest - level));
-  };
   if (lowest <= schedule.term_level && !(parts.pressures.empty() && parts.terms.empty())) {
     for_each_added_term(parts, [&](auto const& term) { term.add_force(backend, at, parts.f()); });
     if (schedule.term_level < schedule.finest)
       backend.for_each(
           schedule.node_counts[static_cast<std::size_t>(schedule.term_level)],
-          ScaleRows<T>{parts.layout.f.data(), schedule.nodes.data(), weight(schedule.term_level)});
+          ScaleRows<T>{parts.layout.f.data(), schedule.nodes.data(),
+                       static_cast<T>(std::ldexp(1.0, schedule.finest - schedule.term_level))});
   }
-  for_each_level(
-      parts, lowest, elapsed, [&](auto& table, auto const& elements, auto const& laws, int level) {
-        using Table = std::remove_cvref_t<decltype(table)>;
-        table.with_geometry([&](auto geometry) {
-          backend.template accumulate<Table::groups>(
-              elements, ImpulseKernel<T, typename Table::Laws, geometry.value>{laws, weight(level)},
-              parts.f(), at.rest, at.u);
-        });
-      });
+  for_each_level(parts, lowest, elapsed,
+                 [&](auto& table, auto const& elements, auto const& laws, auto const& weight) {
+                   using Table = std::remove_cvref_t<decltype(table)>;
+                   using Weight = std::remove_cvref_t<decltype(weight)>;
+                   table.with_geometry([&](auto geometry) {
+                     backend.template accumulate<Table::groups>(
+                         elements,
+                         ImpulseKernel<typename Table::Laws, geometry.value, Weight>{laws, weight},
+                         parts.f(), at.rest, at.u);
+                   });
+                 });
   parts.layout.interpolation.add_transpose(backend, parts.f());
 }
 
@@ -86,9 +94,10 @@ void act(Parts& parts, double macro_step, int lowest, Halves halves) {
   double const elapsed = halves.ends ? macro_step : 0;
   accumulate_impulses(parts, lowest, elapsed);
   if constexpr (Parts::has_internal_variables)
-    for_each_level(parts, lowest, elapsed, [&](auto&, auto const& elements, auto const& laws, int) {
-      commit_by(parts, elements, laws, std::as_const(parts).u());
-    });
+    for_each_level(parts, lowest, elapsed,
+                   [&](auto&, auto const& elements, auto const& laws, auto const&) {
+                     commit_by(parts, elements, laws, std::as_const(parts).u());
+                   });
   auto const nodes = moving_nodes(parts, macro_step);
   typename Parts::ConstField const v = std::as_const(parts).v(), impulses{parts.layout.f.data()};
   double* const work = parts.state.work.data();

@@ -43,14 +43,15 @@ void spread_to_nodes(Parts& parts, NodeField<typename Parts::T, 1> field) {
   });
 }
 
-/// Lists of the patches of each level, for over().
+/// Lists of the patches of each level, for over(), or of each level and all higher ones.
 template <Backend B>
-auto patches_by_level(B const& backend, std::vector<StepLevel> const& levels, int finest) {
+auto patches_by_level(B const& backend, std::vector<StepLevel> const& levels, int finest,
+                      bool with_higher) {
   std::vector<typename B::template Array<Index>> lists;
   for (int l = 0; l <= finest; ++l) {
     std::vector<Index> list{0};
     for (std::size_t p = 0; p < levels.size(); ++p)
-      if (levels[p] == l) list.push_back(static_cast<Index>(p));
+      if (levels[p] == l || (with_higher && levels[p] > l)) list.push_back(static_cast<Index>(p));
     list[0] = static_cast<Index>(list.size()) - 1;
     lists.push_back(upload(backend, list));
   }
@@ -153,8 +154,16 @@ void make_schedule(Parts& parts) {
   auto rates = zeros<StepLevel>(backend, static_cast<std::size_t>(parts.layout.nodes));
   backend.for_each(parts.layout.nodes, detail::TakeLevel<T>{field, rates.data()});
   detail::sort_nodes(backend, download<StepLevel>(rates), schedule);
-  for (auto const& levels : schedule.patch_levels)
-    schedule.patches.push_back(detail::patches_by_level(backend, levels, schedule.finest));
+  parts.for_each_type([&](auto& table, auto&) {
+    constexpr bool at_once = detail::takes_levels_at_once<B, std::remove_cvref_t<decltype(table)>>;
+    auto const& levels = schedule.patch_levels[schedule.patches.size()];
+    schedule.patches.push_back(detail::patches_by_level(backend, levels, schedule.finest, at_once));
+    auto& weights = schedule.weights.emplace_back();
+    if (!at_once) return;
+    weights = zeros<T>(backend, static_cast<std::size_t>(table.count()));
+    backend.for_each(table.count(), detail::LevelsToShares<T>{table.scratch.data(), schedule.finest,
+                                                              weights.data()});
+  });
   parts.schedule = std::move(schedule);
 }
 

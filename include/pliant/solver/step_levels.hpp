@@ -118,6 +118,17 @@ struct RaisePatch {
     levels[p] = static_cast<StepLevel>(weight_to_level(static_cast<double>(highest)));
   }
 };
+/// How many of the finest steps are in that of an element.
+template <class T>
+struct LevelsToShares {
+  T const* weights;  // see LevelsToWeights
+  int finest;
+  T* shares;
+  PLIANT_HOST_DEVICE void operator()(Index e) const {
+    int const level = weight_to_level(static_cast<double>(weights[e]));
+    shares[e] = static_cast<T>(Index{1} << (finest - level));
+  }
+};
 template <class T>
 struct TakeLevel {
   NodeField<T, 1> field;
