@@ -101,13 +101,13 @@ struct TableRules {
       if constexpr (group<R> == G && layout.first[R]) {
         using Context = RuleContext<Places, R, G, typename Table::Laws, Around, Own, Found>;
         Context const context{groups, around, own, found};
-        auto const found =
+        auto const value =
             value_of(std::get<R>(rules).criterion, StateInBody<F, L, S, Context>{state, context});
         using C = decltype(rule<R>::criterion);
         if constexpr (GivesSeveral<C>)
-          for (int k = 0; k < values_of<C>; ++k) values[row<R> + k] = found[k];
+          for (int k = 0; k < values_of<C>; ++k) values[row<R> + k] = value[k];
         else
-          values[row<R>] = found;
+          values[row<R>] = value;
       }
       evaluate_rules<G, R + 1>(state, groups, around, own, found, values);
     }

@@ -1,12 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,6 +14,7 @@
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/nodes_between.hpp>
+#include <pliant/topology/refinable.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -24,12 +22,6 @@
 #include <pliant/topology/tree_queries.hpp>
 
 namespace pliant {
-
-/// The elements that can be refined: of the catalogue's shape functions.
-template <class E>
-concept Refinable = Element<E> && has_pattern<typename E::cell> &&
-                    (std::derived_from<E, LinearElement<typename E::cell>> || CurvedSimplex<E> ||
-                     (TensorCell<typename E::cell> && E::degree == 2));
 
 /// The refinement tree of a mesh, plane or solid, of elements of degree one or two, as RefinementPattern divides
 /// their cells, into smaller ones or between their corners. Levels differ by one at most across edges and sides; nodes that hang there are slaves of the

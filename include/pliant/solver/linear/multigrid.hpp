@@ -45,10 +45,10 @@ class Multigrid final : public KeptBySolver {
       per_spacing_[k] = static_cast<T>(1 / found.grid.spacing[k]);
     if constexpr (can_be_quadratic)
       if (kind == Preconditioner::p_multigrid) {
-        CornersOfBody const corners(parts);
-        corners_.emplace(parts, corners);
+        CornersOfBody const of_body(parts);
+        corners_.emplace(parts, of_body);
         std::vector<Index> boxes;
-        for (Index node : corners.node)
+        for (Index node : of_body.node)
           boxes.push_back(found.boxes_of_nodes[static_cast<std::size_t>(node)]);
         grids_ = {parts.backend, std::move(found.grid), corners_->rest(), std::move(boxes)};
         return;
