@@ -141,6 +141,22 @@ void compare(B const& given, Rules const& rules, unsigned seed, double step = 0)
   CHECK(std::abs(moves(screened) - moves(all)) <= (sizeof(T) == 8 ? 0 : 0.02 * moves(all)));
 }
 
+TEST_CASE("rules tell the gradients outside which they do not act", "[adaptation]") {
+  using From = Linear<Tri3>;
+  using To = Turned<Tri3>;
+  using Table = ElementTable<Reference<double>, Tri3, detail::TypeList<From, To>>;
+  std::tuple const rules{when<From>(GradientNorm{}).above(0.1).become<To>(),
+                         when<To>(GradientNorm{}).below(0.2).become<From>()};
+
+  auto const of_from = detail::gradient_range<Table, 0, double, 2>(rules);
+  auto const of_to = detail::gradient_range<Table, 1, double, 2>(rules);
+
+  CHECK(of_from[0] == Approx(0.01).epsilon(0.01));
+  CHECK(std::isinf(of_from[1]));
+  CHECK(of_to[0] == -1);
+  CHECK(of_to[1] == Approx(0.04).epsilon(0.01));
+}
+
 TEST_CASE("looks that forces screen switch what looks at all elements do", "[adaptation]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     auto const on = [&]<class E>(E) {

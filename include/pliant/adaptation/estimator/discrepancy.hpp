@@ -6,8 +6,8 @@
 namespace pliant {
 
 namespace detail {
-/// What a criterion would see if the element were in the group of another formulation.
-template <class G, class Context>
+/// What a criterion would see if the element were in another group, but for what belongs to the present one.
+template <class Context>
 struct ContextInGroup {
   Context const& context;
 
@@ -15,7 +15,6 @@ struct ContextInGroup {
   PLIANT_HOST_DEVICE decltype(auto) law_of() const {
     return context.template law_of<To>();
   }
-  PLIANT_HOST_DEVICE auto young() const { return context.template young_of<G>(); }
   template <class F>
   PLIANT_HOST_DEVICE auto young_of() const {
     return context.template young_of<F>();
@@ -75,7 +74,7 @@ struct Discrepancies {
       return S(0);
     } else {
       auto const& law = law_in<F>(e);
-      using Context = ContextInGroup<F, std::remove_cvref_t<decltype(e.context)>>;
+      using Context = ContextInGroup<std::remove_cvref_t<decltype(e.context)>>;
       Context const context{e.context};
       return QuadratureDiscrepancy<
           Formulation<typename F::element, typename To::quadrature, F::template law>>{}(
