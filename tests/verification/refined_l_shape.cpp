@@ -36,7 +36,8 @@ Mesh<E> initial_mesh(int n) {
         if constexpr (std::same_as<Linear, Hex8>)
           elements.push_back(hex);
         else
-          for (auto const& part : mesh::detail::split_cell(hex, Linear{})) elements.push_back(part);
+          for (auto const& part : mesh::detail::split_cell(hex, typename Linear::cell{}))
+            elements.push_back(part);
       }
     if constexpr (E::degree > 1)
       return mesh::raised<E>(solid);
