@@ -142,7 +142,8 @@ struct ExternalWork {
   double pressures;      // and of other force terms that have no energy
   double by_hand;        // displacements, velocities, groups, conditions that a user set since an
                          // integrator took the body
-  double steps;          // changes of the time step: leapfrog keeps an energy that depends on it
+  double
+      steps;  // changes of the time step, or of levels: leapfrog keeps an energy that depends on them
   double sum() const { return changed_loads + damping + motions + pressures + by_hand + steps; }
 };
 
