@@ -142,8 +142,7 @@ struct ExternalWork {
   double pressures;      // and of other force terms that have no energy
   double by_hand;        // displacements, velocities, groups, conditions that a user set since an
                          // integrator took the body
-  double
-      steps;  // changes of the time step, or of levels: leapfrog keeps an energy that depends on them
+  double steps;  // changes of the time step and of levels, on which leapfrog's energy depends
   double sum() const { return changed_loads + damping + motions + pressures + by_hand + steps; }
 };
 
