@@ -18,7 +18,7 @@
 #include <pliant/adaptation/estimator/quadrature_discrepancy.hpp>
 #include <pliant/adaptation/estimator/recovered_stress.hpp>
 #include <pliant/adaptation/evaluate.hpp>
-#include <pliant/adaptation/mesh_spending.hpp>
+#include <pliant/adaptation/mesh_within.hpp>
 #include <pliant/adaptation/strategy.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/body.hpp>

@@ -88,18 +88,7 @@ class Adaptation {
   void look(TheBody& body, Forces forces) {
     static_assert(List::template act_on<TheBody>,
                   "a rule is for an element type that the body's mesh does not have");
-    if constexpr (List::holds_mesh)
-      hold_mesh(body, std::get<0>(rules_.rules));
-    else
-      look_at_elements(body.parts(), forces);
-  }
-  template <DeformableBody TheBody, class TheRule>
-  void hold_mesh(TheBody& body, TheRule const& rule) const {
-    bool const timed = rules_.limits_milliseconds();
-    if (timed) take_time(body.parts());
-    detail::hold_mesh(body, rule,
-                      detail::budget_now(rule.options, last_look(body.parts(), body.steps())));
-    if (timed) start_time(body.parts());
+    look_at_elements(body.parts(), forces);
   }
   template <class Parts>
   void look_at_elements(Parts& parts, Forces forces) const {
@@ -108,13 +97,7 @@ class Adaptation {
     auto const look = look_at(parts);  // with the budget of now
     look.begin(0);
     if constexpr (List::changes_mesh) {
-      look.decide();
-      auto const plan = [&] {
-        if constexpr (List::switches)
-          return look.switch_and_change_mesh();
-        else
-          return look.change_mesh();
-      }();
+      auto const plan = look.change();
       if (plan) tell_listeners(parts, *plan);
     } else if constexpr (List::switches) {
       if (forces == Forces::of_next_step)
@@ -186,15 +169,15 @@ class Adaptation {
   template <class Parts>
   detail::LookAt<Parts, List> look_at(Parts& parts) const {
     double evaluations = std::numeric_limits<double>::quiet_NaN();
-    if constexpr (List::chooses)
-      evaluations = detail::budget_now(rules_.choosing(), last_look(parts, parts.state.steps));
+    if constexpr (List::chooses || List::holds_mesh)
+      evaluations = detail::budget_now(limits(), last_look(parts, parts.state.steps));
     return {parts, rules_, evaluations};
   }
 
   /// What limits what a step takes.
   auto const& limits() const {
     if constexpr (List::holds_mesh)
-      return std::get<0>(rules_.rules).options;
+      return rules_.holding().options;
     else
       return rules_.choosing();
   }
@@ -202,13 +185,7 @@ class Adaptation {
   template <class Parts>
   void take_time(Parts& parts) const {
     if constexpr (List::chooses || List::holds_mesh) {
-      double const evaluations = [&] {
-        if constexpr (List::chooses)
-          return look_at(parts).evaluations_now();
-        else
-          return detail::evaluations_of_mesh(std::as_const(parts), std::get<0>(rules_.rules));
-      }();
-      detail::take_time(parts, limits(), looker(parts), evaluations,
+      detail::take_time(parts, limits(), looker(parts), look_at(parts).evaluations_now(),
                         last_look(parts, parts.state.steps));
     }
   }

@@ -65,6 +65,14 @@ class ElementCheck {
                     parts_.clock.data());
   }
 
+  /// Keeps what moves change, and puts it back.
+  void keep_what_moves_change() const {
+    each_kept([this](auto& own, auto& kept) { copy(own, kept); });
+  }
+  void put_back_what_moves_change() const {
+    each_kept([this](auto& own, auto& kept) { copy(kept, own); });
+  }
+
   /// Allocates what is not there yet, and knows whether something was: recorded loops read it where it lies.
   class Room {
    public:
@@ -108,6 +116,26 @@ class ElementCheck {
   Table& table_;
   Elements& elements_;
   LookedAt looked_at_;
+
+ private:
+  template <class Visit>
+  void each_kept(Visit const& visit) const {
+    auto& statistics = elements_.statistics;
+    auto& kept = workspace().kept;
+    visit(elements_.tags, kept.tags);
+    visit(statistics.since, kept.since);
+    visit(statistics.switches, kept.switches);
+    visit(statistics.counters, kept.counters);
+    visit(parts_.state.work, kept.work);  // of all tables, in each the same
+    visit(elements_.internal_variables, kept.internal_variables);
+  }
+  template <class U>
+  using Array = typename B::template Array<U>;
+  template <class U>
+  void copy(Array<U>& from, Array<U>& to) const {
+    CriteriaWorkspace<B>::reserve(backend(), to, from.size());
+    copy_values<B, U>(backend(), from.data(), to.data(), from.size());
+  }
 };
 
 }  // namespace pliant::detail

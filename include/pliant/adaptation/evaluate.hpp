@@ -19,32 +19,36 @@ struct Store {
     values[e] = own[0];
   }
 };
-}  // namespace detail
 
-/// The value of a criterion for every element of a type, in the user's order, each under the
-/// formulation that it has now.
-template <Element E, class TheBody, class C>
-std::vector<double> evaluate(TheBody const& body, C const& criterion) {
-  using T = typename TheBody::scalar;
-  auto const& parts = body.parts();
+template <Element E, class Parts, class C>
+std::vector<double> evaluate_on(Parts const& parts, C const& criterion) {
+  using T = typename Parts::T;
   auto const& table = parts.layout.template table<E>();
   using Table = std::remove_cvref_t<decltype(table)>;
-  auto const rules = [&]<class... Fs>(detail::TypeList<Fs...>) {
+  auto const rules = [&]<class... Fs>(TypeList<Fs...>) {
     static_assert((Criterion<C, Fs> && ...),
                   "evaluate: a criterion is called with the state of an element of each Group, and "
                   "gives a number");
-    return detail::TableRules<Table, detail::Look<Fs, C>...>{{detail::Look<Fs, C>{criterion}...}};
+    return TableRules<Table, Look<Fs, C>...>{{Look<Fs, C>{criterion}...}};
   }(typename Table::formulations{});
   auto values = zeros<T>(parts.backend, static_cast<std::size_t>(table.count()));
-  CriteriaWorkspace<typename TheBody::backend_type> workspace;
-  detail::evaluate_criteria(parts, table, detail::active(table.elements), rules, workspace,
-                            detail::Store<T>{values.data()}, parts.no_counters);
+  CriteriaWorkspace<typename Parts::backend_type> workspace;
+  evaluate_criteria(parts, table, active(table.elements), rules, workspace, Store<T>{values.data()},
+                    parts.no_counters);
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
   for (std::size_t e = 0; e < internal.size(); ++e)
     in_user_order[static_cast<std::size_t>(table.user_element[e])] =
         static_cast<double>(internal[e]);
   return in_user_order;
+}
+}  // namespace detail
+
+/// The value of a criterion for every element of a type, in the user's order, each under the
+/// formulation that it has now.
+template <Element E, class TheBody, class C>
+std::vector<double> evaluate(TheBody const& body, C const& criterion) {
+  return detail::evaluate_on<E>(body.parts(), criterion);
 }
 
 /// What an estimator estimates for a whole body, J: the sum over the elements of all types, those left out where it is

@@ -2,6 +2,7 @@
 
 #include <pliant/adaptation/choice_check.hpp>
 #include <pliant/adaptation/look_time.hpp>
+#include <pliant/adaptation/mesh_spending.hpp>
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/adaptation/rule_list.hpp>
 #include <pliant/adaptation/table_check.hpp>
@@ -93,30 +94,60 @@ class LookAt {
     }
   }
 
-  /// Refines and coarsens; returns what it has done, of which listeners are still to be told.
-  auto change_mesh() const {
-    int max_level = 0;
-    MarkedElements marked;
-    {
-      auto const measured = parts_.timers.criteria.measure();
-      for_each_check([&](auto const& check) { check.mark(marked, max_level); });
+  /// Decides, switches groups and changes the mesh, or does nothing where the mesh cannot change. Returns what it has done
+  /// to the mesh, of which listeners are still to be told.
+  auto change() const {
+    if constexpr (Rules::holds_mesh) {
+      auto const marked = [&] {
+        auto const measured = parts_.timers.criteria.measure();
+        return decide_on_mesh(parts_, rules_.holding(), evaluations_);
+      }();
+      return switch_and_change_mesh([&](int& max_level) -> MarkedElements const& {
+        max_level = rules_.holding().options.max_level;
+        return marked;
+      });
+    } else {
+      decide();
+      return switch_and_change_mesh([&](int& max_level) {
+        auto const measured = parts_.timers.criteria.measure();
+        MarkedElements marked;
+        for_each_check([&](auto const& check) { check.mark(marked, max_level); });
+        return marked;
+      });
     }
-    auto const measured = parts_.timers.migration.measure();
-    auto plan = plan_change(parts_, marked, max_level);
-    if (plan) commit(parts_, *plan);
-    return plan;
   }
-  /// Both, or nothing where the mesh cannot change.
-  auto switch_and_change_mesh() const {
+
+  /// What the elements cost in their present groups: see ChoiceCheck.
+  double evaluations_now() const {
+    if constexpr (Rules::holds_mesh) {
+      return evaluations_of_mesh(std::as_const(parts_), rules_.holding());
+    } else {
+      double evaluations = 0;
+      for_each_check([&](auto const& check) { evaluations += check.evaluations_now(); });
+      return evaluations;
+    }
+  }
+
+ private:
+  /// `find_marked` looks at the groups after the switch.
+  template <class FindMarked>
+  auto switch_and_change_mesh(FindMarked const& find_marked) const {
     bool moved = false;
     auto plan = [&] {
       try {
-        if (something_moves()) {
-          for_each_check([](auto const& check) { check.keep(); });
-          moved = true;
-          move_elements();
+        if constexpr (Rules::switches) {
+          if (something_moves()) {
+            for_each_check([](auto const& check) { check.keep(); });
+            moved = true;
+            move_elements();
+          }
         }
-        return change_mesh();
+        int max_level = 0;
+        auto const& marked = find_marked(max_level);
+        auto const measured = parts_.timers.migration.measure();
+        auto found = plan_change(parts_, marked, max_level);
+        if (found) commit(parts_, *found);
+        return found;
       } catch (...) {  // the mesh is the one of before
         if (moved) {
           for_each_check([](auto const& check) { check.put_back(); });
@@ -129,14 +160,6 @@ class LookAt {
     return plan;
   }
 
-  /// What the elements cost in their present groups: see ChoiceCheck.
-  double evaluations_now() const {
-    double evaluations = 0;
-    for_each_check([&](auto const& check) { evaluations += check.evaluations_now(); });
-    return evaluations;
-  }
-
- private:
   template <class Visit>
   void for_each_check(Visit const& visit) const {
     parts_.for_each_type([&](auto& table, auto& elements) {
@@ -147,6 +170,9 @@ class LookAt {
         if constexpr (std::same_as<typename R::element, typename Table::element>)
           visit(ChoiceCheck<Parts, Table, Elements, R>{parts_, table, elements, rules_.choosing(),
                                                        evaluations_});
+      } else if constexpr (Rules::holds_mesh) {
+        visit(HeldCheck<Parts, Table, Elements, std::remove_cvref_t<decltype(rules_.holding())>>{
+            parts_, table, elements});
       } else {
         auto const rules = rules_on<Table>(rules_.rules);
         visit(TableCheck<Parts, Table, Elements, std::remove_cvref_t<decltype(rules)>>{

@@ -1,86 +1,25 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <map>
-#include <type_traits>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include <pliant/adaptation/evaluate.hpp>
 #include <pliant/adaptation/force_costs.hpp>
+#include <pliant/adaptation/held_check.hpp>
 #include <pliant/adaptation/mesh_offers.hpp>
 #include <pliant/adaptation/refinement.hpp>
+#include <pliant/adaptation/sleep_look.hpp>
+#include <pliant/body/converted_elements.hpp>
+#include <pliant/body/groups.hpp>
 
-// A mesh that is as fine as an error asks, or as a budget allows, wherever that is needed at the time.
-namespace pliant {
-
-struct MeshWithinOptions {
-  static constexpr double none = std::numeric_limits<double>::infinity();
-
-  double error = none;                 // J: the sum of what is estimated of the elements
-  double evaluations_per_step = none;  // in forces of one element of the first formulation
-  double milliseconds_per_step =
-      none;  // measured from look to look, with all that a caller does between them
-  double release =
-      0.5;  // what is there is taken to be worth 1/release times as much where it is as elsewhere
-  int max_level = 30;           // elements refined this often are left alone
-  double (*clock)() = nullptr;  // s; null: the machine's
-};
-
-/// Elements of the formulations Fs are refined and merged, raised and lowered as an estimator and limits ask; see within.
-template <class E, class... Fs>
-struct MeshWithinRule {
-  using from = std::tuple_element_t<0, std::tuple<Fs...>>;
-  using formulations = detail::TypeList<Fs...>;
-  static constexpr bool holds_mesh = true;
-  E estimator;
-  MeshWithinOptions options;
-};
-
-namespace detail {
-inline void check_limits(MeshWithinOptions const& options) {
-  for (double limit : {options.error, options.evaluations_per_step, options.milliseconds_per_step})
-    if (!(limit > 0)) throw Error("within: a limit is ", limit, "; give a positive number");
-  if (!std::isfinite(options.error) && !std::isfinite(options.evaluations_per_step) &&
-      !std::isfinite(options.milliseconds_per_step))
-    throw Error(
-        "within: there is no limit; give error, evaluations_per_step or milliseconds_per_step");
-  if (!(options.release > 0 && options.release <= 1))
-    throw Error("within: release is ", options.release, "; give a share above 0, 1 at the most");
-  if (options.max_level < 0)
-    throw Error("within: max_level is ", options.max_level, "; give at least 0");
-}
-}  // namespace detail
-
-/// Refines the elements of F whose estimated error drops most per cost and merges the families whose error rises least per
-/// cost saved, at each look anew: as few elements as keep what is estimated at most `error`, and never more than
-/// `evaluations_per_step` or what `milliseconds_per_step` allow, which come first. Errors of smooth solutions are taken to fall
-/// by 4^degree where an element is refined; at singular places that takes more looks. Towards an error a look makes no more
-/// than leaves a quarter of what there is, and undoes only what is not wanted in the end. To keep levels within one, neighbours
-/// are refined along, beyond the budget until the next look merges others. Throws Error for options out of range.
-template <class F, class E>
-auto within(E estimator, MeshWithinOptions const& options) {
-  static_assert(Estimator<E, F>, "within<F>(estimator, ...): an estimator of elements of F");
-  detail::check_limits(options);
-  return MeshWithinRule<E, F>{estimator, options};
-}
-/// The same with degrees: linear elements of F are refined or become quadratic ones of Higher, on the same cell, and these are
-/// refined, merged or lowered: each takes the first step to the degree and the size for which its error and its cost, at the
-/// price that keeps the limits, are least. Raising is taken to make an error 16 times smaller, as one refinement of a quadratic
-/// element does.
-template <class F, class Higher, class E>
-auto within(E estimator, MeshWithinOptions const& options) {
-  static_assert(Estimator<E, F> && Estimator<E, Higher>,
-                "within<F, Higher>(estimator, ...): an estimator of elements of both");
-  static_assert(F::element::degree == 1 && Higher::element::degree == 2 &&
-                    std::same_as<typename F::element::cell, typename Higher::element::cell>,
-                "within<F, Higher>: F is on linear elements, Higher on quadratic ones of the same "
-                "cell");
-  detail::check_limits(options);
-  return MeshWithinRule<E, F, Higher>{estimator, options};
-}
-
-namespace detail {
+// What a rule that holds a mesh within limits does with it.
+namespace pliant::detail {
 
 /// The elements of a type by their parents, where all children of one are such.
 template <Element E, class Parts>
@@ -99,98 +38,221 @@ std::vector<std::vector<Index>> families_of(Parts const& parts) {
   return families;
 }
 
-/// What one element of each formulation costs, in those of the first; counted operations, the same on all machines.
+/// What one element of each formulation costs, in those of the first; counted operations, the same on all machines. Throws Error
+/// where of several on one element one costs no more than that before it.
 template <class Parts, class... Fs>
 std::array<double, sizeof...(Fs)> costs_beside_first(Parts const& parts, TypeList<Fs...> list) {
   if constexpr (sizeof...(Fs) == 1) return {1};
   auto costs = counted_costs(parts, list);
   double const first = costs[0];
   for (double& cost : costs) cost /= first;
+  constexpr std::array degree{Fs::element::degree...};
+  for (std::size_t k = 1; k < costs.size(); ++k)
+    if (degree[k] == degree[k - 1] && !(costs[k] > costs[k - 1]))
+      throw Error("within: by counted operations formulation ", k, " of the list costs ", costs[k],
+                  " and the one before it, on the same element, ", costs[k - 1],
+                  ", in those of the first; list them from cheap to costly");
   return costs;
 }
 
-/// How many evaluations a step takes, in forces of one element of the first formulation.
+/// The places of formulations of one element in the list of a rule.
+template <class E, class Rule>
+struct HeldPlaces;
+template <class E, class Estimate, class... Fs>
+struct HeldPlaces<E, MeshWithinRule<Estimate, Fs...>> {
+  using formulations = typename MeshWithinRule<Estimate, Fs...>::template on<E>;
+  static constexpr std::size_t count{formulations::size};
+  static constexpr std::size_t first = [] {
+    std::size_t k = 0;
+    (void)((std::same_as<typename Fs::element, E> ? false : (++k, true)) && ...);
+    return k;
+  }();
+};
+
+/// How many evaluations a step takes, in forces of one element of the first formulation; elements that sleep take none.
 template <class Parts, class E, class... Fs>
 double evaluations_of_mesh(Parts const& parts, MeshWithinRule<E, Fs...> const&) {
   auto const costs = costs_beside_first(parts, TypeList<Fs...>{});
   double sum = 0;
-  std::size_t k = 0;
-  ((sum +=
-    costs[k++] * static_cast<double>(
-                     parts.state.topology->mesh.template elements<typename Fs::element>().size())),
-   ...);
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    using Places = HeldPlaces<typename Table::element, MeshWithinRule<E, Fs...>>;
+    if constexpr (Places::count > 0) {
+      auto const places = places_of_groups<Table>(typename Places::formulations{});
+      auto const tags = user_groups<typename Table::element>(parts);
+      auto const asleep = asleep_on<typename Table::element>(parts);
+      for (std::size_t e = 0; e < tags.size(); ++e)
+        if (!asleep[e])
+          sum += costs[Places::first + static_cast<std::size_t>(std::max(places[tags[e]], 0))];
+    }
+  });
   return sum;
 }
 
-/// One look of a rule that holds a mesh within limits, of which `evaluations` is the budget; NaN: not known yet.
-template <DeformableBody TheBody, class Estimate, class... Fs>
-void hold_mesh(TheBody& body, MeshWithinRule<Estimate, Fs...> const& rule, double evaluations) {
-  auto& parts = body.parts();
-  using Parts = std::remove_cvref_t<decltype(parts)>;
-  if (std::isnan(evaluations)) return;
-  auto const costs = costs_beside_first(std::as_const(parts), TypeList<Fs...>{});
-  constexpr std::size_t count = sizeof...(Fs);
-  std::array<MeshOffers::Kinds, count> kinds;
-  std::array<std::vector<std::vector<Index>>, count> families;
-  std::array<std::size_t, count> first{}, counts{};  // offers of elements
-  MeshOffers offers(rule.options.release);
-  std::size_t k = 0;
-  auto const describe = [&]<class F>(TypeList<F>) {
-    using E = typename F::element;
-    kinds[k].own = {std::pow(0.25, E::degree), E::dim == 2 ? 4 : 8, costs[k]};
-    if (k + 1 < count) kinds[k].higher = &kinds[k + 1].own;
-    if (k > 0) kinds[k].lower = &kinds[k - 1].own;
-    ++k;
-  };
-  (describe(TypeList<Fs>{}), ...);
-  k = 0;
-  auto const add = [&]<class F>(TypeList<F>) {
-    using E = typename F::element;
-    auto const errors = evaluate<E>(body, rule.estimator);
-    auto const levels = levels_of<E>(parts);
-    counts[k] = errors.size();
-    for (std::size_t e = 0; e < errors.size(); ++e) {
-      auto const offer = offers.add_element(std::isfinite(errors[e]) ? errors[e] : 0, kinds[k],
-                                            std::max(0, rule.options.max_level - levels[e]));
-      if (e == 0) first[k] = offer;
-    }
-    families[k] = families_of<E>(std::as_const(parts));
-    for (auto const& family : families[k]) {
-      std::vector<std::size_t> members;
-      for (Index e : family) members.push_back(first[k] + static_cast<std::size_t>(e));
-      offers.add_family(members);
-    }
-    ++k;
-  };
-  (add(TypeList<Fs>{}), ...);
-  auto const limits = offers.limits_for(rule.options.error, evaluations);
+/// What is offered of elements of one type, and which groups they go to.
+template <class Parts, class Table, class Elements, class Rule>
+class HeldOffers {
+  using E = typename Table::element;
+  using Places = HeldPlaces<E, Rule>;
+  using Check = HeldCheck<Parts, Table, Elements, Rule>;
+  static constexpr std::size_t count = Places::count;
 
-  MarkedElements marked;
-  auto const types = element_counts(parts.state.topology->mesh).size();
-  for (auto* list : {&marked.refine, &marked.coarsen, &marked.raise, &marked.lower})
-    list->resize(types);
-  std::size_t family = 0;
-  k = 0;
-  auto const mark = [&](std::size_t type) {
-    for (std::size_t e = 0; e < counts[k]; ++e) {
-      auto const action = offers.action(first[k] + e, limits);
+ public:
+  HeldOffers(Parts& parts, Table& table, Elements& elements)
+      : check_(parts, table, elements),
+        tags_(user_groups<E>(std::as_const(parts))),
+        families_(families_of<E>(std::as_const(parts))) {}
+
+  /// `kinds`: of all formulations of the rule.
+  void add_to(MeshOffers& offers, Parts const& parts, Rule const& rule,
+              std::span<MeshOffers::Kinds const> kinds) {
+    auto const own = kinds.subspan(Places::first, count);
+    auto const errors = evaluate_on<E>(parts, rule.estimator);
+    auto const levels = levels_of<E>(parts);
+    auto const asleep = asleep_on<E>(parts);
+    std::vector<double> of_groups;
+    if constexpr (count > 1) of_groups = check_.errors_of_groups();
+    for (std::size_t e = 0; e < errors.size(); ++e) {
+      double const error = std::isfinite(errors[e]) ? errors[e] : 0;
+      int const divisions = std::max(0, rule.options.max_level - levels[e]);
+      auto const in_list = places_[tags_[e]];
+      auto const place = static_cast<std::size_t>(std::max(in_list, 0));
+      auto const beside = std::span<double const>(of_groups).subspan(
+          of_groups.empty() ? 0 : e * count, of_groups.empty() ? 0 : count);
+      bool const may_move = count > 1 && in_list >= 0 &&
+                            std::ranges::all_of(beside, [](double x) { return std::isfinite(x); });
+      std::size_t offer = 0;
+      if (asleep[e])
+        offer = offers.add_element(error, asleep_, 0);
+      else if (may_move)
+        offer = offers.add_element(error, own, place, beside, divisions);
+      else
+        offer = offers.add_element(error, own[place], divisions);
+      if (e == 0) first_ = offer;
+      may_move_.push_back(may_move && !asleep[e]);
+    }
+    for (auto const& family : families_) {
+      std::vector<std::size_t> members;
+      for (Index e : family) members.push_back(first_ + static_cast<std::size_t>(e));
+      auto const number = offers.add_family(members);
+      if (&family == &families_.front()) first_family_ = number;
+    }
+  }
+  /// Notes which elements go to other groups; returns how many.
+  double note_next(MeshOffers const& offers, MeshOffers::Limits const& limits) const {
+    double moves = 0;
+    if constexpr (count > 1) {
+      auto next = tags_;
+      for (std::size_t e = 0; e < next.size(); ++e) {
+        if (!may_move_[e]) continue;
+        next[e] = group_at(offers.group(first_ + e, limits));
+        moves += next[e] != tags_[e] ? 1 : 0;
+      }
+      check_.note_next(next);
+    }
+    return moves;
+  }
+  void mark(MeshOffers const& offers, MeshOffers::Limits const& limits,
+            MarkedElements& marked) const {
+    for (std::size_t e = 0; e < tags_.size(); ++e) {
+      auto const action = offers.action(first_ + e, limits);
       for (auto const& [list, wanted] : {std::pair{&marked.refine, MeshOffers::Action::divide},
                                          {&marked.raise, MeshOffers::Action::raise},
                                          {&marked.lower, MeshOffers::Action::lower}})
-        if (action == wanted) (*list)[type].push_back(static_cast<Index>(e));
+        if (action == wanted) list->back().push_back(static_cast<Index>(e));
     }
-    for (auto const& members : families[k])
-      if (offers.merges(family++, limits))
-        marked.coarsen[type].insert(marked.coarsen[type].end(), members.begin(), members.end());
-    ++k;
+    for (std::size_t k = 0; k < families_.size(); ++k)
+      if (offers.merges(first_family_ + k, limits))
+        marked.coarsen.back().insert(marked.coarsen.back().end(), families_[k].begin(),
+                                     families_[k].end());
+  }
+
+ private:
+  static Tag group_at(std::size_t place) {
+    return [&]<class... Fs>(TypeList<Fs...>) {
+      std::array const groups{static_cast<Tag>(Table::template group_of<Fs>)...};
+      return groups[place];
+    }(typename Places::formulations{});
+  }
+
+  inline static MeshOffers::Kinds const asleep_{{1, 1, 0}};
+  Check check_;
+  std::vector<Tag> tags_;
+  std::vector<std::vector<Index>> families_;
+  std::array<int, std::size_t{Table::groups}> places_ =
+      places_of_groups<Table>(typename Places::formulations{});
+  std::vector<bool> may_move_;
+  std::size_t first_ = 0, first_family_ = 0;
+};
+
+/// What each formulation of a list makes of its elements.
+template <class Parts, class... Fs>
+std::array<MeshOffers::Kinds, sizeof...(Fs)> kinds_of(Parts const& parts, TypeList<Fs...> list) {
+  auto const costs = costs_beside_first(parts, list);
+  constexpr int children = Parts::dim == 2 ? 4 : 8;
+  std::size_t k = 0;
+  return {MeshOffers::Kinds{{std::pow(0.25, Fs::element::degree), children, costs[k++]}}...};
+}
+/// Elements of another degree are on the same cells: of the same law, or of the first formulation.
+template <class... Fs>
+void link_degrees(std::array<MeshOffers::Kinds, sizeof...(Fs)>& kinds, TypeList<Fs...>) {
+  auto const find = [&]<class F>(TypeList<F>) -> MeshOffers::Kind const* {
+    MeshOffers::Kind const *first = nullptr, *same = nullptr;
+    std::size_t k = 0;
+    auto const look_at = [&]<class G>(TypeList<G>) {
+      auto const* own = &kinds[k++].own;
+      if (G::element::degree == F::element::degree) return;
+      if (first == nullptr) first = own;
+      if (same_law<F, G> && same == nullptr) same = own;
+    };
+    (look_at(TypeList<Fs>{}), ...);
+    return same != nullptr ? same : first;
   };
-  (mark(Parts::layout_type::template type_of<typename Fs::element>), ...);
-  if (marked.none()) return;
-  auto const plan = plan_change(parts, marked, rule.options.max_level);
-  if (!plan) return;
-  commit(parts, *plan);
-  tell_listeners(parts, *plan);
+  std::size_t k = 0;
+  auto const link = [&]<class F>(TypeList<F> own) {
+    auto& [kind, higher, lower] = kinds[k++];
+    (F::element::degree == 1 ? higher : lower) = find(own);
+  };
+  (link(TypeList<Fs>{}), ...);
 }
 
-}  // namespace detail
-}  // namespace pliant
+/// What a rule wants of a mesh, of which `evaluations` is the budget; NaN: not known yet. Which elements go to other groups is
+/// noted in workspaces, and how many in Parts::moves.
+template <class Parts, class Estimate, class... Fs>
+MarkedElements decide_on_mesh(Parts& parts, MeshWithinRule<Estimate, Fs...> const& rule,
+                              double evaluations) {
+  using Rule = MeshWithinRule<Estimate, Fs...>;
+  MarkedElements marked;
+  std::array const lists{&marked.refine, &marked.coarsen, &marked.raise, &marked.lower};
+  if (std::isnan(evaluations)) return marked;
+  auto kinds = kinds_of(std::as_const(parts), TypeList<Fs...>{});
+  link_degrees(kinds, TypeList<Fs...>{});
+  MeshOffers offers(rule.options.release);
+  double moves = 0;
+  // The offers of all types come before decisions about each.
+  std::vector<std::function<void(MeshOffers::Limits const&)>> decisions;
+  parts.for_each_type([&](auto& table, auto& elements) {
+    using Table = std::remove_reference_t<decltype(table)>;
+    using Elements = std::remove_reference_t<decltype(elements)>;
+    if constexpr (HeldPlaces<typename Table::element, Rule>::count > 0) {
+      auto of_type =
+          std::make_shared<HeldOffers<Parts, Table, Elements, Rule>>(parts, table, elements);
+      of_type->add_to(offers, std::as_const(parts), rule, kinds);
+      decisions.push_back([&, of_type](MeshOffers::Limits const& limits) {
+        moves += of_type->note_next(offers, limits);
+        of_type->mark(offers, limits, marked);
+      });
+    } else {
+      decisions.push_back([](MeshOffers::Limits const&) {});
+    }
+  });
+  auto const limits = offers.limits_for(rule.options.error, evaluations);
+  for (auto const& decide : decisions) {
+    for (auto* list : lists) list->emplace_back();
+    decide(limits);
+  }
+  parts.moves.upload(std::array{moves});
+  return marked;
+}
+
+}  // namespace pliant::detail

@@ -157,6 +157,9 @@ concept HoldingRule = R::holds_mesh && requires(R const& rule) {
   typename R::from;
   rule.estimator;
 };
+/// One that moves them between several groups too.
+template <class R>
+concept HoldsGroups = HoldingRule<R> && R::holds_groups;
 template <class R>
 concept Rule =
     SwitchingRule<R> || MeshRule<R> || SleepingRule<R> || ChoosingRule<R> || HoldingRule<R>;

@@ -7,7 +7,7 @@
 
 #include <pliant/adaptation/choice.hpp>
 #include <pliant/adaptation/criteria_visitor.hpp>
-#include <pliant/adaptation/mesh_spending.hpp>
+#include <pliant/adaptation/mesh_within.hpp>
 #include <pliant/adaptation/rule.hpp>
 #include <pliant/adaptation/young_at_rest.hpp>
 #include <pliant/solver/stiffening.hpp>
@@ -18,8 +18,9 @@ namespace pliant::detail {
 template <class... Rules>
 struct RuleList {
   static constexpr bool chooses = (ChoosingRule<Rules> || ...);
-  static constexpr bool switches = chooses || (SwitchingRule<Rules> || ...);
   static constexpr bool holds_mesh = (HoldingRule<Rules> || ...);
+  static constexpr bool switches =
+      chooses || (SwitchingRule<Rules> || ...) || (HoldsGroups<Rules> || ...);
   static constexpr bool changes_mesh = holds_mesh || (MeshRule<Rules> || ...);
   static constexpr bool sleeps = (SleepingRule<Rules> || ...);
   static_assert((0 + ... + int{SleepingRule<Rules>}) <= 1,
@@ -31,8 +32,10 @@ struct RuleList {
       "cheapest and within choose for all elements of their groups: rules that switch or change "
       "the mesh go into another Adaptation");
 
-  static_assert(!holds_mesh || sizeof...(Rules) == 1,
-                "a rule that holds a mesh within limits goes into an Adaptation of its own");
+  static_assert(!holds_mesh || (((HoldingRule<Rules> || SleepingRule<Rules>)&&...) &&
+                                (0 + ... + int{HoldingRule<Rules>}) == 1),
+                "beside a rule that holds a mesh within limits an Adaptation has at most one that "
+                "puts patches to sleep");
 
   std::tuple<Rules...> rules;
 
@@ -60,12 +63,13 @@ struct RuleList {
   static constexpr bool act_on = (one_acts_on<TheBody, Rules>() && ...);
 
   auto const& sleeping() const { return std::get<place_of({SleepingRule<Rules>...})>(rules); }
+  auto const& holding() const { return std::get<place_of({HoldingRule<Rules>...})>(rules); }
   auto const& choosing() const { return std::get<place_of({ChoosingRule<Rules>...})>(rules); }
   bool limits_milliseconds() const {
     if constexpr (chooses)
       return std::isfinite(choosing().milliseconds_per_step);
     else if constexpr (holds_mesh)
-      return std::isfinite(std::get<0>(rules).options.milliseconds_per_step);
+      return std::isfinite(holding().options.milliseconds_per_step);
     else
       return false;
   }
@@ -86,6 +90,8 @@ struct RuleList {
         return is_stiffer(TypeList<typename R::from>{}, TypeList<typename R::to>{});
       else if constexpr (ChoosingRule<R>)
         return is_stiffer(typename R::groups{}, typename R::groups{});
+      else if constexpr (HoldingRule<R>)
+        return is_stiffer(typename R::formulations{}, typename R::formulations{});
       else
         return false;
     };

@@ -241,20 +241,26 @@ Asleep asleep(TheBody& body) {
   return found;
 }
 
-/// Which elements of a type sleep, by the user's number.
-template <Element E, DeformableBody TheBody>
-std::vector<bool> asleep_elements(TheBody const& body) {
-  auto const& parts = body.parts();
+namespace detail {
+template <Element E, class Parts>
+std::vector<bool> asleep_on(Parts const& parts) {
   auto const& table = parts.layout.template table<E>();
   std::vector<bool> sleeps(table.user_element.size(), false);
   if (!parts.awake) return sleeps;
-  Index const first = parts.patch_nodes->first_of_type[TheBody::layout_type::template type_of<E>];
+  Index const first = parts.patch_nodes->first_of_type[Parts::layout_type::template type_of<E>];
   for (std::size_t e = 0; e < sleeps.size(); ++e) {
     Index const patch = first + static_cast<Index>(e) / table.elements.patch_size();
     sleeps[static_cast<std::size_t>(table.user_element[e])] =
         parts.state.rest[static_cast<std::size_t>(patch)] < 0;
   }
   return sleeps;
+}
+}  // namespace detail
+
+/// Which elements of a type sleep, by the user's number.
+template <Element E, DeformableBody TheBody>
+std::vector<bool> asleep_elements(TheBody const& body) {
+  return detail::asleep_on<E>(body.parts());
 }
 
 }  // namespace pliant

@@ -144,31 +144,17 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
         if (masks[e] != 0) lists.add(table_.user_element[e], masks[e]);
     }
   }
-  /// Keeps what `act` changes, and puts it back.
   void keep() const {
-    each_kept([this](auto& own, auto& kept) { copy(own, kept); });
+    if constexpr (switches) this->keep_what_moves_change();
   }
   void put_back() const {
-    each_kept([this](auto& own, auto& kept) { copy(kept, own); });
+    if constexpr (switches) this->put_back_what_moves_change();
   }
 
  private:
   // What of the body is read and changed.
   /// Those that are looked at: of rules that compare elements with each other, and of those that refine, all.
   auto elements() const { return changes_mesh || ranks() ? active(table_.elements) : looked_at(); }
-  template <class Visit>
-  void each_kept(Visit const& visit) const {
-    if constexpr (switches) {
-      auto& statistics = elements_.statistics;
-      auto& kept = workspace().kept;
-      visit(elements_.tags, kept.tags);
-      visit(statistics.since, kept.since);
-      visit(statistics.switches, kept.switches);
-      visit(statistics.counters, kept.counters);
-      visit(parts_.state.work, kept.work);  // of all tables, in each the same
-      visit(elements_.internal_variables, kept.internal_variables);
-    }
-  }
   /// Whether something was allocated.
   bool reserve() const {
     typename Base::Room room(*this);
@@ -194,13 +180,6 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     return room.made;
   }
 
-  template <class U>
-  using Array = typename B::template Array<U>;
-  template <class U>
-  void copy(Array<U>& from, Array<U>& to) const {
-    CriteriaWorkspace<B>::reserve(backend(), to, from.size());
-    copy_values<B, U>(backend(), from.data(), to.data(), from.size());
-  }
   bool ranks() const {
     return std::apply([](auto const&... rule) { return (rule.marking.ranks() || ...); },
                       rules_.rules);
