@@ -47,7 +47,7 @@ class Preconditioning {
     return share > tolerance && std::log(tolerance / share) < worth * rate;
   }
   void turn_to_multigrid(Parts const& parts, Arrays& arrays, Matrix const& a) {
-    // On GPUs nothing tells yet that linear elements between pay.
+    // On GPUs linear elements between save less than making them takes on the host.
     now_ = on_host && is_quadratic(parts) && !lies_in_boxes(parts) ? Preconditioner::p_multigrid
                                                                    : Preconditioner::multigrid;
     make(parts, arrays, a);
@@ -106,7 +106,7 @@ class Preconditioning {
       std::same_as<typename Parts::backend_type::Recording, HostRecording>;
   // Making multigrid costs about as much as 60 iterations under nodal blocks, each of its iterations 6.
   static constexpr int look_behind = 16, worth = 100, few = 4;
-  static constexpr Index fewest_unknowns = on_host ? 3000 : 300000;
+  static constexpr Index fewest_unknowns = on_host ? 3000 : 250000;
   Preconditioner wanted_, now_ = Preconditioner::nodal_blocks;
   bool made_ = false, fresh_ = false;  // at all, and from this system's matrix
   double usual_ = 0;  // iterations by which a fresh one made a residual ten times smaller
