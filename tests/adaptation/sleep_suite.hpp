@@ -173,6 +173,38 @@ TEST_CASE("patches are marked by how many others lie between them and what moves
   }
 }
 
+TEST_CASE("what moves in one body of a mesh does not reach another through patches that hold both",
+          "[adaptation]") {
+  auto mesh = mesh::rectangle<Tri3>({.size = {10, 1}, .cells = {10, 1}});
+  auto const other = mesh::rectangle<Tri3>({.size = {10, 1}, .cells = {10, 1}, .origin = {0, 1.5}});
+  auto const first = static_cast<Index>(mesh.nodes.size());
+  mesh.nodes.insert(mesh.nodes.end(), other.nodes.begin(), other.nodes.end());
+  for (auto element : other.elements<Tri3>()) {
+    for (Index& node : element) node += first;
+    mesh.elements<Tri3>().push_back(element);
+  }
+  Body body{SmallPatches<double, 3>{}, mesh, soft, Group<Tri>{}};
+  auto v = body.velocities();
+  for (std::size_t i = static_cast<std::size_t>(first); i < v.size(); ++i) v[i] = {0, 1};
+  body.set_velocities(v);
+  auto& parts = body.parts();
+  parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
+
+  auto const marks = detail::find_stirred(parts, {.below = slow, .for_steps = 16}, 20);
+
+  auto const& users = parts.layout.table<Tri3>().user_element;
+  std::vector<int> still(marks.size()), moving(marks.size());
+  for (std::size_t e = 0; e < users.size(); ++e) (users[e] < 20 ? still : moving)[e / 3] += 1;
+  int both = 0;
+  for (std::size_t p = 0; p < marks.size(); ++p) {
+    INFO(p);
+    CHECK(int{marks[p]} == (moving[p] > 0 ? 1 : 0));
+    both += moving[p] > 0 && still[p] > 0 ? 1 : 0;
+  }
+  CHECK(both > 0);
+  CHECK(std::ranges::count(moving, 0) > 0);
+}
+
 TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adaptation]") {
   on_each_backend<FewBackends>([]<class B>(B const& backend) {
     auto body = bar_on(backend);

@@ -64,13 +64,13 @@ struct RelaxationKernel {
   }
 };
 
-/// Marks the patches of nodes that elements around them would give a speed within a time by relaxing.
+/// Marks the pieces of patches at nodes that elements around them would give a speed within a time by relaxing.
 template <class T, int Dim>
 struct MarkRelaxing {
   NodeField<T const, Dim> change;  // N
   T const* mass;
   T below, time;  // m/s, s
-  Index const *first, *patches;
+  Index const *first, *pieces;
   std::uint8_t* marked;
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
@@ -79,7 +79,7 @@ struct MarkRelaxing {
     auto const own = change.at(i);
     // NaN marks.
     if (square(time / m) * dot(own, own) <= below * below) return;
-    for (Index k = first[i]; k < first[i + 1]; ++k) set_flag(marked[patches[k]]);
+    for (Index k = first[i]; k < first[i + 1]; ++k) set_flag(marked[pieces[k]]);
   }
 };
 
@@ -99,7 +99,7 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
                                                  change, parts.rest(), std::as_const(parts).u());
   });
   parts.layout.interpolation.add_transpose(backend, change);
-  backend.for_each(rows.count(), FillValue<std::uint8_t>{rows.stirred.data(), 0});
+  backend.for_each(rows.pieces_count(), FillValue<std::uint8_t>{rows.stirred.data(), 0});
   backend.for_each(parts.layout.nodes,
                    MarkRelaxing<T, Parts::dim>{{changes.data()},
                                                parts.layout.mass.data(),
@@ -107,9 +107,9 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
                                                static_cast<T>(parts.state.integrator.step *
                                                               static_cast<double>(rule.for_steps)),
                                                rows.first.data(),
-                                               rows.patches.data(),
+                                               rows.pieces.data(),
                                                rows.stirred.data()});
-  return download<std::uint8_t>(rows.stirred);
+  return rows.of_patches(download<std::uint8_t>(rows.stirred));
 }
 
 }  // namespace pliant::detail

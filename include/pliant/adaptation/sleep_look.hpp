@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Marks the patches of nodes that are not at rest: faster than a speed, or pulled so that they would be within a
+/// Marks the pieces of patches at nodes that are not at rest: faster than a speed, or pulled so that they would be within a
 /// time.
 template <class T, int Dim>
 struct MarkStirred {
@@ -21,7 +21,7 @@ struct MarkStirred {
   DirectionMask const* held;
   ExternalForces<T, Dim> external;
   T below, time;  // m/s, s
-  Index const *first, *patches;
+  Index const *first, *pieces;
   std::uint8_t* stirred;
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
@@ -41,7 +41,7 @@ struct MarkStirred {
     }
     // NaN stirs.
     if (speed <= below * below && time * time * gain <= below * below) return;
-    for (Index k = first[i]; k < first[i + 1]; ++k) set_flag(stirred[patches[k]]);
+    for (Index k = first[i]; k < first[i + 1]; ++k) set_flag(stirred[pieces[k]]);
   }
 };
 
@@ -62,7 +62,7 @@ struct HiddenForce {
   }
 };
 
-/// Marks the patches beside those of one mark, where there is no mark yet, by the next one.
+/// Marks the pieces beside those of one mark, where there is no mark yet, by the next one.
 struct MarkBeside {
   Index const *first, *beside;
   std::uint8_t* marks;
@@ -76,7 +76,7 @@ struct MarkBeside {
   }
 };
 
-/// Patches with driven nodes do not sleep: marks these, and no others.
+/// Patches with driven nodes do not sleep: marks their pieces at these, and no others.
 template <class Parts>
 void mark_driven(Parts const& parts, typename Parts::template Array<std::uint8_t>& marks) {
   auto const& rows = *parts.patch_nodes;
@@ -87,11 +87,11 @@ void mark_driven(Parts const& parts, typename Parts::template Array<std::uint8_t
     for (Index node : condition.nodes) {
       auto const i = static_cast<std::size_t>(parts.layout.internal_of(node));
       for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k)
-        driven[static_cast<std::size_t>(rows.patches_of_node[static_cast<std::size_t>(k)])] = 1;
+        driven[static_cast<std::size_t>(rows.pieces_of_node[static_cast<std::size_t>(k)])] = 1;
     }
   }
   if (driven.empty())
-    parts.backend.for_each(rows.count(), FillValue<std::uint8_t>{marks.data(), 0});
+    parts.backend.for_each(rows.pieces_count(), FillValue<std::uint8_t>{marks.data(), 0});
   else
     marks.upload(driven);
 }
@@ -119,14 +119,14 @@ std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule, int 
                                         static_cast<T>(parts.state.integrator.step *
                                                        static_cast<double>(rule.for_steps)),
                                         rows.first.data(),
-                                        rows.patches.data(),
+                                        rows.pieces.data(),
                                         rows.stirred.data()},
                     [&](auto const& of_node) { backend.for_each(parts.layout.nodes, of_node); });
   for (int ring = 0; ring < rings; ++ring)
-    backend.for_each(rows.count(),
+    backend.for_each(rows.pieces_count(),
                      MarkBeside{rows.first_beside.data(), rows.beside.data(), rows.stirred.data(),
                                 static_cast<std::uint8_t>(ring + 1)});
-  return download<std::uint8_t>(rows.stirred);
+  return rows.of_patches(download<std::uint8_t>(rows.stirred));
 }
 
 }  // namespace detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -13,25 +14,38 @@ using NodeWatch = std::uint8_t;
 inline constexpr NodeWatch beside_awake = 1, beside_asleep = 2;
 
 /// Which nodes belong to which patches. Patches of all element types are numbered through, in the order of the
-/// types; the masters of a slave belong to its patches too. Numbers are internal.
+/// types; the masters of a slave belong to its patches too. A patch falls into pieces that share no node with each other, most
+/// into one, where bodies lie in one mesh into more: what moves in one does not reach the others. Numbers are internal.
 template <Backend B>
 struct PatchNodes {
   template <class U>
   using Array = typename B::template Array<U>;
 
-  std::vector<Index> first_of_type;                   // (types + 1): patches
-  std::vector<Index> first_of_node, patches_of_node;  // compressed rows
-  std::vector<Index> first_neighbour, neighbours;     // the same of patches, that share a node
-  Array<Index> first, patches;                        // the rows in the backend's memory
-  Array<Index> first_beside, beside;                  // and those of neighbours
-  Array<std::uint8_t> stirred;                        // (patches): scratch of looks
+  std::vector<Index> first_of_type;                  // (types + 1): patches
+  std::vector<Index> patch_of_piece;                 // (pieces): ascending
+  std::vector<Index> first_of_node, pieces_of_node;  // compressed rows
+  std::vector<Index> first_neighbour, neighbours;    // the same of patches, that share a node
+  Array<Index> first, pieces, patch;  // rows of nodes, and patches, in the backend's memory
+  Array<Index> first_beside, beside;  // rows of the pieces that share a node
+  Array<std::uint8_t> stirred;        // (pieces): scratch of looks
 
   Index count() const { return first_of_type.back(); }
+  Index pieces_count() const { return static_cast<Index>(patch_of_piece.size()); }
   /// The patches that share a node with this one.
   std::span<Index const> beside_of(std::size_t patch) const {
     auto const from = static_cast<std::size_t>(first_neighbour[patch]),
                to = static_cast<std::size_t>(first_neighbour[patch + 1]);
     return std::span(neighbours).subspan(from, to - from);
+  }
+  /// From marks of pieces to marks of patches: the largest.
+  std::vector<std::uint8_t> of_patches(std::vector<std::uint8_t> marks) const {
+    if (pieces_count() == count()) return marks;
+    std::vector<std::uint8_t> largest(static_cast<std::size_t>(count()));
+    for (std::size_t piece = 0; piece < marks.size(); ++piece) {
+      auto& own = largest[static_cast<std::size_t>(patch_of_piece[piece])];
+      own = std::max(own, marks[piece]);
+    }
+    return largest;
   }
 };
 

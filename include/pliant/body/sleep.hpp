@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <pliant/body/internal_variables.hpp>
 #include <pliant/body/leapfrog_energy.hpp>
@@ -17,7 +19,7 @@ namespace detail {
 
 /// Tells each node what sleeps and what is awake around it.
 struct WatchNodes {
-  Index const *first, *patches;
+  Index const *first, *pieces, *patch;
   std::uint8_t const* asleep;
   DirectionMask const* held;
   NodeWatch* nodes;
@@ -26,11 +28,67 @@ struct WatchNodes {
   PLIANT_HOST_DEVICE void operator()(Index i) const {
     NodeWatch watch = 0;
     for (Index k = first[i]; k < first[i + 1]; ++k)
-      watch |= asleep[patches[k]] ? beside_asleep : beside_awake;
+      watch |= asleep[patch[pieces[k]]] ? beside_asleep : beside_awake;
     nodes[i] = watch;
     still[i] = watch & beside_asleep ? all : held[i];
   }
 };
+
+/// The pieces that some nodes, sorted, fall into, of which elements join some to one.
+class Pieces {
+ public:
+  explicit Pieces(std::vector<Index> nodes) : nodes_(std::move(nodes)), joined_(nodes_.size()) {
+    std::iota(joined_.begin(), joined_.end(), std::size_t{0});
+  }
+  void join(Index node, Index other) { joined_[root(place(node))] = root(place(other)); }
+  /// f(node, piece), pieces numbered in the order of their first nodes; returns how many there are.
+  template <class F>
+  Index for_each_node(F const& f) {
+    Index count = 0;
+    std::vector<Index> numbers(nodes_.size(), -1);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      auto& number = numbers[root(i)];
+      if (number < 0) number = count++;
+      f(nodes_[i], number);
+    }
+    return count;
+  }
+
+ private:
+  std::size_t place(Index node) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(nodes_, node) - nodes_.begin());
+  }
+  std::size_t root(std::size_t i) {
+    while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
+    return i;
+  }
+  std::vector<Index> nodes_;
+  std::vector<std::size_t> joined_;
+};
+
+struct PairedRows {
+  std::vector<Index> first{0}, others;
+};
+/// Which of `count` things share a row with each, itself left out, each once. Row i: things[first[i]] on.
+inline PairedRows rows_beside(std::span<Index const> first, std::span<Index const> things,
+                              std::size_t count) {
+  std::vector<std::vector<Index>> beside(count);
+  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+    auto const row = things.subspan(static_cast<std::size_t>(first[i]),
+                                    static_cast<std::size_t>(first[i + 1] - first[i]));
+    for (Index a : row)
+      for (Index b : row)
+        if (a != b) beside[static_cast<std::size_t>(a)].push_back(b);
+  }
+  PairedRows rows;
+  for (auto& list : beside) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    rows.others.insert(rows.others.end(), list.begin(), list.end());
+    rows.first.push_back(static_cast<Index>(rows.others.size()));
+  }
+  return rows;
+}
 
 /// The patches of a type's elements, by internal numbers.
 template <class Parts>
@@ -38,8 +96,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   PatchNodes<typename Parts::backend_type> made;
   auto const& layout = parts.layout;
   auto const& interpolation = parts.state.topology->interpolation;
-  auto const nodes = static_cast<std::size_t>(layout.nodes);
-  std::vector<Index> nodes_of_pairs, patches_of_pairs;
+  std::vector<Index> nodes_of_pairs, pieces_of_pairs;
   made.first_of_type = {0};
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
@@ -48,47 +105,57 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
     for (Index p = 0; p < table.elements.patch_count(); ++p) {
       Index const first = p * table.elements.patch_size();
       Index const last = std::min(table.count(), first + table.elements.patch_size());
-      std::vector<Index> own;
-      for (Index e = first; e < last; ++e)
-        for (Index node :
-             elements[static_cast<std::size_t>(table.user_element[static_cast<std::size_t>(e)])]) {
-          own.push_back(layout.internal_of(node));
-          if (auto const* slave = interpolation.row_of(node))
-            for (auto const& [master, weight] : slave->masters)
-              own.push_back(layout.internal_of(master));
+      // f(first node of an element, node)
+      auto const for_each_node = [&](auto const& f) {
+        for (Index e = first; e < last; ++e) {
+          auto const& own =
+              elements[static_cast<std::size_t>(table.user_element[static_cast<std::size_t>(e)])];
+          Index const joined = layout.internal_of(own[0]);
+          for (Index node : own) {
+            f(joined, layout.internal_of(node));
+            if (auto const* slave = interpolation.row_of(node))
+              for (auto const& [master, weight] : slave->masters)
+                f(joined, layout.internal_of(master));
+          }
         }
-      std::ranges::sort(own);
-      own.erase(std::unique(own.begin(), own.end()), own.end());
-      for (Index node : own) {
+      };
+      std::vector<Index> nodes;
+      for_each_node([&](Index, Index node) { nodes.push_back(node); });
+      std::ranges::sort(nodes);
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      Pieces pieces(std::move(nodes));
+      for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
+      Index const before_pieces = made.pieces_count();
+      Index const count = pieces.for_each_node([&](Index node, Index piece) {
         nodes_of_pairs.push_back(node);
-        patches_of_pairs.push_back(before + p);
-      }
+        pieces_of_pairs.push_back(before_pieces + piece);
+      });
+      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(count),
+                                 before + p);
     }
     made.first_of_type.push_back(before + table.elements.patch_count());
   });
-  auto const by_node = group_by_key(nodes_of_pairs, static_cast<Index>(nodes));
+  auto const by_node = group_by_key(nodes_of_pairs, layout.nodes);
   made.first_of_node = by_node.first;
   for (Index pair : by_node.order)
-    made.patches_of_node.push_back(patches_of_pairs[static_cast<std::size_t>(pair)]);
-  std::vector<std::vector<Index>> neighbours(static_cast<std::size_t>(made.count()));
-  for (std::size_t i = 0; i < nodes; ++i)
-    for (Index a = made.first_of_node[i]; a < made.first_of_node[i + 1]; ++a)
-      for (Index b = made.first_of_node[i]; b < made.first_of_node[i + 1]; ++b)
-        if (a != b)
-          neighbours[static_cast<std::size_t>(made.patches_of_node[static_cast<std::size_t>(a)])]
-              .push_back(made.patches_of_node[static_cast<std::size_t>(b)]);
-  made.first_neighbour = {0};
-  for (auto& list : neighbours) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    made.neighbours.insert(made.neighbours.end(), list.begin(), list.end());
-    made.first_neighbour.push_back(static_cast<Index>(made.neighbours.size()));
-  }
+    made.pieces_of_node.push_back(pieces_of_pairs[static_cast<std::size_t>(pair)]);
+
+  auto const beside =
+      rows_beside(made.first_of_node, made.pieces_of_node, made.patch_of_piece.size());
+  auto of_patches = made.pieces_of_node;
+  for (Index& piece : of_patches) piece = made.patch_of_piece[static_cast<std::size_t>(piece)];
+  auto rows =
+      made.pieces_count() == made.count()
+          ? beside
+          : rows_beside(made.first_of_node, of_patches, static_cast<std::size_t>(made.count()));
+  made.first_neighbour = std::move(rows.first);
+  made.neighbours = std::move(rows.others);
   made.first = upload(parts.backend, made.first_of_node);
-  made.patches = upload(parts.backend, made.patches_of_node);
-  made.first_beside = upload(parts.backend, made.first_neighbour);
-  made.beside = upload(parts.backend, made.neighbours);
-  made.stirred = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(made.count()));
+  made.pieces = upload(parts.backend, made.pieces_of_node);
+  made.patch = upload(parts.backend, made.patch_of_piece);
+  made.first_beside = upload(parts.backend, beside.first);
+  made.beside = upload(parts.backend, beside.others);
+  made.stirred = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
   return made;
 }
 
@@ -163,10 +230,11 @@ void bring_up_to_rest(Parts& parts) {
   for (std::size_t p = 0; p < rest.size(); ++p) asleep[p] = rest[p] < 0;
   awake.asleep.upload(asleep);
   awake.awake = static_cast<Index>(std::ranges::count(asleep, 0));
-  backend.for_each(parts.layout.nodes,
-                   WatchNodes{patch_nodes.first.data(), patch_nodes.patches.data(),
-                              awake.asleep.data(), parts.layout.held.data(), awake.nodes.data(),
-                              awake.still.data(), all_directions<Parts::dim>});
+  backend.for_each(
+      parts.layout.nodes,
+      WatchNodes{patch_nodes.first.data(), patch_nodes.pieces.data(), patch_nodes.patch.data(),
+                 awake.asleep.data(), parts.layout.held.data(), awake.nodes.data(),
+                 awake.still.data(), all_directions<Parts::dim>});
   if (fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; })) ++parts.revision;
 
   // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
@@ -249,8 +317,8 @@ void wake_around(Parts& parts, std::span<Index const> nodes) {
   for (Index node : nodes) {
     auto const i = static_cast<std::size_t>(node);
     for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k) {
-      auto& steps =
-          rest[static_cast<std::size_t>(rows.patches_of_node[static_cast<std::size_t>(k)])];
+      auto const piece = static_cast<std::size_t>(rows.pieces_of_node[static_cast<std::size_t>(k)]);
+      auto& steps = rest[static_cast<std::size_t>(rows.patch_of_piece[piece])];
       if (steps >= 0) continue;
       steps = 0;
       wakes = true;
