@@ -9,16 +9,19 @@
 namespace pliant::bench {
 
 template <class F, class B>
-void time_force(benchmark::State& state, B const& backend, int cells) {
+void time_force(benchmark::State& state, B const& backend, Problem<B, typename F::element>& p) {
   using E = typename F::element;
   using T = typename B::scalar;
-  auto& p = Problem<B, E>::of(backend, cells);
   ForceKernel<GroupLaws<T, F>> const kernel{soft_laws<T, F>()};
   measure(state, backend, [&] {
     p.clear_forces(backend);
     backend.template accumulate<1>(p.elements, kernel, p.f(), p.rest(), p.u());
   });
   report(state, p, {.read = 2, .written = 1}, 0, flops_per_force<E>());
+}
+template <class F, class B>
+void time_force(benchmark::State& state, B const& backend, int cells) {
+  time_force<F>(state, backend, Problem<B, typename F::element>::of(backend, cells));
 }
 
 inline void add_forces() {

@@ -9,15 +9,19 @@
 namespace pliant::bench {
 
 template <class F, class B>
-void time_tangent_product(benchmark::State& state, B const& backend, int cells) {
+void time_tangent_product(benchmark::State& state, B const& backend,
+                          Problem<B, typename F::element>& p) {
   using T = typename B::scalar;
-  auto& p = Problem<B, typename F::element>::of(backend, cells);
   TangentKernel<T, GroupLaws<T, F>> const kernel{soft_laws<T, F>(), T(1)};
   measure(state, backend, [&] {
     p.clear_forces(backend);
     backend.template accumulate<1>(p.elements, kernel, p.f(), p.rest(), p.u(), p.du());
   });
   report(state, p, {.read = 3, .written = 1});
+}
+template <class F, class B>
+void time_tangent_product(benchmark::State& state, B const& backend, int cells) {
+  time_tangent_product<F>(state, backend, Problem<B, typename F::element>::of(backend, cells));
 }
 
 /// Pairwise, and what peers publish in full: solids under nonlinear laws.

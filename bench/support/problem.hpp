@@ -16,7 +16,8 @@ struct OrderedMesh {
   Mesh<E> mesh;
   Numbering<E> numbering;
 
-  explicit OrderedMesh(int cells) : mesh(mesh_of<E>(cells)), numbering(mesh) {}
+  explicit OrderedMesh(Mesh<E> of) : mesh(std::move(of)), numbering(mesh) {}
+  explicit OrderedMesh(int cells) : OrderedMesh(mesh_of<E>(cells)) {}
 
   /// The one asked for last is kept: precisions follow each other.
   static OrderedMesh const& of(int cells) {

@@ -21,10 +21,13 @@ void add_named(std::string const& name, Run run) {
 
 /// what/element/law/precision/backend/elements.
 template <class F, class T>
+std::string name_of_mesh(std::string const& what, std::string const& backend, long elements) {
+  return what + "/" + F::element::name() + "/" + law_name<F>() + "/" + precision_name<T>() + "/" +
+         backend + "/" + std::to_string(elements);
+}
+template <class F, class T>
 std::string name_of(std::string const& what, std::string const& backend, int cells) {
-  using E = typename F::element;
-  return what + "/" + E::name() + "/" + law_name<F>() + "/" + precision_name<T>() + "/" + backend +
-         "/" + std::to_string(element_count<E>(cells));
+  return name_of_mesh<F, T>(what, backend, element_count<typename F::element>(cells));
 }
 /// Registers it under that name.
 template <class F, class T, class Run>
