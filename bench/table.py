@@ -6,6 +6,7 @@
 All ratios are of rates measured in the same run, unless a row says that it quotes a peer.
 """
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -138,6 +139,36 @@ def law_rows(results):
         yield row
 
 
+def size_rows(results):
+    """G elements/s of forces by the power of ten of boxes' elements."""
+    rates = {}
+    for name, run in results.runs.items():
+        if found := re.fullmatch(r"force at 1e(\d)/(\w+)/\w+/(\w+)/([^/]+)/\d+", name):
+            digits, *rest = found.groups()
+            rates.setdefault(tuple(rest), {})[digits] = run["items_per_second"]
+    for at, by_size in rates.items():
+        yield [*at, *(f"{by_size[d] / 1e9:.3g}" if d in by_size else "" for d in "45678")]
+
+
+def unstructured_rows(results):
+    runs = {}
+    for name in results.runs:
+        if found := re.fullmatch(r"(\w+) of (Delaunay|box)/\w+/\w+/(\w+)/([^/]+)/(\d+)", name):
+            what, kind, precision, backend, elements = found.groups()
+            runs.setdefault((what, precision, backend), {})[kind] = name, elements
+    for at, kinds in runs.items():
+        if len(kinds) == 2:
+            names, elements = zip(kinds["Delaunay"], kinds["box"])
+            rates = [results.items(name) for name in names]
+            yield [*at, *elements, *map(si, rates), f"{rates[0] / rates[1]:.2f}"]
+
+
+def section(title, text, header, rows):
+    """Nothing where nothing of it was measured."""
+    rows = list(rows)
+    return f"## {title}\n\n{text}\n\n{markdown(header, rows)}\n\n" if rows else ""
+
+
 def main():
     data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     results = Results(data)
@@ -161,6 +192,20 @@ def main():
          "of copy", "of FMA", "variation"],
         run_rows(results),
     )  # fmt: skip
+    sizes = section(
+        "Elements per second over mesh size",
+        "G elements/s of forces under Saint Venant-Kirchhoff, of boxes of about so many elements. Empty where it was\n"
+        "not measured: 10⁸ are for a GPU in single precision.",
+        ["element", "precision", "backend", "10⁴", "10⁵", "10⁶", "10⁷", "10⁸"],
+        size_rows(results),
+    )
+    unstructured = section(
+        "Unstructured beside box",
+        "Elements/s of Tet4 under Saint Venant-Kirchhoff: of a cube that Gmsh divided by a Delaunay triangulation, with\n"
+        "nodes and elements in random order (bench/delaunay), beside a box of six tetrahedra to a cell.",
+        ["what", "precision", "backend", "Delaunay elements", "box elements", "Delaunay", "box", "ratio"],
+        unstructured_rows(results),
+    )
     Path(sys.argv[2]).write_text(
         f"""# {context["backend"]} on {context["machine"]}
 
@@ -187,7 +232,7 @@ repetitions of both: what else runs on a machine only adds.
 
 {laws}
 
-## Everything
+{sizes}{unstructured}## Everything
 
 `of copy` is the mandatory traffic (connectivity, and each value of a node read or written, once)
 over the copy ceiling; `of FMA` counts 265 operations for a Tet4 force and 2734 for a Hex8 one.
