@@ -13,7 +13,7 @@ void time_copy(benchmark::State& state, B const& backend) {
   constexpr Index count = 1 << 25;
   HostArray<double> from(count), to(count);
   measure(state, backend, [&] {
-    backend.for_each(count, Copy<double>{from.data(), to.data()});
+    backend.for_each(count, pliant::detail::CopyValue<double>{from.data(), to.data()});
     benchmark::ClobberMemory();
   });
   report_rate(state, "bytes_per_second", 2.0 * count * sizeof(double));
