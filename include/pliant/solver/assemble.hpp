@@ -9,6 +9,7 @@
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/body/body.hpp>
 #include <pliant/solver/assembler.hpp>
+#include <pliant/solver/linear/same_registers.hpp>
 #include <pliant/solver/linear/unknowns.hpp>
 #include <pliant/solver/stiffness_pattern.hpp>
 
@@ -237,6 +238,7 @@ Assembled assembled_at(Parts const& parts, Eigen::VectorXd const& u, Assemble wh
 template <DeformableBody TheBody>
 Assembled assemble(TheBody const& body, Eigen::VectorXd const& u, double dt,
                    Assemble what = Assemble::stiffness_too) {
+  detail::check_registers();
   Eigen::Index const size = Eigen::Index{TheBody::dim} * body.nodes();
   if (u.size() != size)
     throw Error("assemble: got ", u.size(), " displacements, but the body has ", size,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/solver/assemble.hpp>
+#include <pliant/solver/linear/same_registers.hpp>
 #include <pliant/solver/mass_product.hpp>
 
 namespace pliant {
@@ -59,6 +60,7 @@ BlockMatrix<TheBody::dim, TheBody::dim> mass_blocks(TheBody const& body, MassMat
 template <DeformableBody TheBody>
 Eigen::SparseMatrix<double> assemble_mass(TheBody const& body,
                                           MassMatrix kind = MassMatrix::consistent) {
+  detail::check_registers();
   auto mass = detail::by_scalars(detail::mass_blocks(body, kind));
   mass.prune([](auto, auto, double entry) { return entry != 0; });
   return mass;

@@ -1,5 +1,4 @@
 // What PLIANT_COMPILED_SOLVERS leaves out of the headers: see pliant/solver/linear/compiled_once.hpp.
-#include <pliant/solver/linear/definitions/compiled_solvers.hpp>
 #include <pliant/solver/linear/definitions/dense_inverse.hpp>
 #include <pliant/solver/linear/definitions/direct_solver.hpp>
 #include <pliant/solver/linear/definitions/lanczos_matrix.hpp>

@@ -9,6 +9,7 @@
 
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
+#include <pliant/solver/linear/same_registers.hpp>
 #include <pliant/solver/static_problem.hpp>
 
 namespace pliant {
@@ -229,6 +230,7 @@ class EquilibriumPath {
 template <DeformableBody TheBody, class Visit>
   requires std::is_invocable_r_v<bool, Visit&, PathPoint const&>
 PathReport follow_path(TheBody& body, PathOptions const& options, Visit&& visit) {
+  detail::check_registers();
   if (!(options.first > 0) || !(options.longest > 0) || options.max_points < 1 ||
       options.max_iterations < 1 || !(options.tolerance > 0 && options.tolerance < 1))
     throw Error("follow_path: first ", options.first, ", longest ", options.longest,

@@ -9,6 +9,7 @@
 #include <pliant/solver/implicit/carried_errors.hpp>
 #include <pliant/solver/implicit/options.hpp>
 #include <pliant/solver/implicit/step_solver.hpp>
+#include <pliant/solver/linear/same_registers.hpp>
 
 namespace pliant {
 
@@ -83,6 +84,7 @@ class Implicit {
   /// Steps while left(report, time) is positive, s.
   template <class TheBody, class Left>
   ImplicitReport run(TheBody& body, Left const& left) {
+    detail::check_registers();
     ImplicitReport report{.time = body.time()};
     if (!(left(report, body.time()) > 0)) return report;
     Run<TheBody> now(*this, body, report);

@@ -5,6 +5,7 @@
 
 #include <pliant/solver/least_jacobian.hpp>
 #include <pliant/solver/linear/linear_solver.hpp>
+#include <pliant/solver/linear/same_registers.hpp>
 #include <pliant/solver/load_steps.hpp>
 #include <pliant/solver/static_on_backend.hpp>
 #include <pliant/solver/static_problem.hpp>
@@ -226,6 +227,7 @@ class StaticNewton {
 /// answer is folded (det F ≤ 0, looked for all over each element whose law is not linear).
 template <DeformableBody TheBody>
 NewtonReport solve_static(TheBody& body, NewtonOptions const& options = {}) {
+  detail::check_registers();
   detail::check_options(options);
   NewtonReport report;
   bool solved = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <pliant/solver/linear/same_registers.hpp>
 #include <pliant/solver/static_problem.hpp>
 
 namespace pliant {
@@ -18,6 +19,7 @@ std::vector<Point<TheBody::dim>> static_reactions(TheBody const& body, Handle ha
   auto const found = std::ranges::find(conditions, handle, &Condition<dim>::handle);
   if (found == conditions.end())
     throw Error("static_reactions: handle ", handle.id, " names no condition of this body");
+  detail::check_registers();
   detail::StaticProblem<TheBody> const problem(body, gravity);
   Eigen::VectorXd const pull =
       assemble(body, problem.start(), std::numeric_limits<double>::infinity(),
