@@ -136,6 +136,42 @@ TEST_CASE("a budget pays for laws and for meshes", "[adaptation]") {
   });
 }
 
+TEST_CASE("of a mesh that may not change, an error and a budget pay for laws alone",
+          "[adaptation]") {
+  on_each_backend<FewBackends>([](auto const& backend) {
+    auto body = body_on(backend), other = body_on(backend);
+    deform(body);
+    double const of_mesh = estimate(body, RecoveredStress{}), error = error_of_laws(body) / 20;
+    auto adapt = Adaptation{
+        within<Cheap, Costly>(RecoveredStress{}, {.error = of_mesh + error, .max_level = 0})};
+    auto laws = Adaptation{within<Cheap, Costly>({.error = error})};
+    look(body, 1, adapt);
+    look(other, 1, laws);
+    auto const costly = [](auto const& of) {
+      return std::ranges::count(of.template groups_of<Quad4>(), Tag{1});
+    };
+    CHECK(error_of(body) <= of_mesh + error);
+    CHECK(costly(body) < 64);
+    CHECK(costly(body) == costly(other));
+
+    // Half of them under the costly law.
+    std::vector<Index> half(32);
+    std::iota(half.begin(), half.end(), 0);
+    other.template assign<Costly>(half);
+    std::vector<Index> rest(32);
+    std::iota(rest.begin(), rest.end(), 32);
+    other.template assign<Cheap>(rest);
+    double const budget = evaluations(other);
+    auto paid = body_on(backend);
+    deform(paid);
+    auto pay = Adaptation{within<Cheap, Costly>(
+        RecoveredStress{}, {.evaluations_per_step = budget + 0.01, .max_level = 0})};
+    pay.now(paid);
+    CHECK(costly(paid) == 32);
+    CHECK(error_of(paid) < error_of(other));
+  });
+}
+
 TEST_CASE("laws, sizes and degrees share a budget", "[adaptation]") {
   on_each_backend<FewBackends>([](auto const& backend) {
     auto body = body_of_degrees(backend);
