@@ -67,8 +67,7 @@ double error_of(TheBody const& body) {
 }
 template <class TheBody>
 double evaluations(TheBody const& body) {
-  return detail::evaluations_of_mesh(body.parts(),
-                                     within<Cheap, Costly>(RecoveredStress{}, {.error = 1}));
+  return evaluations_per_step(body, within<Cheap, Costly>(RecoveredStress{}, {.error = 1}));
 }
 /// The middle of elements in a group, along the body: the mean.
 template <class TheBody>
@@ -180,7 +179,7 @@ TEST_CASE("laws, sizes and degrees share a budget", "[adaptation]") {
         RecoveredStress{}, {.evaluations_per_step = budget, .max_level = 4});
     auto adapt = Adaptation{rule};
     look(body, 1, adapt);
-    double const now = detail::evaluations_of_mesh(std::as_const(body).parts(), rule);
+    double const now = evaluations_per_step(body, rule);
     CHECK(now > 0.85 * budget);
     CHECK(now < 1.1 * budget);
     CHECK(!body.mesh().template elements<Quad9>().empty());

@@ -132,8 +132,7 @@ TEST_CASE("a mesh raises degrees where that is worth more, and lowers them behin
     auto refine_alone =
         Adaptation{within<Held4>(RecoveredStress{}, {.error = error, .max_level = 4})};
     auto const evaluations = [](auto const& of) {
-      return detail::evaluations_of_mesh(of.parts(),
-                                         within<Held4, Held9>(RecoveredStress{}, {.error = 1}));
+      return evaluations_per_step(of, within<Held4, Held9>(RecoveredStress{}, {.error = 1}));
     };
     for (double place : {1.0, 1.5, 2.5}) {
       look(body, adapt, place);
@@ -166,7 +165,7 @@ TEST_CASE("far from the error that is asked for nothing is undone", "[adaptation
     for (int k = 0; k < 8; ++k) {
       bend(k < 3 ? 0 : 0.01);
       adapt.now(body);
-      double const now = detail::evaluations_of_mesh(std::as_const(body).parts(), rule);
+      double const now = evaluations_per_step(body, rule);
       CHECK(now >= evaluations);
       evaluations = now;
     }
@@ -182,7 +181,7 @@ TEST_CASE("a budget holds for both degrees", "[adaptation]") {
     auto adapt = Adaptation{rule};
     for (double place : {1.0, 1.3, 2.0, 3.0}) {
       look(body, adapt, place);
-      double const now = detail::evaluations_of_mesh(std::as_const(body).parts(), rule);
+      double const now = evaluations_per_step(body, rule);
       CHECK(now > 0.85 * budget);
       CHECK(now < 1.1 * budget);
     }

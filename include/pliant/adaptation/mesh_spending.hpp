@@ -256,3 +256,14 @@ MarkedElements decide_on_mesh(Parts& parts, MeshWithinRule<Estimate, Fs...> cons
 }
 
 }  // namespace pliant::detail
+
+namespace pliant {
+
+/// What a step of the elements of a rule that holds a mesh costs, in forces of one element of its first formulation: what
+/// MeshWithinOptions::evaluations_per_step limits. Elements that sleep cost nothing.
+template <DeformableBody TheBody, class E, class... Fs>
+double evaluations_per_step(TheBody const& body, MeshWithinRule<E, Fs...> const& rule) {
+  return detail::evaluations_of_mesh(body.parts(), rule);
+}
+
+}  // namespace pliant
