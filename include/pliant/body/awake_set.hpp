@@ -21,8 +21,8 @@ struct PatchNodes {
   template <class U>
   using Array = typename B::template Array<U>;
 
-  std::vector<Index> first_of_type;                  // (types + 1): patches
-  std::vector<Index> patch_of_piece;                 // (pieces): ascending
+  std::vector<Index> first_of_type;   // (types + 1): patches
+  std::vector<Index> patch_of_piece;  // (pieces): each patch's own number, then of its other pieces
   std::vector<Index> first_of_node, pieces_of_node;  // compressed rows
   std::vector<Index> first_neighbour, neighbours;    // the same of patches, that share a node
   Array<Index> first, pieces, patch;  // rows of nodes, and patches, in the backend's memory
@@ -39,13 +39,13 @@ struct PatchNodes {
   }
   /// From marks of pieces to marks of patches: the largest.
   std::vector<std::uint8_t> of_patches(std::vector<std::uint8_t> marks) const {
-    if (pieces_count() == count()) return marks;
-    std::vector<std::uint8_t> largest(static_cast<std::size_t>(count()));
-    for (std::size_t piece = 0; piece < marks.size(); ++piece) {
-      auto& own = largest[static_cast<std::size_t>(patch_of_piece[piece])];
+    auto const patches = static_cast<std::size_t>(count());
+    for (std::size_t piece = patches; piece < marks.size(); ++piece) {
+      auto& own = marks[static_cast<std::size_t>(patch_of_piece[piece])];
       own = std::max(own, marks[piece]);
     }
-    return largest;
+    marks.resize(patches);
+    return marks;
   }
 };
 

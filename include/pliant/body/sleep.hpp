@@ -90,6 +90,14 @@ inline PairedRows rows_beside(std::span<Index const> first, std::span<Index cons
   return rows;
 }
 
+template <class Parts>
+std::size_t patch_count(Parts& parts) {
+  std::size_t count = 0;
+  parts.for_each_type(
+      [&](auto& table, auto&) { count += static_cast<std::size_t>(table.elements.patch_count()); });
+  return count;
+}
+
 /// The patches of a type's elements, by internal numbers.
 template <class Parts>
 PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
@@ -97,6 +105,8 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   auto const& layout = parts.layout;
   auto const& interpolation = parts.state.topology->interpolation;
   std::vector<Index> nodes_of_pairs, pieces_of_pairs;
+  made.patch_of_piece.resize(patch_count(parts));
+  std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
   made.first_of_type = {0};
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
@@ -125,13 +135,14 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
       nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
       Pieces pieces(std::move(nodes));
       for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
-      Index const before_pieces = made.pieces_count();
+      Index const patch = before + p;
+      Index const others = made.pieces_count() - 1;
       Index const count = pieces.for_each_node([&](Index node, Index piece) {
         nodes_of_pairs.push_back(node);
-        pieces_of_pairs.push_back(before_pieces + piece);
+        pieces_of_pairs.push_back(piece == 0 ? patch : others + piece);
       });
-      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(count),
-                                 before + p);
+      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(count - 1),
+                                 patch);
     }
     made.first_of_type.push_back(before + table.elements.patch_count());
   });
@@ -157,14 +168,6 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   made.beside = upload(parts.backend, beside.others);
   made.stirred = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
   return made;
-}
-
-template <class Parts>
-std::size_t patch_count(Parts& parts) {
-  std::size_t count = 0;
-  parts.for_each_type(
-      [&](auto& table, auto&) { count += static_cast<std::size_t>(table.elements.patch_count()); });
-  return count;
 }
 
 /// Room for a list of so many patches, a little more, so that it seldom changes: a GPU starts a block for each place

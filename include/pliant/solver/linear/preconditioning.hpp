@@ -106,7 +106,7 @@ class Preconditioning {
       std::same_as<typename Parts::backend_type::Recording, HostRecording>;
   // Making multigrid costs about as much as 60 iterations under nodal blocks, each of its iterations 6.
   static constexpr int look_behind = 16, worth = 100, few = 4;
-  static constexpr Index fewest_unknowns = on_host ? 3000 : 250000;
+  static constexpr Index fewest_unknowns = on_host ? 3000 : 300000;
   Preconditioner wanted_, now_ = Preconditioner::nodal_blocks;
   bool made_ = false, fresh_ = false;  // at all, and from this system's matrix
   double usual_ = 0;  // iterations by which a fresh one made a residual ten times smaller
