@@ -32,9 +32,9 @@ struct PatchNodes {
   Index count() const { return first_of_type.back(); }
   Index pieces_count() const { return static_cast<Index>(patch_of_piece.size()); }
   /// The patches that share a node with this one.
-  std::span<Index const> beside_of(std::size_t patch) const {
-    auto const from = static_cast<std::size_t>(first_neighbour[patch]),
-               to = static_cast<std::size_t>(first_neighbour[patch + 1]);
+  std::span<Index const> beside_of(std::size_t own) const {
+    auto const from = static_cast<std::size_t>(first_neighbour[own]),
+               to = static_cast<std::size_t>(first_neighbour[own + 1]);
     return std::span(neighbours).subspan(from, to - from);
   }
   /// From marks of pieces to marks of patches: the largest.

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/awake_set.hpp>
+#include <pliant/math/group_by_key.hpp>
+
+// Which nodes belong to which patches, and into which pieces these fall.
+namespace pliant::detail {
+
+/// The pieces that some nodes, sorted, fall into, of which elements join some to one.
+class Pieces {
+ public:
+  explicit Pieces(std::vector<Index> nodes) : nodes_(std::move(nodes)), joined_(nodes_.size()) {
+    std::iota(joined_.begin(), joined_.end(), std::size_t{0});
+  }
+  void join(Index node, Index other) { joined_[root(place(node))] = root(place(other)); }
+  /// f(node, piece), pieces numbered in the order of their first nodes; returns how many there are.
+  template <class F>
+  Index for_each_node(F const& f) {
+    Index count = 0;
+    std::vector<Index> numbers(nodes_.size(), -1);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      auto& number = numbers[root(i)];
+      if (number < 0) number = count++;
+      f(nodes_[i], number);
+    }
+    return count;
+  }
+
+ private:
+  std::size_t place(Index node) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(nodes_, node) - nodes_.begin());
+  }
+  std::size_t root(std::size_t i) {
+    while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
+    return i;
+  }
+  std::vector<Index> nodes_;
+  std::vector<std::size_t> joined_;
+};
+
+struct PairedRows {
+  std::vector<Index> first{0}, others;
+};
+/// Which of `count` things share a row with each, itself left out, each once. Row i: things[first[i]] on.
+inline PairedRows rows_beside(std::span<Index const> first, std::span<Index const> things,
+                              std::size_t count) {
+  std::vector<std::vector<Index>> beside(count);
+  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+    auto const row = things.subspan(static_cast<std::size_t>(first[i]),
+                                    static_cast<std::size_t>(first[i + 1] - first[i]));
+    for (Index a : row)
+      for (Index b : row)
+        if (a != b) beside[static_cast<std::size_t>(a)].push_back(b);
+  }
+  PairedRows rows;
+  for (auto& list : beside) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    rows.others.insert(rows.others.end(), list.begin(), list.end());
+    rows.first.push_back(static_cast<Index>(rows.others.size()));
+  }
+  return rows;
+}
+
+template <class Parts>
+std::size_t patch_count(Parts& parts) {
+  std::size_t count = 0;
+  parts.for_each_type(
+      [&](auto& table, auto&) { count += static_cast<std::size_t>(table.elements.patch_count()); });
+  return count;
+}
+
+/// The patches of a type's elements, by internal numbers.
+template <class Parts>
+PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
+  PatchNodes<typename Parts::backend_type> made;
+  auto const& layout = parts.layout;
+  auto const& interpolation = parts.state.topology->interpolation;
+  std::vector<Index> nodes_of_pairs, pieces_of_pairs;
+  made.patch_of_piece.resize(patch_count(parts));
+  std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
+  made.first_of_type = {0};
+  parts.for_each_type([&](auto& table, auto&) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    auto const& elements = parts.state.topology->mesh.template elements<E>();
+    Index const before = made.first_of_type.back();
+    for (Index p = 0; p < table.elements.patch_count(); ++p) {
+      Index const first = p * table.elements.patch_size();
+      Index const last = std::min(table.count(), first + table.elements.patch_size());
+      // f(first node of an element, node)
+      auto const for_each_node = [&](auto const& f) {
+        for (Index e = first; e < last; ++e) {
+          auto const& own =
+              elements[static_cast<std::size_t>(table.user_element[static_cast<std::size_t>(e)])];
+          Index const joined = layout.internal_of(own[0]);
+          for (Index node : own) {
+            f(joined, layout.internal_of(node));
+            if (auto const* slave = interpolation.row_of(node))
+              for (auto const& [master, weight] : slave->masters)
+                f(joined, layout.internal_of(master));
+          }
+        }
+      };
+      std::vector<Index> nodes;
+      for_each_node([&](Index, Index node) { nodes.push_back(node); });
+      std::ranges::sort(nodes);
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      Pieces pieces(std::move(nodes));
+      for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
+      Index const patch = before + p;
+      Index const others = made.pieces_count() - 1;
+      Index const count = pieces.for_each_node([&](Index node, Index piece) {
+        nodes_of_pairs.push_back(node);
+        pieces_of_pairs.push_back(piece == 0 ? patch : others + piece);
+      });
+      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(count - 1),
+                                 patch);
+    }
+    made.first_of_type.push_back(before + table.elements.patch_count());
+  });
+  auto const by_node = group_by_key(nodes_of_pairs, layout.nodes);
+  made.first_of_node = by_node.first;
+  for (Index pair : by_node.order)
+    made.pieces_of_node.push_back(pieces_of_pairs[static_cast<std::size_t>(pair)]);
+
+  auto const beside =
+      rows_beside(made.first_of_node, made.pieces_of_node, made.patch_of_piece.size());
+  auto of_patches = made.pieces_of_node;
+  for (Index& piece : of_patches) piece = made.patch_of_piece[static_cast<std::size_t>(piece)];
+  auto rows =
+      made.pieces_count() == made.count()
+          ? beside
+          : rows_beside(made.first_of_node, of_patches, static_cast<std::size_t>(made.count()));
+  made.first_neighbour = std::move(rows.first);
+  made.neighbours = std::move(rows.others);
+  made.first = upload(parts.backend, made.first_of_node);
+  made.pieces = upload(parts.backend, made.pieces_of_node);
+  made.patch = upload(parts.backend, made.patch_of_piece);
+  made.first_beside = upload(parts.backend, beside.first);
+  made.beside = upload(parts.backend, beside.others);
+  made.stirred = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
+  return made;
+}
+
+}  // namespace pliant::detail
