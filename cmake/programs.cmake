@@ -74,3 +74,22 @@ function(pliant_add_program target)
     endif()
   endif()
 endfunction()
+
+# pliant_read_source(<group> <target> <source> <compiler and flags>...)
+# Adds to <group> that a compiler's front end reads a source with the folders of a target, again when a header changes.
+function(pliant_read_source group target source)
+  set(stamp "${CMAKE_CURRENT_BINARY_DIR}/${target}.read")
+  add_custom_command(
+    OUTPUT "${stamp}"
+    # Solvers of matrices are read with the headers.
+    COMMAND ${ARGN} -DPLIANT_COMPILED_SOLVERS
+            "-I$<JOIN:$<REMOVE_DUPLICATES:$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>>,;-I>" -MD -MF "${stamp}.d" -MT
+            "${stamp}" "${source}"
+    COMMAND "${CMAKE_COMMAND}" -E touch "${stamp}"
+    DEPENDS "${source}"
+    DEPFILE "${stamp}.d"
+    COMMENT "Reading ${target}"
+    COMMAND_EXPAND_LISTS VERBATIM)
+  add_custom_target(${target}_read DEPENDS "${stamp}")
+  add_dependencies(${group} ${target}_read)
+endfunction()
