@@ -482,7 +482,7 @@ void compare_plan(std::vector<std::array<Index, Planner::nodes>> const& table, i
   auto connectivity = backend.array<Index>(flat.size());
   connectivity.upload(flat);
   auto const plan = detail::plan_patches<Planner>(backend, connectivity, count, Planner::nodes,
-                                                  patch_size, [](auto const&) { return true; });
+                                                  patch_size, {}, [](auto const&) { return true; });
   CHECK(plan.capacity.nodes == expected.capacity.nodes);
   CHECK(plan.capacity.diagonals == expected.capacity.diagonals);
   CHECK(plan.capacity.fans == expected.capacity.fans);

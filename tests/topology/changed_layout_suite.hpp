@@ -97,8 +97,11 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
   body.on_change([&](TopologyChange<Own> const& made) {
     if (!made.before.tree) return;
     auto const before = elements_in_order(made.before, first);
-    OrderBefore<1> const known{{before.elements[0]}, {before.blocks[0].first}};
-    auto const after = elements_in_order(made.after, first, &known, &made.transfer);
+    detail::TouchedElements<Own> const touched(made.before, made.after, made.transfer);
+    auto const changed = changed_blocks(made.after, first, made.transfer, touched);
+    OrderBefore<1, 3> const known{
+        {before.elements[0]}, {before.blocks[0].first}, made.transfer, changed.elements};
+    auto const after = elements_in_order(made.after, first, &known);
     auto const& [now, then] = std::pair(after.blocks[0], before.blocks[0]);
     auto const old = old_elements(made);
     REQUIRE(now.first.size() == then.first.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <pliant/body/carried_nodes.hpp>
 #include <pliant/body/touched_elements.hpp>
 #include <pliant/constraint/condition.hpp>
 #include <pliant/formulation/affine.hpp>
@@ -14,7 +15,7 @@ namespace pliant::detail {
 /// as one at the velocity `base`: where all do, what rounding left is no momentum.
 template <Element E>
 Point<E::dim> momentum(Connectivity<E> const& nodes, Vector<double, E::nodes> const& volumes,
-                       double density, std::vector<Point<E::dim>> const& v,
+                       double density, ValuesAt<Point<E::dim>> const& v,
                        Point<E::dim> const& base) {
   Point<E::dim> p{};
   for (std::size_t a = 0; a < E::nodes; ++a)
@@ -24,23 +25,13 @@ Point<E::dim> momentum(Connectivity<E> const& nodes, Vector<double, E::nodes> co
   return p;
 }
 
-/// Calls visit(E{}, nodes) for an element of a mesh.
-template <class M, class Visit>
-void visit_member(M const& mesh, typename Transfer<M::dim>::Member const& member,
-                  Visit const& visit) {
-  for_each_type_of(mesh, [&]<Element E>(E element, std::size_t type) {
-    if (type == member.type)
-      visit(element, mesh.template elements<E>()[static_cast<std::size_t>(member.element)]);
-  });
-}
-
 /// A velocity at a node of a family. Of two pyramids that are split or merged together it is the same: where their base is
 /// not plane, volume goes over from one to the other.
 template <class M>
 Point<M::dim> velocity_in(TopologyPlan<M> const& plan,
                           typename Transfer<M::dim>::Family const& family,
-                          std::vector<Point<M::dim>> const& v_before,
-                          std::vector<Point<M::dim>> const& v) {
+                          ValuesAt<Point<M::dim>> const& v_before,
+                          ValuesAt<Point<M::dim>> const& v) {
   bool const shares_base = family.pattern != nullptr && family.pattern->halved_side >= 0;
   bool const is_merged = family.before.size() > 1;
   Point<M::dim> velocity{};
@@ -64,8 +55,8 @@ Point<M::dim> velocity_in(TopologyPlan<M> const& plan,
 template <class M>
 void add_family_impulse(TopologyPlan<M> const& plan,
                         typename Transfer<M::dim>::Family const& family, double density,
-                        std::vector<Point<M::dim>> const& v_before,
-                        std::vector<Point<M::dim>> const& v, std::vector<Point<M::dim>>& impulse) {
+                        ValuesAt<Point<M::dim>> const& v_before, ValuesAt<Point<M::dim>> const& v,
+                        ValuesAt<Point<M::dim>>& impulse) {
   constexpr std::size_t dim = M::dim;
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
@@ -100,9 +91,8 @@ void add_family_impulse(TopologyPlan<M> const& plan,
 template <Element E, class M>
 void add_impulse_of_slaves(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
                            std::size_t type, double density,
-                           std::vector<Point<M::dim>> const& v_before,
-                           std::vector<Point<M::dim>> const& v,
-                           std::vector<Point<M::dim>>& impulse) {
+                           ValuesAt<Point<M::dim>> const& v_before,
+                           ValuesAt<Point<M::dim>> const& v, ValuesAt<Point<M::dim>>& impulse) {
   auto const& old = plan.before->mesh;
   auto const& now = plan.after->mesh;
   for (auto const& element : touched.of_type(type).staying) {
@@ -128,18 +118,17 @@ template <class Layout, class M>
 Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
                                  double density, Layout const& layout,
                                  std::vector<DirectionMask> const& held,
-                                 std::vector<Point<M::dim>> v_before,
-                                 std::vector<Point<M::dim>>& v) {
+                                 ValuesAt<Point<M::dim>> v_before, ValuesAt<Point<M::dim>>& v) {
   constexpr std::size_t dim = M::dim;
-  auto const components = [](std::vector<Point<dim>>& field) {
+  auto const components = [](ValuesAt<Point<dim>>& field) {
     return [&field](Index i, int k) -> double& {
       return field[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
     };
   };
-  std::vector<Point<dim>> moving = v;  // with slaves at the velocity of their mass
+  auto moving = v;  // with slaves at the velocity of their mass
   plan.before->interpolation.apply_masses(components(v_before), M::dim);
   plan.after->interpolation.apply_masses(components(moving), M::dim);
-  std::vector<Point<dim>> impulse(v.size(), Point<dim>{});
+  ValuesAt<Point<dim>> impulse(*v.subset);
   for (auto const& family : plan.transfer.families())
     add_family_impulse(plan, family, density, v_before, moving, impulse);
   for_each_type_of(plan.after->mesh, [&]<Element E>(E, std::size_t type) {
@@ -147,7 +136,8 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M>
   });
   plan.after->interpolation.hand_masses(components(impulse), M::dim);
   Point<dim> taken{};
-  for (std::size_t i = 0; i < v.size(); ++i) {
+  for (Index const node : v.subset->nodes) {
+    auto const i = static_cast<std::size_t>(node);
     if (impulse[i] == Point<dim>{}) continue;
     for (std::size_t k = 0; k < dim; ++k)
       if (held[i] >> k & 1)

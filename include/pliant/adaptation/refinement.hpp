@@ -106,6 +106,7 @@ struct MergingReport {
 /// element is unknown or the body's limits would be exceeded.
 template <class Parts>
 auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
+  HostThreads const threads(parts.backend, parts.state.topology->mesh);
   return plan_change(parts.state.topology, marked,
                      {parts.limits.nodes, parts.limits.elements, max_level},
                      detail::kept_parts(parts), detail::element_values_of(parts));
@@ -116,6 +117,7 @@ auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level
 template <class Parts>
 void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   constexpr int dim = Parts::dim;
+  HostThreads const threads(parts.backend, plan.after->mesh);
   wake_all(parts);
   auto const energies_but_strain = [](Parts& p) {
     return Energies{0, kinetic_energy_of(p), p.watched_energy ? potential_energy_of(p) : 0};

@@ -10,11 +10,15 @@
 
 #include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/numbering.hpp>
+#include <pliant/body/touched_elements.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
 
 namespace pliant {
+
+/// Cells of the first mesh, from which a block of elements is: 40 cubes of six tetrahedra.
+inline constexpr Index cells_per_block = 240;
 
 /// The order of the cells of a body's first mesh, by the tree's numbers. That of every mesh it becomes follows from this one and
 /// from the tree: children stand in the place of their parents, so that what is near stays near, and no change has to
@@ -24,6 +28,7 @@ struct CellOrder {
   std::vector<Index> places;  // the inverse
 
   Index count() const { return static_cast<Index>(cells.size()); }
+  Index blocks() const { return (count() + cells_per_block - 1) / cells_per_block; }
 };
 
 template <Element... Es>
@@ -39,9 +44,6 @@ CellOrder first_order(Numbering<Es...> const& numbering) {
   return order;
 }
 
-/// Cells of the first mesh, from which a block of elements is: 40 cubes of six tetrahedra.
-inline constexpr Index cells_per_block = 240;
-
 /// The elements of each type by the user's numbers, in the order that a body keeps, and the blocks that they are in.
 template <std::size_t Types>
 struct OrderedElements {
@@ -49,10 +51,13 @@ struct OrderedElements {
   std::array<ElementBlocks, Types> blocks;
 };
 
-/// The same before a change, as a layout keeps it.
-template <std::size_t Types>
+/// The same before a change, as a layout keeps it, what the change means, and by the block whether other elements stand there
+/// now.
+template <std::size_t Types, int Dim>
 struct OrderBefore {
   std::array<std::span<Index const>, Types> elements, first;
+  Transfer<Dim> const& transfer;
+  std::span<char const> changed;
 };
 
 /// The blocks of a first mesh.
@@ -71,19 +76,29 @@ std::array<ElementBlocks, sizeof...(Es)> first_blocks(Mesh<Es...> const& mesh) {
   return blocks;
 }
 
-/// By the block, whether other elements stand there than before a change.
+/// What a change means for the blocks: other elements stand in one than before it, or a node of its elements has others
+/// around it.
+struct ChangedBlocks {
+  std::vector<char> elements, nodes;
+};
+
 template <Element... Es>
-std::vector<char> changed_blocks(Topology<Mesh<Es...>> const& after, CellOrder const& first,
-                                 Transfer<Mesh<Es...>::dim> const& transfer) {
-  std::vector<char> changed(
-      static_cast<std::size_t>((first.count() + cells_per_block - 1) / cells_per_block), 0);
-  for (auto const& family : transfer.families()) {
-    auto const& [type, element] = family.after.front();
+ChangedBlocks changed_blocks(Topology<Mesh<Es...>> const& after, CellOrder const& first,
+                             Transfer<Mesh<Es...>::dim> const& transfer,
+                             detail::TouchedElements<Mesh<Es...>> const& touched) {
+  ChangedBlocks changed;
+  changed.elements.resize(static_cast<std::size_t>(first.blocks()), 0);
+  auto const block_of = [&](std::size_t type, Index element) {
     Index c = after.cells[type][static_cast<std::size_t>(element)];
     while (after.tree->cell(c).parent >= 0) c = after.tree->cell(c).parent;
-    changed[static_cast<std::size_t>(first.places[static_cast<std::size_t>(c)] / cells_per_block)] =
-        1;
-  }
+    return static_cast<std::size_t>(first.places[static_cast<std::size_t>(c)] / cells_per_block);
+  };
+  for (auto const& family : transfer.families())
+    changed.elements[block_of(family.after.front().type, family.after.front().element)] = 1;
+  changed.nodes = changed.elements;
+  for (std::size_t type = 0; type < after.cells.size(); ++type)
+    for (auto const& element : touched.of_type(type).staying)
+      changed.nodes[block_of(type, element.after)] = 1;
   return changed;
 }
 
@@ -147,46 +162,64 @@ std::vector<Index> new_elements(Transfer<Dim> const& transfer, std::size_t type,
 }  // namespace detail
 
 /// The elements of a topology with a tree, in the order that follows from the first mesh's. `before`: null, or this order
-/// before a change, from which blocks that stay are taken by the change's transfer.
+/// before a change, from which blocks that stay are taken.
 template <Element... Es>
 OrderedElements<sizeof...(Es)> elements_in_order(
     Topology<Mesh<Es...>> const& topology, CellOrder const& first,
-    OrderBefore<sizeof...(Es)> const* before = nullptr,
-    Transfer<Mesh<Es...>::dim> const* transfer = nullptr) {
-  OrderedElements<sizeof...(Es)> ordered;
-  std::vector<char> changed;
-  std::array<std::vector<Index>, sizeof...(Es)> now;  // of elements that stay
+    OrderBefore<sizeof...(Es), Mesh<Es...>::dim> const* before = nullptr) {
+  constexpr std::size_t types = sizeof...(Es);
+  Index const blocks = first.blocks();
+  auto const stays = [&](Index block) {
+    return before != nullptr && before->changed[static_cast<std::size_t>(block)] == 0;
+  };
+  // Those of blocks that do not stay, one after another, and where each block begins.
+  std::array<std::vector<Index>, types> own, begin;
   std::vector<detail::PlacesOfCells> places(topology.cells.begin(), topology.cells.end());
-  if (before != nullptr) changed = changed_blocks(topology, first, *transfer);
-  for (std::size_t type = 0; type < now.size(); ++type) {
-    ordered.elements[type].reserve(topology.cells[type].size());
-    if (before != nullptr)
-      now[type] = detail::new_elements(*transfer, type, before->elements[type].size());
-  }
-  for (Index block = 0; block * cells_per_block < first.count(); ++block) {
-    auto const b = static_cast<std::size_t>(block);
-    bool const stays = before != nullptr && changed[b] == 0;
-    for (std::size_t type = 0; type < now.size(); ++type) {
-      auto& elements = ordered.elements[type];
-      auto& blocks = ordered.blocks[type];
-      blocks.first.push_back(static_cast<Index>(elements.size()));
-      if (before != nullptr) blocks.stays.push_back(stays ? 1 : 0);
-      if (!stays) continue;
-      auto const& cut = before->first[type];
-      for (Index const old : before->elements[type].subspan(
-               static_cast<std::size_t>(cut[b]), static_cast<std::size_t>(cut[b + 1] - cut[b])))
-        elements.push_back(now[type][static_cast<std::size_t>(old)]);
-    }
-    if (stays) continue;
+  for (Index block = 0; block < blocks; ++block) {
+    for (std::size_t type = 0; type < types; ++type)
+      begin[type].push_back(static_cast<Index>(own[type].size()));
+    if (stays(block)) continue;
     detail::for_each_leaf(*topology.tree, first, block, [&](Index c) {
       detail::for_each_type_of(topology.mesh, [&]<Element E>(E, std::size_t type) {
-        if (sizeof...(Es) == 1 || detail::is_cell_of<E>(topology.tree->cell(c)))
-          ordered.elements[type].push_back(places[type](c));
+        if (types == 1 || detail::is_cell_of<E>(topology.tree->cell(c)))
+          own[type].push_back(places[type](c));
       });
     });
   }
-  for (std::size_t type = 0; type < now.size(); ++type)
-    ordered.blocks[type].first.push_back(static_cast<Index>(ordered.elements[type].size()));
+  OrderedElements<types> ordered;
+  for (std::size_t type = 0; type < types; ++type) {
+    begin[type].push_back(static_cast<Index>(own[type].size()));
+    auto& cut = ordered.blocks[type].first;
+    auto& kept = ordered.blocks[type].stays;
+    std::vector<Index> now;  // of elements that stay
+    if (before != nullptr)
+      now = detail::new_elements(before->transfer, type, before->elements[type].size());
+    auto const all_of = [&](Index block) {
+      auto const b = static_cast<std::size_t>(block);
+      auto const part = [b](std::span<Index const> list, std::span<Index const> first_of) {
+        return list.subspan(static_cast<std::size_t>(first_of[b]),
+                            static_cast<std::size_t>(first_of[b + 1] - first_of[b]));
+      };
+      return stays(block) ? part(before->elements[type], before->first[type])
+                          : part(own[type], begin[type]);
+    };
+    cut = {0};
+    for (Index block = 0; block < blocks; ++block) {
+      cut.push_back(cut.back() + static_cast<Index>(all_of(block).size()));
+      if (before != nullptr) kept.push_back(stays(block) ? 1 : 0);
+    }
+    auto& elements = ordered.elements[type];
+    elements.resize(static_cast<std::size_t>(cut.back()));
+    constexpr Index few_blocks = 64;  // worth a thread
+    detail::for_each_on_host(blocks, few_blocks, [&](Index block) {
+      auto const to = elements.begin() + cut[static_cast<std::size_t>(block)];
+      if (stays(block))
+        std::ranges::transform(all_of(block), to,
+                               [&](Index old) { return now[static_cast<std::size_t>(old)]; });
+      else
+        std::ranges::copy(all_of(block), to);
+    });
+  }
   return ordered;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <pliant/body/carried_nodes.hpp>
 #include <pliant/body/carried_points.hpp>
 #include <pliant/body/checkpoint.hpp>
 #include <pliant/body/converted_elements.hpp>
@@ -130,7 +131,8 @@ struct ChangedTopology {
 };
 
 /// Takes all fields over to another topology, for put_in_force. give_back(touched elements, layout, held, v before, v) may
-/// change the velocities v that the transfer gives (the user's order), and returns the impulse that held nodes took, N s.
+/// change the velocities v that the transfer gives, at the nodes that the change looks at, and returns the impulse that held
+/// nodes took, N s.
 /// The body is awake. Throws Error where fields are not finite; the body itself is left as it is.
 template <class Parts, class GiveBack>
 ChangedTopology<Parts> change_topology(
@@ -138,16 +140,14 @@ ChangedTopology<Parts> change_topology(
     Transfer<Parts::dim> const& transfer, GiveBack const& give_back) {
   constexpr int dim = Parts::dim;
   synchronize_velocities(parts);
-  auto const& old = parts.layout;
-  auto u = old.in_user_order(parts.state.u), v = old.in_user_order(parts.state.v);
-  detail::check_field("change of the mesh (displacements)", u, old.nodes);
-  detail::check_field("change of the mesh (velocities)", v, old.nodes);
+  detail::CarriedNodes<Parts> const nodes(parts, *topology, transfer);
+  nodes.check("change of the mesh (displacements)", parts.state.u);
+  nodes.check("change of the mesh (velocities)", parts.state.v);
+  auto const u = nodes.after(nodes.before(parts.state.u));
+  auto v_before = nodes.before(parts.state.v);
+  auto v = nodes.after(v_before);
   std::vector<Point<dim>> loads;
-  if (parts.state.load.size() > 0) loads = old.in_user_order(parts.state.load);
-
-  u = transfer.carry_nodes(std::move(u));
-  auto v_before = v;
-  v = transfer.carry_nodes(std::move(v));
+  if (parts.state.load.size() > 0) loads = parts.layout.in_user_order(parts.state.load);
   detail::TouchedElements<typename Parts::mesh_type> const touched(*parts.state.topology, *topology,
                                                                    transfer);
   std::vector<std::vector<Tag>> groups, tags;  // by type: before and after
@@ -188,8 +188,9 @@ ChangedTopology<Parts> change_topology(
   state.rest.clear();
   state.record.totals = detail::closed_totals(parts);
   state.record.born = state.steps;
-  state.u = upload(next.backend, next.layout.padded(u));
-  state.v = upload(next.backend, next.layout.padded(v));
+  state.u = nodes.onto(next.layout, parts.state.u, u);
+  state.v = nodes.onto(next.layout, parts.state.v, v);
+  next.layout.node_now = {};
   next.layout.interpolation.apply(next.backend, next.u());
   next.layout.interpolation.apply(next.backend, next.v());
   if (!loads.empty()) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include <pliant/backend/carry_rows.hpp>
 #include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/cell_order.hpp>
 #include <pliant/body/element_table.hpp>
@@ -60,13 +61,17 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   Array<T> load;  // (nodes, 4): loads with those of slaves handed on; empty where not needed
   std::tuple<Table<Es>...> tables;
   std::array<std::vector<Index>, sizeof...(Es)> first_of_block;  // elements, by the type
+  FirstNodes<sizeof...(Es)> first_nodes;  // of the same blocks; empty for the first mesh
   InterpolationOn<B> interpolation;
+  /// While fields go over from a layout before a change: what has become of its nodes, by the internal number there; −1:
+  /// gone.
+  Array<Index> node_now;
 
   /// `first`: the order of the body's first mesh; null: this is it.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups, std::shared_ptr<CellOrder const> first = nullptr)
       : first_order(std::move(first)) {
-    make(backend, topology, material, groups, nullptr, nullptr,
+    make(backend, topology, material, groups, nullptr,
          [&] { return detail::lumped_masses(topology.mesh, material.density); });
   }
   /// The same from the layout before a change.
@@ -74,14 +79,16 @@ struct Layout<B, Mesh<Es...>, Fs...> {
          std::tuple<Group<Fs>...> const& groups, Layout const& before,
          Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched)
       : first_order(before.first_order) {
-    make(backend, topology, material, groups, &before, &transfer, [&] {
+    Change const change{before, transfer, touched};
+    make(backend, topology, material, groups, &change, [&] {
       return detail::changed_masses(topology.mesh, material.density, before.own_masses, transfer,
                                     touched);
     });
   }
 
-  OrderBefore<sizeof...(Es)> order() const {
-    OrderBefore<sizeof...(Es)> kept;
+  OrderBefore<sizeof...(Es), dim> order(Transfer<dim> const& transfer,
+                                        std::span<char const> changed) const {
+    OrderBefore<sizeof...(Es), dim> kept{{}, {}, transfer, changed};
     std::apply([&](auto const&... table) { kept.elements = {table.user_element...}; }, tables);
     std::ranges::copy(first_of_block, kept.first.begin());
     return kept;
@@ -114,6 +121,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
  private:
   static constexpr Index few_nodes = 16384;
+  /// What is known of a layout by the one before a change.
+  struct Change {
+    Layout const& before;
+    Transfer<dim> const& transfer;
+    detail::TouchedElements<Mesh<Es...>> const& touched;
+  };
 
   /// The same of value(node, k).
   template <std::invocable<std::size_t, std::size_t> Value>
@@ -128,41 +141,62 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     return field;
   }
 
-  /// find_own_masses() gives own_masses. `before`, `transfer`: the layout before a change and what that means, or null.
-  template <class FindOwnMasses>
-  void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-            std::tuple<Group<Fs>...> const& groups, Layout const* before,
-            Transfer<dim> const* transfer, FindOwnMasses const& find_own_masses) {
+  /// The numbering, and the blocks that elements are in.
+  std::pair<Numbering<Es...>, std::array<ElementBlocks, sizeof...(Es)>> numbered(
+      Topology<Mesh<Es...>> const& topology, Change const* change) const {
     auto const& mesh = topology.mesh;
-    HostThreads const threads(backend, mesh);
+    if (!first_order || !topology.tree) return {Numbering<Es...>(mesh), first_blocks(mesh)};
     OrderedElements<sizeof...(Es)> ordered;
-    bool const is_first = !first_order || !topology.tree;
-    if (!is_first && before != nullptr) {
-      auto const order_before = before->order();
-      ordered = elements_in_order(topology, *first_order, &order_before, transfer);
-    } else if (!is_first) {
+    ChangedBlocks changed;
+    if (change != nullptr) {
+      changed = changed_blocks(topology, *first_order, change->transfer, change->touched);
+      auto const before = change->before.order(change->transfer, changed.elements);
+      ordered = elements_in_order(topology, *first_order, &before);
+    } else {
       ordered = elements_in_order(topology, *first_order);
     }
-    auto numbering =
-        is_first ? Numbering<Es...>(mesh) : Numbering<Es...>(mesh, std::move(ordered.elements));
-    if (is_first) ordered.blocks = first_blocks(mesh);
+    auto const keeps_nodes = [&](std::size_t block) {
+      return change != nullptr && !change->before.first_nodes[0].empty() &&
+             changed.nodes[block] == 0;
+    };
+    auto const number_kept = [&](std::size_t type, std::size_t block, auto const& take) {
+      auto const& before = change->before;
+      auto const& first = before.first_nodes[type];
+      for (auto old = static_cast<std::size_t>(first[block]);
+           old < static_cast<std::size_t>(first[block + 1]); ++old)
+        take(change->transfer.renumbered(before.user_node[old]));
+    };
+    Numbering<Es...> numbering(mesh, std::move(ordered.elements), ordered.blocks, keeps_nodes,
+                               number_kept);
+    return {std::move(numbering), std::move(ordered.blocks)};
+  }
+
+  /// find_own_masses() gives own_masses. `change`: null where there was none.
+  template <class FindOwnMasses>
+  void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
+            std::tuple<Group<Fs>...> const& groups, Change const* change,
+            FindOwnMasses const& find_own_masses) {
+    auto const& mesh = topology.mesh;
+    HostThreads const threads(backend, mesh);
+    auto [numbering, blocks] = numbered(topology, change);
+    first_nodes = std::move(numbering.first_nodes);
     if (!first_order)
       first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
-    internal_node = std::move(numbering.internal_node);
+    internal_node = numbering.internal_node;
     user_node = std::move(numbering.user_node);
     nodes = static_cast<Index>(user_node.size());
     user_node_array = upload(backend, user_node);
 
+    if (change != nullptr) follow_nodes(backend, *change, blocks);
     Index scratch = 0;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, ordered.blocks[I], before, topology, material, groups,
-                     scratch),
+    [&, &numbering = numbering, &blocks = blocks]<std::size_t... I>(std::index_sequence<I...>) {
+      (make_table<I>(backend, numbering, blocks[I], change, topology, material, groups, scratch),
        ...);
     }(std::index_sequence_for<Es...>());
     for (std::size_t type = 0; type < first_of_block.size(); ++type)
-      first_of_block[type] = std::move(ordered.blocks[type].first);
+      first_of_block[type] = std::move(blocks[type].first);
 
-    upload_rest(backend, mesh);
+    make_rest(backend, mesh, change);
     f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
                                             static_cast<std::size_t>(scratch));
     held = zeros<DirectionMask>(backend, static_cast<std::size_t>(nodes));
@@ -181,24 +215,46 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     mass = upload(backend, internal_masses(material.density));
   }
 
+  /// Finds node_now, and tells blocks that stay where their elements were.
+  void follow_nodes(B const& backend, Change const& change,
+                    std::array<ElementBlocks, sizeof...(Es)>& blocks) {
+    auto const& before = change.before;
+    std::vector<Index> now(before.user_node.size());
+    detail::for_each_on_host(before.nodes, few_nodes, [&](Index old) {
+      Index const user =
+          change.transfer.renumbered(before.user_node[static_cast<std::size_t>(old)]);
+      now[static_cast<std::size_t>(old)] = user < 0 ? Index{-1} : internal_of(user);
+    });
+    node_now = upload(backend, now);
+    for (std::size_t type = 0; type < blocks.size(); ++type) {
+      if (!blocks[type].some_stay()) continue;
+      blocks[type].first_before = before.first_of_block[type];
+      blocks[type].node_now = std::as_const(node_now).data();
+    }
+  }
+
   template <std::size_t I>
   void make_table(B const& backend, Numbering<Es...>& numbering, ElementBlocks const& blocks,
-                  Layout const* before, Topology<Mesh<Es...>> const& topology,
+                  Change const* change, Topology<Mesh<Es...>> const& topology,
                   Elastic const& material, std::tuple<Group<Fs>...> const& groups, Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
+    constexpr bool by_blocks = PlansByBlocks<decltype(table.elements), B>;
+    auto rows = std::move(std::get<I>(numbering.tables));
+    if (rows.empty()) rows = numbering.template rows_of<I>(topology.mesh, blocks, !by_blocks);
     table.user_element = std::move(numbering.user_element[I]);
     auto const make_elements = [&](auto const&... planned) {
       table.elements = {backend,
-                        std::move(std::get<I>(numbering.tables)),
+                        std::move(rows),
                         TableType::groups,
                         std::vector<Tag>(table.user_element.size(), 0),
                         nodes,
                         node_order<typename TableType::element>,
                         planned...};
     };
-    if constexpr (PlansByBlocks<decltype(table.elements), B>)
-      make_elements(blocks, before == nullptr ? nullptr : &std::get<I>(before->tables).elements);
+    if constexpr (by_blocks)
+      make_elements(blocks,
+                    change == nullptr ? nullptr : &std::get<I>(change->before.tables).elements);
     else
       make_elements();
     scratch = std::max(scratch, table.elements.scratch_nodes());
@@ -214,17 +270,44 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
 
   /// Positions relative to the middle of the body: single precision keeps its digits.
-  void upload_rest(B const& backend, Mesh<Es...> const& mesh) {
+  void make_rest(B const& backend, Mesh<Es...> const& mesh, Change const* change) {
     auto const box = detail::extent(mesh);
     middle = box.middle;
-    auto const places =
-        padded([&](std::size_t i, std::size_t k) { return mesh.nodes[i][k] - box.middle[k]; });
+    auto const place = [&](std::size_t i, std::size_t k) {
+      return mesh.nodes[i][k] - box.middle[k];
+    };
+    if (change != nullptr && change->before.middle == middle)
+      return carry_rest(backend, *change, place);
+    auto const places = padded(place);
     detail::for_each_on_host(static_cast<Index>(places.size()), few_nodes, [&](Index i) {
       if (!std::isfinite(places[static_cast<std::size_t>(i)]))
         throw Error("body: the mesh reaches over ", 2 * box.reach, " m, which ", 8 * sizeof(T),
                     " bits cannot hold; take other units");
     });
     rest = upload(backend, places);
+  }
+
+  /// The same where most nodes are where they were, relative to the same middle: others lie between those.
+  template <class Place>
+  void carry_rest(B const& backend, Change const& change, Place const& place) {
+    rest = zeros<T>(backend, static_cast<std::size_t>(node_stride) * user_node.size());
+    auto const carried = node_field<dim>(rest);
+    backend.for_each(change.before.nodes,
+                     detail::PutRows<T, dim>{node_field<dim>(change.before.rest), carried,
+                                             std::as_const(node_now).data()});
+    auto const& made = change.transfer.new_nodes();
+    std::vector<T> rows(node_stride * made.size());
+    std::vector<Index> places;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      for (std::size_t k = 0; k < dim; ++k)
+        rows[node_stride * i + k] =
+            static_cast<T>(place(static_cast<std::size_t>(made[i].node), k));
+      places.push_back(internal_of(made[i].node));
+    }
+    auto const own = upload(backend, rows);
+    auto const at = upload(backend, places);
+    backend.for_each(static_cast<Index>(places.size()),
+                     detail::PutRows<T, dim>{node_field<dim>(own), carried, at.data()});
   }
 
   /// In internal order. Throws Error where T cannot hold one.

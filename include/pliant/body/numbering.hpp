@@ -7,12 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/element_blocks.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/hilbert.hpp>
 #include <pliant/mesh/mesh.hpp>
 
 namespace pliant {
+
+/// Per element type, the first internal node that a block of its elements has and no block before it, and the end of the
+/// last one's.
+template <std::size_t Types>
+using FirstNodes = std::array<std::vector<Index>, Types>;
 
 /// The order in which a body keeps nodes and elements, invisible to the user: nodes lie along a Hilbert
 /// curve, elements follow that node of theirs which comes first on it, and nodes are numbered as these elements
@@ -22,14 +28,19 @@ namespace pliant {
 /// stay with these: all follow the node of all of them that comes first.
 template <Element... Es>
 struct Numbering {
-  std::vector<Index> internal_node;                     // by the user's number
-  std::vector<Index> user_node;                         // by the internal number
-  std::tuple<std::vector<Connectivity<Es>>...> tables;  // internal elements of internal nodes
-  std::array<std::vector<Index>, sizeof...(Es)> user_element;  // by the internal number
+  static constexpr std::size_t types = sizeof...(Es);
+  template <std::size_t I>
+  using TypeAt = std::tuple_element_t<I, std::tuple<Es...>>;
+  std::vector<Index> internal_node;  // by the user's number
+  std::vector<Index> user_node;      // by the internal number
+  /// Internal elements of internal nodes; empty where elements are in blocks: see rows_of.
+  std::tuple<std::vector<Connectivity<Es>>...> tables;
+  std::array<std::vector<Index>, types> user_element;  // by the internal number
+  FirstNodes<types> first_nodes;                       // empty where elements are in no blocks
 
   explicit Numbering(Mesh<Es...> const& mesh) : Numbering(mesh, along_curve(mesh)) {}
   /// Of elements in a given order: per type the user's numbers.
-  Numbering(Mesh<Es...> const& mesh, std::array<std::vector<Index>, sizeof...(Es)> order)
+  Numbering(Mesh<Es...> const& mesh, std::array<std::vector<Index>, types> order)
       : internal_node(mesh.nodes.size(), -1),
         user_node(mesh.nodes.size()),
         user_element(std::move(order)) {
@@ -37,12 +48,43 @@ struct Numbering {
       (fill_table<I, Es>(mesh), ...);
       (number_nodes(std::get<I>(tables)), ...);
     }(std::index_sequence_for<Es...>());
-    for (std::size_t i = 0; next_ < static_cast<Index>(mesh.nodes.size()); ++i)
-      if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);  // of no element: last
+    number_others();
+  }
+  /// The same of elements in blocks: per type, where each begins. Nodes of a block that keeps_nodes(block) keep their order:
+  /// number_kept(type, block, take) calls take(user's number) for those that it has and no block before it.
+  template <class KeepsNodes, class NumberKept>
+  Numbering(Mesh<Es...> const& mesh, std::array<std::vector<Index>, types> order,
+            std::array<ElementBlocks, types> const& blocks, KeepsNodes const& keeps_nodes,
+            NumberKept const& number_kept)
+      : internal_node(mesh.nodes.size(), -1),
+        user_node(mesh.nodes.size()),
+        user_element(std::move(order)) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (number_by_blocks<I, Es>(mesh, blocks[I].first, keeps_nodes, number_kept), ...);
+    }(std::index_sequence_for<Es...>());
+    number_others();
+  }
+
+  /// The table of a type, whose elements are in blocks: all elements, or those of blocks that do not stay, one after another.
+  template <std::size_t I>
+  std::vector<Connectivity<TypeAt<I>>> rows_of(Mesh<Es...> const& mesh, ElementBlocks const& blocks,
+                                               bool all) const {
+    auto const& elements = mesh.template elements<TypeAt<I>>();
+    std::vector<Connectivity<TypeAt<I>>> rows;
+    if (all) rows.reserve(elements.size());
+    for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b) {
+      if (!all && blocks.some_stay() && blocks.stays[b] != 0) continue;
+      for (auto i = static_cast<std::size_t>(blocks.first[b]);
+           i < static_cast<std::size_t>(blocks.first[b + 1]); ++i) {
+        auto& row = rows.emplace_back(elements[static_cast<std::size_t>(user_element[I][i])]);
+        for (Index& node : row) node = internal_node[static_cast<std::size_t>(node)];
+      }
+    }
+    return rows;
   }
 
  private:
-  static std::array<std::vector<Index>, sizeof...(Es)> along_curve(Mesh<Es...> const& mesh) {
+  static std::array<std::vector<Index>, types> along_curve(Mesh<Es...> const& mesh) {
     auto const order = hilbert_order(std::span<Point<Mesh<Es...>::dim> const>(mesh.nodes));
     std::vector<Index> place(order.size());  // by the user's number
     detail::for_each_on_host(static_cast<Index>(order.size()), 16384, [&](Index i) {
@@ -67,6 +109,28 @@ struct Numbering {
                              });
     if constexpr (LinearSimplex<E> && E::dim == 3) keep_together(mesh, elements, first);
     return detail::group_by_key(first, static_cast<Index>(mesh.nodes.size())).order;
+  }
+  /// Nodes of no element come last.
+  void number_others() {
+    for (std::size_t i = 0; next_ < static_cast<Index>(internal_node.size()); ++i)
+      if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);
+  }
+  template <std::size_t I, Element E, class KeepsNodes, class NumberKept>
+  void number_by_blocks(Mesh<Es...> const& mesh, std::vector<Index> const& first,
+                        KeepsNodes const& keeps_nodes, NumberKept const& number_kept) {
+    auto const& elements = mesh.template elements<E>();
+    for (std::size_t b = 0; b + 1 < first.size(); ++b) {
+      first_nodes[I].push_back(next_);
+      if (keeps_nodes(b)) {
+        number_kept(I, b, [&](Index user) { take(user, next_++); });
+        continue;
+      }
+      for (auto i = static_cast<std::size_t>(first[b]); i < static_cast<std::size_t>(first[b + 1]);
+           ++i)
+        for (Index const node : elements[static_cast<std::size_t>(user_element[I][i])])
+          if (internal_node[static_cast<std::size_t>(node)] < 0) take(node, next_++);
+    }
+    first_nodes[I].push_back(next_);
   }
   template <std::size_t I, Element E>
   void fill_table(Mesh<Es...> const& mesh) {

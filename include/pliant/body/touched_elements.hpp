@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
@@ -98,20 +99,35 @@ class TouchedElements {
   template <std::size_t Nodes>
   void list(std::vector<std::array<Index, Nodes>> const& elements,
             std::vector<Origin> const& origins) {
-    auto& own = types_.emplace_back();
-    Index e = 0;
+    std::vector<Index> first;  // element, by origin
+    Index count = 0;
     for (Origin const& origin : origins) {
-      if (origin.child != Origin::same) {
-        own.after.push_back(e++);
-        continue;
+      first.push_back(count);
+      count += origin.count;
+    }
+    HostParts const parts(count, few_elements(Nodes));
+    std::vector<OfType> of_parts(static_cast<std::size_t>(parts.count()));
+    parts([&](Index from, Index to, int part) {
+      auto& own = of_parts[static_cast<std::size_t>(part)];
+      auto next = std::ranges::upper_bound(first, from) - first.begin() - 1;
+      for (Index e = from; e < to; ++next) {
+        Origin const& origin = origins[static_cast<std::size_t>(next)];
+        Index const begin = first[static_cast<std::size_t>(next)],
+                    end = std::min(to, begin + origin.count);
+        for (; e < end; ++e) {
+          char any = 0;  // of all nodes, without a branch for each
+          for (Index const node : elements[static_cast<std::size_t>(e)]) any |= flags(node);
+          bool const stays = origin.child == Origin::same;
+          if (stays && any == 0) continue;
+          own.after.push_back(e);
+          if (stays) own.staying.push_back({origin.element + (e - begin), e});
+        }
       }
-      for (Index const first = e; e < first + origin.count; ++e) {
-        char any = 0;  // of all nodes, without a branch for each
-        for (Index const node : elements[static_cast<std::size_t>(e)]) any |= flags(node);
-        if (any == 0) continue;
-        own.after.push_back(e);
-        own.staying.push_back({origin.element + (e - first), e});
-      }
+    });
+    auto& own = types_.emplace_back();
+    for (auto const& of_part : of_parts) {
+      own.after.insert(own.after.end(), of_part.after.begin(), of_part.after.end());
+      own.staying.insert(own.staying.end(), of_part.staying.begin(), of_part.staying.end());
     }
   }
 

@@ -83,6 +83,15 @@ void for_each_type_of(Mesh<Es...> const&, Visit const& visit) {
   (visit(Es{}, type++), ...);
 }
 
+/// Calls visit(E{}, nodes) for an element of a mesh, a Transfer's Member.
+template <class M, class Member, class Visit>
+void visit_member(M const& mesh, Member const& member, Visit const& visit) {
+  for_each_type_of(mesh, [&]<Element E>(E element, std::size_t type) {
+    if (type == member.type)
+      visit(element, mesh.template elements<E>()[static_cast<std::size_t>(member.element)]);
+  });
+}
+
 template <class M, std::size_t Type>
 struct ElementOfType;
 template <Element... Es, std::size_t Type>

@@ -75,6 +75,16 @@ class Transfer {
 
   Index old_nodes() const { return p_.old_nodes; }
   Index nodes() const { return stay_ + static_cast<Index>(p_.new_nodes.size()); }
+  /// How many nodes stay: new ones follow them.
+  Index staying_nodes() const { return stay_; }
+  /// The old numbers of nodes that stay, by the new ones; empty where these are the same.
+  std::vector<Index> old_numbers() const {
+    std::vector<Index> old(p_.renumbered.empty() ? 0 : static_cast<std::size_t>(stay_));
+    for (std::size_t i = 0; i < p_.renumbered.size(); ++i)
+      if (p_.renumbered[i] >= 0)
+        old[static_cast<std::size_t>(p_.renumbered[i])] = static_cast<Index>(i);
+    return old;
+  }
   std::vector<NewNode> const& new_nodes() const { return p_.new_nodes; }
   /// Nodes that go, by old numbers, as weighted sums over nodes that stay.
   std::vector<NewNode> const& gone() const { return p_.gone; }
@@ -99,6 +109,14 @@ class Transfer {
   std::vector<V> carry_nodes(std::vector<V> values) const {
     check_nodes(values);
     values = those_that_stay(std::move(values));
+    values.resize(static_cast<std::size_t>(nodes()));
+    fill_new_nodes(values);
+    return values;
+  }
+  /// Gives new nodes their weighted sums, where `values`[node], by the new numbers, has those of their parents that stay.
+  template <class Values>
+  void fill_new_nodes(Values& values) const {
+    using V = std::remove_cvref_t<decltype(values[std::size_t{0}])>;
     for (NewNode const& n : p_.new_nodes) {
       V const first = values[static_cast<std::size_t>(n.parents[0].first)];
       bool same = true;  // what all have is not rounded
@@ -108,9 +126,8 @@ class Transfer {
         same = same && value == first;
         add(sum, weight, value);
       }
-      values.push_back(same ? first : sum);
+      values[static_cast<std::size_t>(n.node)] = same ? first : sum;
     }
-    return values;
   }
   /// Sums per node (forces, masses, impulses) on the new mesh: nodes that go hand theirs to those they lay between,
   /// new ones have none, and the total stays. Throws Error as carry_nodes.

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <concepts>
+#include <span>
 #include <vector>
 
 #include <pliant/backend/check_nodes.hpp>
+#include <pliant/backend/element_blocks.hpp>
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/nodes_of_patch.cuh>
@@ -87,12 +89,13 @@ class CudaElements {
   /// order.
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                int /* groups */, std::vector<Tag> const& tags, Index nodes,
-               NodeOrder order = NodeOrder::as_given)
-      : CudaElements(backend, connectivity, tags, nodes) {
+               NodeOrder order = NodeOrder::as_given, ElementBlocks const& blocks = {},
+               CudaElements const* before = nullptr)
+      : CudaElements(backend, connectivity, tags, nodes, blocks, before) {
     constexpr auto t = detail::fan_tuning<T>();
     bool const in_fans = order == NodeOrder::any_even && count_ >= t.least_elements;
-    if (in_fans && plan_fans(backend, {t.patch_size, t.threads})) return;
-    plan(backend, tuned(count_));
+    if (in_fans && plan_fans(backend, {t.patch_size, t.threads}, before)) return;
+    plan(backend, tuned(count_), before);
   }
   /// With patches of a given size and threads per block, for tuning; small ones where the GPU has no room in
   /// shared memory for those. Throws Error when the size is no multiple of the threads.
@@ -135,12 +138,29 @@ class CudaElements {
   using Planner = detail::PatchPlanner<Nodes>;
 
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
-               std::vector<Tag> const& tags, Index nodes)
-      : count_(static_cast<Index>(connectivity.size())) {
+               std::vector<Tag> const& tags, Index nodes, ElementBlocks const& blocks = {},
+               CudaElements const* before = nullptr)
+      : count_(static_cast<Index>(tags.size())) {
     detail::check_nodes(connectivity, nodes);
     tags_ = uploaded(backend, tags);
     tag_data_ = tags_.data();
-    connectivity_ = padded(backend, connectivity);
+    if (before != nullptr && blocks.some_stay())
+      carry(backend, connectivity, blocks, *before);
+    else
+      connectivity_ = padded(backend, connectivity);
+  }
+  /// Puts what was given between the elements that stay.
+  void carry(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
+             ElementBlocks const& blocks, CudaElements const& before) {
+    auto const first = uploaded(backend, blocks.first),
+               sources = uploaded(backend, detail::sources_of(blocks)),
+               rows = uploaded(backend, all_of(connectivity));
+    connectivity_ = backend.template array<Index>(static_cast<std::size_t>(count_) * View::width);
+    backend.for_each(
+        count_,
+        detail::CarryConnectivity<Nodes, View::width>{
+            first.data(), sources.data(), static_cast<Index>(blocks.stays.size()),
+            before.connectivity_.data(), rows.data(), blocks.node_now, connectivity_.data()});
   }
 
   template <class P>
@@ -151,14 +171,16 @@ class CudaElements {
             active};
   }
 
-  /// Of patches of a size, where they fit the GPU's shared memory and `is_fit` holds.
+  /// Of patches of a size, where they fit the GPU's shared memory and `is_fit` holds. `before`: as of plan_patches.
   template <class P, class IsFit>
-  bool make(detail::PatchPlan<P>& plan, Cuda<T> const& backend, int size, IsFit const& is_fit) {
+  bool make(detail::PatchPlan<P>& plan, Cuda<T> const& backend, int size,
+            detail::PatchPlan<P> const* before, IsFit const& is_fit) {
     int const most = detail::most_shared_bytes(backend.device());
     if (size > most || detail::plan_bytes<P>(size) > most) return false;
     bool fits = true;
     plan = detail::plan_patches<P>(
         backend, connectivity_, count_, View::width, size,
+        before == nullptr ? detail::PatchCounts{} : before->capacity,
         [&](detail::PatchCounts const& capacity) {
           // With three fields of three components, and tags.
           fits = is_fit(capacity) && detail::PatchMemory<T, 3, 9>::bytes(capacity) + size <= most;
@@ -166,25 +188,34 @@ class CudaElements {
         });
     return fits;
   }
-  void plan(Cuda<T> const& backend, std::array<int, 2> size_and_threads) {
+  void plan(Cuda<T> const& backend, std::array<int, 2> size_and_threads,
+            CudaElements const* before = nullptr) {
     patch_size_ = size_and_threads[0];
     threads_ = size_and_threads[1];
     if constexpr (!detail::scatters<T, Nodes>) {
       constexpr int small = detail::patch_tuning<T, Nodes>().small_size;
       auto const anything = [](auto const&) { return true; };
-      if (make(patches_, backend, patch_size_, anything) || patch_size_ <= small) return;
+      auto const known = [&] {
+        return before != nullptr && before->patch_size_ == patch_size_ ? &before->patches_
+                                                                       : nullptr;
+      };
+      if (make(patches_, backend, patch_size_, known(), anything) || patch_size_ <= small) return;
       patch_size_ = threads_ = small;
-      (void)make(patches_, backend, small, anything);
+      (void)make(patches_, backend, small, known(), anything);
     }
   }
-  bool plan_fans(Cuda<T> const& backend, std::array<int, 2> size_and_threads) {
+  bool plan_fans(Cuda<T> const& backend, std::array<int, 2> size_and_threads,
+                 CudaElements const* before = nullptr) {
     if constexpr (Nodes == detail::FanPlanner::nodes) {
       using detail::FanSplitter;
       auto const few_nodes = [](detail::PatchCounts const& capacity) {
         return capacity.nodes <= FanSplitter::most_nodes;
       };
       auto const [size, threads] = size_and_threads;
-      if (size > FanSplitter::most_elements || !make(fans_, backend, size, few_nodes)) return false;
+      auto const* const known =
+          before != nullptr && before->patch_size_ == size ? &before->fans_ : nullptr;
+      if (size > FanSplitter::most_elements || !make(fans_, backend, size, known, few_nodes))
+        return false;
       patch_size_ = size;
       threads_ = threads;
       return has_fans();
@@ -197,18 +228,26 @@ class CudaElements {
     if (count < t.large_from) return {t.small_size, t.small_size};
     return {t.patch_size, t.threads};
   }
-  template <class U>
-  static DeviceArray<U> uploaded(Cuda<T> const& backend, std::vector<U> const& values) {
-    auto array = backend.template array<U>(values.size());
+  template <class Values>
+  static auto uploaded(Cuda<T> const& backend, Values const& values) {
+    auto array = backend.template array<typename Values::value_type>(values.size());
     array.upload(values);
     return array;
   }
+  static std::span<Index const> all_of(std::vector<std::array<Index, Nodes>> const& connectivity) {
+    if (connectivity.empty()) return {};
+    return {connectivity.front().data(), Nodes * connectivity.size()};
+  }
   static DeviceArray<Index> padded(Cuda<T> const& backend,
                                    std::vector<std::array<Index, Nodes>> const& connectivity) {
-    std::vector<Index> rows(connectivity.size() * View::width);
-    for (std::size_t e = 0; e < connectivity.size(); ++e)
-      for (std::size_t a = 0; a < Nodes; ++a) rows[e * View::width + a] = connectivity[e][a];
-    return uploaded(backend, rows);
+    if constexpr (View::width == Nodes) {
+      return uploaded(backend, all_of(connectivity));
+    } else {
+      std::vector<Index> rows(connectivity.size() * View::width);
+      for (std::size_t e = 0; e < connectivity.size(); ++e)
+        for (std::size_t a = 0; a < Nodes; ++a) rows[e * View::width + a] = connectivity[e][a];
+      return uploaded(backend, rows);
+    }
   }
 
   Index count_ = 0;

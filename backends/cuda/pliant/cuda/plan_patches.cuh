@@ -45,46 +45,41 @@ struct PatchInput {
   }
 };
 
-/// What the block's patch has is counted, and f(planner) called then.
-template <class Planner, class F>
-__device__ void plan_block(PatchInput const& input, F const& f) {
+/// Whether patches of such a capacity have room for so much.
+PLIANT_HOST_DEVICE bool holds(PatchCounts const& capacity, PatchCounts const& counts) {
+  return counts.nodes <= capacity.nodes && counts.diagonals <= capacity.diagonals &&
+         counts.fans <= capacity.fans && counts.slots <= capacity.slots;
+}
+
+/// Counts what each patch has, the most of it into `most`, and plans the patch where there is room for it.
+template <class Planner>
+__global__ void __launch_bounds__(plan_threads)
+    plan_each_patch(PatchInput input, PatchCounts capacity, typename Planner::Unit* units,
+                    PatchNode* nodes, std::uint16_t* diagonals, PatchCounts* most) {
   extern __shared__ __align__(16) char planner_memory[];
   Index const first = static_cast<Index>(blockIdx.x) * input.patch_size;
   PlanMemory memory(planner_memory);
   Planner planner(memory, plan_threads, input.patch_size, input.size(first));
   auto const counts = planner.count(
       BlockThreads{}, input.connectivity + std::int64_t{first} * input.width, input.width);
-  f(planner, counts);
-}
-
-/// The most of each that a patch has.
-template <class Planner>
-__global__ void __launch_bounds__(plan_threads) count_patches(PatchInput input, PatchCounts* most) {
-  plan_block<Planner>(input, [&](Planner const&, PatchCounts const& counts) {
-    if (threadIdx.x > 0) return;
+  if (threadIdx.x == 0) {
     atomicMax(&most->nodes, counts.nodes);
     atomicMax(&most->diagonals, counts.diagonals);
     atomicMax(&most->fans, counts.fans);
     atomicMax(&most->slots, counts.slots);
-  });
+  }
+  if (!holds(capacity, counts)) return;
+  auto const patch = static_cast<std::int64_t>(blockIdx.x);
+  planner.plan(BlockThreads{}, capacity, units + patch * Planner::units(input.patch_size, capacity),
+               nodes + patch * capacity.nodes, diagonals + patch * capacity.diagonals);
 }
 
-template <class Planner>
-__global__ void __launch_bounds__(plan_threads)
-    plan_each_patch(PatchInput input, PatchCounts capacity, typename Planner::Unit* units,
-                    PatchNode* nodes, std::uint16_t* diagonals) {
-  plan_block<Planner>(input, [&](Planner const& planner, PatchCounts const&) {
-    auto const patch = static_cast<std::int64_t>(blockIdx.x);
-    planner.plan(BlockThreads{}, capacity,
-                 units + patch * Planner::units(input.patch_size, capacity),
-                 nodes + patch * capacity.nodes, diagonals + patch * capacity.diagonals);
-  });
-}
-
-/// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need.
+/// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `guess`: a capacity that may
+/// be right, as that before a change, so that most patches are planned while they are counted; else none.
 template <class Planner, class B, class Accepts>
 PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity,
-                                Index count, int width, int patch_size, Accepts const& accepts) {
+                                Index count, int width, int patch_size, PatchCounts const& guess,
+                                Accepts const& accepts) {
   PatchPlan<Planner> plan;
   if (count == 0) return plan;
   DeviceGuard const device(backend.device());
@@ -92,22 +87,32 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
   Index const patches = (count - 1) / patch_size + 1;
   LaunchShape const shape{patches, plan_threads, plan_bytes<Planner>(patch_size)};
   auto most = backend.template array<PatchCounts>(1);
-  launch("plan patches", shape, backend.stream(), count_patches<Planner>, input, most.data());
+  auto const plan_for = [&](PatchCounts const& capacity) {
+    auto const for_each = [&](int n) {
+      return static_cast<std::size_t>(patches) * static_cast<std::size_t>(n);
+    };
+    plan.capacity = capacity;
+    if (capacity.nodes > 0)
+      plan.units = backend.template array<typename Planner::Unit>(
+          for_each(Planner::units(patch_size, capacity)));
+    plan.nodes = backend.template array<PatchNode>(for_each(capacity.nodes));
+    plan.diagonals = backend.template array<std::uint16_t>(for_each(capacity.diagonals));
+    launch("plan patches", shape, backend.stream(), plan_each_patch<Planner>, input, capacity,
+           plan.units.data(), plan.nodes.data(), plan.diagonals.data(), most.data());
+  };
+  plan_for(guess);
   PatchCounts counts;
   most.download({&counts, 1});
+  // What a patch stages shares the memory of a multiprocessor with others: there is little room to spare.
+  bool const is_right = holds(guess, counts) && guess.slots <= counts.slots + counts.slots / 16 &&
+                        guess.nodes <= counts.nodes + counts.nodes / 16;
+  if (is_right && accepts(guess)) return plan;
+  plan = {};
   auto const in_fours = [](int n) { return (n + 3) / 4 * 4; };
-  plan.capacity = {in_fours(counts.nodes), in_fours(counts.diagonals), in_fours(counts.fans),
-                   in_fours(counts.slots)};
-  if (!accepts(plan.capacity)) return plan;
-  auto const for_each = [&](int n) {
-    return static_cast<std::size_t>(patches) * static_cast<std::size_t>(n);
-  };
-  plan.units = backend.template array<typename Planner::Unit>(
-      for_each(Planner::units(patch_size, plan.capacity)));
-  plan.nodes = backend.template array<PatchNode>(for_each(plan.capacity.nodes));
-  plan.diagonals = backend.template array<std::uint16_t>(for_each(plan.capacity.diagonals));
-  launch("plan patches", shape, backend.stream(), plan_each_patch<Planner>, input, plan.capacity,
-         plan.units.data(), plan.nodes.data(), plan.diagonals.data());
+  PatchCounts const capacity{in_fours(counts.nodes), in_fours(counts.diagonals),
+                             in_fours(counts.fans), in_fours(counts.slots)};
+  plan.capacity = capacity;
+  if (accepts(capacity)) plan_for(capacity);
   return plan;
 }
 

@@ -25,24 +25,26 @@ class Patches {
   static constexpr Index patch_size() { return 2048; }
 
   Patches() = default;
-  /// `before`: the table before a change, which has what was planned for the blocks that stay.
+  /// `before`: the table before a change, which has what was planned for the blocks that stay (see PlansByBlocks).
   Patches(std::vector<std::array<Index, Nodes>> connectivity, int groups,
           std::vector<Tag> const& tags, Index nodes, NodeOrder node_order,
           ElementBlocks const& blocks = {}, Patches const* before = nullptr)
       : groups_(groups),
         has_fans_(may_have_fans && node_order == NodeOrder::any_even),
-        connectivity_(std::move(connectivity)),
+        given_(std::move(connectivity)),
+        node_data_(given_.empty() ? nullptr : given_.front().data()),
         tags_(std::span<Tag const>(tags)),
         ordered_tags_(std::span<Tag const>(tags)),
         tag_data_(tags_.data()),
-        order_(HostArray<Index>::unset(connectivity_.size())) {
-    check_nodes(connectivity_, nodes);
+        order_(HostArray<Index>::unset(tags.size())) {
+    check_nodes(given_, nodes);
+    if (before != nullptr && blocks.some_stay()) carry(blocks, *before);
     if (has_fans_)
       fans_ = Fans(all_nodes(), count(), patch_size(), nodes, blocks,
                    before == nullptr ? nullptr : &before->fans_);
     else
       rows_ = PatchRows(
-          {all_nodes(), connectivity_.size() * Nodes}, patch_count(),
+          {all_nodes(), tags.size() * Nodes}, patch_count(),
           [&](Index p) { return std::ptrdiff_t{Nodes} * std::min(count(), p * patch_size()); },
           nodes);
     bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
@@ -57,7 +59,7 @@ class Patches {
   HostArray<Tag> const& tags() const { return tags_; }
   HostArray<Tag> take_tags() { return std::move(tags_); }
 
-  Index const* nodes(Index e) const { return connectivity_[static_cast<std::size_t>(e)].data(); }
+  Index const* nodes(Index e) const { return node_data_ + std::ptrdiff_t{Nodes} * e; }
   bool has_fans() const { return has_fans_; }
   Fans const& fans() const { return fans_; }
   /// The elements of a patch that belong to a group, in ascending order.
@@ -81,7 +83,23 @@ class Patches {
   }
 
  private:
-  Index const* all_nodes() const { return connectivity_.empty() ? nullptr : nodes(0); }
+  Index const* all_nodes() const { return node_data_; }
+  /// Puts what was given between the elements that stay.
+  void carry(ElementBlocks const& blocks, Patches const& before) {
+    carried_ = HostArray<Index>::unset(static_cast<std::size_t>(Nodes) * order_.size());
+    auto const sources = sources_of(blocks);
+    CarryConnectivity<Nodes, Nodes> const carry{
+        blocks.first.data(), sources.data(), static_cast<Index>(sources.size()),
+        before.node_data_,   node_data_,     blocks.node_now,
+        carried_.data()};
+    constexpr Index few_blocks = 32;  // worth a thread
+    for_each_on_host(carry.blocks, few_blocks, [&](Index block) {
+      auto const b = static_cast<std::size_t>(block);
+      for (Index e = blocks.first[b]; e < blocks.first[b + 1]; ++e) carry.carry(block, e);
+    });
+    node_data_ = carried_.data();
+    given_ = {};
+  }
   void order(Index patch) {
     Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
     Index* next = order_.data() + first;
@@ -104,8 +122,10 @@ class Patches {
 
   int groups_ = 1;
   bool has_fans_ = false;
-  std::vector<std::array<Index, Nodes>> connectivity_;
-  PatchRows rows_;  // of the connectivity, where there are no fans
+  std::vector<std::array<Index, Nodes>> given_;  // nodes, or none where they are
+  HostArray<Index> carried_;                     // (elements, nodes)
+  Index const* node_data_ = nullptr;             // of one of these
+  PatchRows rows_;                               // of the connectivity, where there are no fans
   Fans fans_;
   HostArray<Tag> tags_, ordered_tags_;  // as they are, and as the order knows them
   Tag const* tag_data_ = nullptr;       // whoever owns them
