@@ -131,4 +131,29 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
   CHECK(change > 0);
 }
 
+TEST_CASE("a table takes blocks that stay from the one before it", "[topology]") {
+  // Blocks of two, three, no and one elements of two nodes; the second and the last are new.
+  ElementBlocks blocks{.first = {0, 2, 5, 5, 6}, .stays = {1, 0, 1, 0}};
+  blocks.first_before = {1, 3, 4, 4, 7};
+  std::vector<Index> const before{9, 9, 0, 1, 1, 2, 5, 5, 6, 6, 7, 7, 8, 8};
+  std::vector<Index> const rows{70, 71, 72, 73, 74, 75, 76, 77}, now{10, 12, 11};
+  auto const sources = detail::sources_of(blocks);
+  std::vector<Index> table(3 * 6, -1),
+      again = table;  // rows of three, the last of which is padding
+  std::vector<Index> padded;
+  for (std::size_t e = 0; e < before.size() / 2; ++e)
+    padded.insert(padded.end(), {before[2 * e], before[2 * e + 1], -1});
+  detail::CarryConnectivity<2, 3> carry{
+      blocks.first.data(), sources.data(), 4, padded.data(), rows.data(), now.data(), table.data()};
+  for (Index e = 0; e < 6; ++e) carry(e);
+  CHECK(table ==
+        std::vector<Index>{10, 12, -1, 12, 11, -1, 70, 71, -1, 72, 73, -1, 74, 75, -1, 76, 77, -1});
+  carry.to = again.data();
+  for (Index block = 0; block < 4; ++block)
+    for (Index e = blocks.first[static_cast<std::size_t>(block)];
+         e < blocks.first[static_cast<std::size_t>(block) + 1]; ++e)
+      carry.carry(block, e);
+  CHECK(again == table);
+}
+
 }  // namespace pliant::test::changed_layout_suite
