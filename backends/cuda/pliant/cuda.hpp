@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/kernel.hpp>
@@ -81,6 +82,10 @@ class Cuda {
   template <class U>
   Array<U> array(std::size_t count) const {
     return {context_->stream(), count};
+  }
+  template <class U>
+  Array<U> array(std::span<U const> values) const {
+    return {context_->stream(), values};
   }
 
   template <class F>

@@ -18,6 +18,7 @@
 //               and can be assigned to.
 //   array<U>(count)            zeroed; throws Error when memory runs out. `zeros<U>(backend, count)`
 //                              and `upload(backend, vector)` below call it.
+//   array<U>(span<U const>)    with values, which are read before it returns; for upload, may be left out
 //   .data() .size() .upload(span<U const>) .download(span<U>)
 //                              upload and download come after what was asked of the backend before,
 //                              and wait for that
@@ -194,8 +195,11 @@ auto zeros(B const& backend, std::size_t count) {
 template <Backend B, class U>
 auto upload(B const& backend, std::vector<U> const& values) {
   using Array = typename B::template Array<U>;
-  if constexpr (std::constructible_from<Array, std::span<U const>>) {  // without zeros
-    return Array(std::span<U const>(values));
+  using Values = std::span<U const>;
+  if constexpr (std::constructible_from<Array, Values>) {  // without zeros
+    return Array(Values(values));
+  } else if constexpr (requires { backend.template array<U>(Values(values)); }) {
+    return backend.template array<U>(Values(values));
   } else {
     auto array = zeros<U>(backend, values.size());
     array.upload(values);

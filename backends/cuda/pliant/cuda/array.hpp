@@ -23,13 +23,27 @@ class DeviceArray {
     auto const device = stream_->enter();
     allocate();
     cudaError_t const status = cudaMemsetAsync(data_, 0, count * sizeof(U), stream_->get());
-    if (status != cudaSuccess) cudaFree(data_);
+    if (status != cudaSuccess) stream_->release(data_);
     detail::check(status, "cudaMemsetAsync");
+  }
+  /// With values, which may go once this returns.
+  DeviceArray(detail::SharedStream stream, std::span<U const> values)
+      : stream_(std::move(stream)), size_(values.size()) {
+    if (size_ == 0) return;
+    auto const device = stream_->enter();
+    allocate();
+    cudaError_t status = cudaMemcpyAsync(data_, values.data(), values.size_bytes(),
+                                         cudaMemcpyHostToDevice, stream_->get());
+    // Pageable memory is read before cudaMemcpyAsync returns; what the program has pinned is read later.
+    if (status == cudaSuccess && is_pinned(values.data()))
+      status = cudaStreamSynchronize(stream_->get());
+    if (status != cudaSuccess) stream_->release(data_);
+    detail::check(status, "cudaMemcpyAsync");
   }
   ~DeviceArray() {
     if (data_ == nullptr) return;
     detail::DeviceGuard const device(stream_->device(), std::nothrow);
-    cudaFree(data_);  // waits for the work that uses it
+    stream_->release(data_);
   }
   DeviceArray(DeviceArray&& other) noexcept
       : stream_(std::move(other.stream_)),
@@ -58,11 +72,17 @@ class DeviceArray {
   }
 
  private:
+  static bool is_pinned(void const* memory) {
+    cudaPointerAttributes attributes{};
+    return cudaPointerGetAttributes(&attributes, memory) != cudaSuccess ||
+           attributes.type != cudaMemoryTypeUnregistered;
+  }
   void allocate() {
     std::size_t const bytes = detail::array_bytes<U>(size_);
-    cudaError_t const status = cudaMalloc(&data_, bytes);
+    cudaError_t const status = stream_->allocate(&data_, bytes);
     if (status != cudaErrorMemoryAllocation) return detail::check(status, "cudaMalloc");
     cudaGetLastError();
+    data_ = nullptr;
     std::size_t free = 0, total = 0;
     cudaMemGetInfo(&free, &total);
     throw Error("CUDA: out of memory: an array of ", bytes, " bytes was asked for, and ", free,

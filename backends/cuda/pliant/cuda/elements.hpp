@@ -230,9 +230,8 @@ class CudaElements {
   }
   template <class Values>
   static auto uploaded(Cuda<T> const& backend, Values const& values) {
-    auto array = backend.template array<typename Values::value_type>(values.size());
-    array.upload(values);
-    return array;
+    using U = typename Values::value_type;
+    return backend.array(std::span<U const>(values));
   }
   static std::span<Index const> all_of(std::vector<std::array<Index, Nodes>> const& connectivity) {
     if (connectivity.empty()) return {};

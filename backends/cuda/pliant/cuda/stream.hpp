@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -28,8 +30,9 @@ class DeviceStream {
  public:
   explicit DeviceStream(CudaOptions const& options)
       : device_(checked(options.device)), stream_(options.stream) {
-    if (stream_ != nullptr) return;
     auto const guard = enter();
+    use_pool();
+    if (stream_ != nullptr) return;
     check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
     owns_stream_ = true;
   }
@@ -45,7 +48,42 @@ class DeviceStream {
   [[nodiscard]] DeviceGuard enter() const { return DeviceGuard(device_); }
   void synchronize() const { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
+  /// Memory of the device, which is the current one, for work that is queued from now on.
+  template <class U>
+  [[nodiscard]] cudaError_t allocate(U** memory, std::size_t bytes) const {
+    return uses_pool_ ? cudaMallocAsync(memory, bytes, stream_) : cudaMalloc(memory, bytes);
+  }
+  /// Gives it back once the work that was queued has used it.
+  void release(void* memory) const noexcept {
+    if (uses_pool_)
+      cudaFreeAsync(memory, stream_);
+    else
+      cudaFree(memory);
+  }
+
  private:
+  /// Takes memory from the pool of the device, where it has one: that takes a fraction of the time, and waits for nothing. The
+  /// pool keeps what is free of it, a sixteenth of the device's memory at most, unless the program said how much.
+  void use_pool() {
+    int has_pools = 0;
+    check(cudaDeviceGetAttribute(&has_pools, cudaDevAttrMemoryPoolsSupported, device_),
+          "cudaDeviceGetAttribute");
+    if (has_pools == 0) return;
+    cudaMemPool_t pool = nullptr;
+    std::uint64_t kept = 0;
+    check(cudaDeviceGetDefaultMemPool(&pool, device_), "cudaDeviceGetDefaultMemPool");
+    check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept),
+          "cudaMemPoolGetAttribute");
+    if (kept == 0) {
+      std::size_t free = 0, total = 0;
+      check(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+      kept = total / 16;
+      check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept),
+            "cudaMemPoolSetAttribute");
+    }
+    uses_pool_ = true;
+  }
+
   static int checked(int device) {
     int count = 0;
     cudaError_t const status = cudaGetDeviceCount(&count);
@@ -63,7 +101,7 @@ class DeviceStream {
 
   int device_;
   cudaStream_t stream_;
-  bool owns_stream_ = false;
+  bool owns_stream_ = false, uses_pool_ = false;
 };
 
 using SharedStream = std::shared_ptr<DeviceStream const>;
