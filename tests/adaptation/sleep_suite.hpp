@@ -145,6 +145,14 @@ TEST_CASE("a wave goes through patches that slept as through others", "[adaptati
   });
 }
 
+/// Of patches, as a look finds them.
+template <class Parts>
+std::vector<std::uint8_t> marks_of(Parts& parts, int rings) {
+  detail::mark_stirred(parts, {.below = slow, .for_steps = 16}, rings);
+  auto const& rows = *parts.patch_nodes;
+  return rows.of_patches(download<std::uint8_t>(rows.stirred));
+}
+
 TEST_CASE("patches are marked by how many others lie between them and what moves", "[adaptation]") {
   auto const mesh = mesh::rectangle<Tri3>({.size = {10, 1}, .cells = {10, 1}});
   Body body{SmallPatches<double, 1>{}, mesh, soft, Group<Tri>{}};
@@ -155,7 +163,7 @@ TEST_CASE("patches are marked by how many others lie between them and what moves
   auto& parts = body.parts();
   parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
 
-  auto const marks = detail::find_stirred(parts, {.below = slow, .for_steps = 16}, 3);
+  auto const marks = marks_of(parts, 3);
 
   // The triangles of a cell share nodes with those of the cells beside it.
   std::vector<int> by_place(marks.size());
@@ -190,7 +198,7 @@ TEST_CASE("what moves in one body of a mesh does not reach another through patch
   auto& parts = body.parts();
   parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
 
-  auto const marks = detail::find_stirred(parts, {.below = slow, .for_steps = 16}, 20);
+  auto const marks = marks_of(parts, 20);
 
   auto const& users = parts.layout.table<Tri3>().user_element;
   std::vector<int> still(marks.size()), moving(marks.size());

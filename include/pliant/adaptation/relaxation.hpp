@@ -88,7 +88,7 @@ template <class Parts>
 std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
   using T = typename Parts::T;
   auto const& backend = parts.backend;
-  auto& rows = *parts.patch_nodes;
+  auto const& rows = *parts.patch_nodes;
   auto changes = zeros<T>(backend, parts.layout.f.size());
   auto const change = node_field<Parts::dim>(changes);
   parts.for_each_type([&](auto const& table, auto const&) {
@@ -99,7 +99,7 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
                                                  change, parts.rest(), std::as_const(parts).u());
   });
   parts.layout.interpolation.add_transpose(backend, change);
-  backend.for_each(rows.pieces_count(), FillValue<std::uint8_t>{rows.stirred.data(), 0});
+  auto marked = zeros<std::uint8_t>(backend, rows.patch_of_piece.size());
   backend.for_each(parts.layout.nodes,
                    MarkRelaxing<T, Parts::dim>{{changes.data()},
                                                parts.layout.mass.data(),
@@ -108,8 +108,8 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
                                                               static_cast<double>(rule.for_steps)),
                                                rows.first.data(),
                                                rows.pieces.data(),
-                                               rows.stirred.data()});
-  return rows.of_patches(download<std::uint8_t>(rows.stirred));
+                                               marked.data()});
+  return rows.of_patches(download<std::uint8_t>(marked));
 }
 
 }  // namespace pliant::detail

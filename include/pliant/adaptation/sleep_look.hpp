@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include <pliant/adaptation/relaxation.hpp>
@@ -76,36 +75,35 @@ struct MarkBeside {
   }
 };
 
-/// Patches with driven nodes do not sleep: marks their pieces at these, and no others.
+/// Patches with driven nodes do not sleep: marks their pieces at these, and no others, where conditions have changed since
+/// looks began with them.
 template <class Parts>
-void mark_driven(Parts const& parts, typename Parts::template Array<std::uint8_t>& marks) {
-  auto const& rows = *parts.patch_nodes;
-  std::vector<std::uint8_t> driven;
+void mark_driven(Parts& parts) {
+  auto& rows = *parts.patch_nodes;
+  if (rows.driven_by == parts.state.prescribed) return;
+  std::vector<std::uint8_t> driven(rows.driven.size());
   for (auto const& condition : parts.state.prescribed->conditions) {
     if (!condition.motion) continue;
-    driven.resize(marks.size());
     for (Index node : condition.nodes) {
       auto const i = static_cast<std::size_t>(parts.layout.internal_of(node));
       for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k)
         driven[static_cast<std::size_t>(rows.pieces_of_node[static_cast<std::size_t>(k)])] = 1;
     }
   }
-  if (driven.empty())
-    parts.backend.for_each(rows.pieces_count(), FillValue<std::uint8_t>{marks.data(), 0});
-  else
-    marks.upload(driven);
+  for (auto* marks : {&rows.driven, &rows.stirred}) marks->upload(driven);
+  rows.driven_by = parts.state.prescribed;
 }
 
-/// Which patches are not at rest, 1, so many rings of neighbours around them, more, and the others, 0. The neighbours,
-/// if they slept, would throw a wave back that comes before the next look.
+/// Marks the pieces of patches that are not at rest, by 1, so many rings of neighbours around them, by more, and leaves the
+/// others, at 0. The neighbours, if they slept, would throw a wave back that comes before the next look.
 template <class Parts>
-std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule, int rings) {
+void mark_stirred(Parts& parts, SleepRule const& rule, int rings) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
   auto& rows = *parts.patch_nodes;
   evaluate_forces(parts);
-  mark_driven(parts, rows.stirred);
+  mark_driven(parts);
   NodeField<T const, dim> const kept{
       parts.awake && !parts.forces_complete ? parts.awake->kept.data() : nullptr};
   over_moving_nodes(parts,
@@ -126,7 +124,6 @@ std::vector<std::uint8_t> find_stirred(Parts& parts, SleepRule const& rule, int 
     backend.for_each(rows.pieces_count(),
                      MarkBeside{rows.first_beside.data(), rows.beside.data(), rows.stirred.data(),
                                 static_cast<std::uint8_t>(ring + 1)});
-  return rows.of_patches(download<std::uint8_t>(rows.stirred));
 }
 
 }  // namespace detail
@@ -146,38 +143,71 @@ int rings_reached(Parts const& parts, std::int64_t steps) {
 /// How State::rest goes on where `passed` steps were taken since the last look.
 struct NextRest {
   std::int32_t passed, for_steps;
-  std::int32_t operator()(std::int32_t rest, std::uint8_t stirred) const {
+  PLIANT_HOST_DEVICE std::int32_t operator()(std::int32_t rest, bool stirred) const {
     std::int32_t const longer = rest + passed, still = longer >= for_steps ? -1 : longer;
     return stirred ? 0 : rest < 0 ? rest : still;
   }
 };
-/// Whether some patches fall asleep or wake, which changes a sign. As a minimum, of which compilers take many together.
-inline bool some_change(NextRest next, std::span<std::int32_t const> rest,
-                        std::span<std::uint8_t const> stirred) {
-  std::int32_t least = 0;
-  for (std::size_t p = 0; p < rest.size(); ++p)
-    least = std::min(least, next(rest[p], stirred[p]) ^ rest[p]);
-  return least < 0;
-}
-inline void go_on(NextRest next, std::span<std::int32_t> rest,
-                  std::span<std::uint8_t const> stirred) {
-  for (std::size_t p = 0; p < rest.size(); ++p) rest[p] = next(rest[p], stirred[p]);
+
+/// Lets the rest of a patch go on, but where the patch would fall asleep or wake: there it tells so, by 1, and leaves it to the
+/// host. The marks of its pieces become those with which a look begins.
+struct GoOn {
+  NextRest next;
+  Index const* first_other;
+  std::uint8_t const* driven;
+  std::uint8_t *stirred, *turns;
+  std::int32_t* rest;
+
+  PLIANT_HOST_DEVICE double operator()(Index p) const {
+    bool moves = take(p);
+    for (Index piece = first_other[p]; piece < first_other[p + 1]; ++piece)
+      moves = take(piece) || moves;
+    std::int32_t const before = rest[p], after = next(before, moves);
+    bool const turned = (before ^ after) < 0;  // another sign
+    turns[p] = turned;
+    if (!turned) rest[p] = after;
+    return turned;
+  }
+  /// Whether a piece has a mark, which it loses.
+  PLIANT_HOST_DEVICE bool take(Index piece) const {
+    bool const marked = stirred[piece] != 0;
+    stirred[piece] = driven[piece];
+    return marked;
+  }
+};
+/// Brings State::rest up to the marks of a look where no patch falls asleep or wakes. Returns whether one would.
+template <class Parts>
+bool go_on(Parts& parts, NextRest const& next) {
+  auto& rows = *parts.patch_nodes;
+  return parts.backend.maximum(rows.count(), GoOn{next, rows.first_other.data(), rows.driven.data(),
+                                                  rows.stirred.data(), rows.turns.data(),
+                                                  parts.state.rest.data()}) > 0;
 }
 
-/// Those that are about to fall asleep while their points relax are not at rest.
+/// Puts to sleep and wakes what go_on has left, but for patches whose points relax, which are not at rest.
 template <class Parts>
-void stir_what_relaxes(Parts& parts, SleepRule const& rule, NextRest const& next,
-                       std::vector<std::uint8_t>& stirred) {
-  auto const& rest = parts.state.rest;
-  auto const falls_asleep = [&](std::size_t p) {
-    return rest[p] >= 0 && next(rest[p], stirred[p]) < 0;
-  };
-  bool some = false;
-  for (std::size_t p = 0; p < rest.size(); ++p) some = some || falls_asleep(p);
-  if (!some) return;
-  auto const relaxing = find_relaxing(parts, rule);
-  for (std::size_t p = 0; p < rest.size(); ++p)
-    if (falls_asleep(p) && relaxing[p]) stirred[p] = 1;
+void turn(Parts& parts, SleepRule const& rule) {
+  auto rest = download<std::int32_t>(parts.state.rest);
+  auto const turns = on_host<std::uint8_t>(parts.patch_nodes->turns);
+  auto const falls_asleep = [&](std::size_t p) { return turns[p] && rest[p] >= 0; };
+  std::vector<std::uint8_t> relaxing(rest.size());
+  if constexpr (Parts::has_internal_variables) {
+    bool some = false;
+    for (std::size_t p = 0; p < rest.size(); ++p) some = some || falls_asleep(p);
+    if (some) relaxing = find_relaxing(parts, rule);
+  }
+  bool changes = false;
+  for (std::size_t p = 0; p < rest.size(); ++p) {
+    if (!turns[p]) continue;
+    bool const sleeps = falls_asleep(p) && !relaxing[p];
+    changes = changes || sleeps || rest[p] < 0;
+    rest[p] = sleeps ? -1 : 0;
+  }
+  auto const change = [&] { parts.state.rest.upload(rest); };
+  if (changes)
+    change_rest(parts, change);
+  else
+    change();
 }
 }  // namespace detail
 
@@ -197,20 +227,15 @@ void look_for_rest(Parts& parts, SleepRule const& rule) {
   if (!parts.patch_nodes) parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
   auto const count = static_cast<std::size_t>(parts.patch_nodes->count());
   if (state.rest.size() != count) {
-    state.rest.assign(count, 0);
+    state.rest = zeros<std::int32_t>(parts.backend, count);
     state.rest_seen = state.steps;
   }
   auto const passed = static_cast<std::int32_t>(
       std::min<std::int64_t>(state.steps - state.rest_seen, rule.for_steps));
   state.rest_seen = state.steps;
-  auto stirred = detail::find_stirred(parts, rule, detail::rings_reached(parts, passed));
-  detail::NextRest const next{passed, static_cast<std::int32_t>(rule.for_steps)};
-  if constexpr (Parts::has_internal_variables)
-    detail::stir_what_relaxes(parts, rule, next, stirred);
-  if (detail::some_change(next, state.rest, stirred))
-    change_rest(parts, [&] { detail::go_on(next, state.rest, stirred); });
-  else
-    detail::go_on(next, state.rest, stirred);
+  detail::mark_stirred(parts, rule, detail::rings_reached(parts, passed));
+  if (detail::go_on(parts, {passed, static_cast<std::int32_t>(rule.for_steps)}))
+    detail::turn(parts, rule);
 }
 
 /// What sleeps in a body.
@@ -247,11 +272,12 @@ std::vector<bool> asleep_on(Parts const& parts) {
   auto const& table = parts.layout.template table<E>();
   std::vector<bool> sleeps(table.user_element.size(), false);
   if (!parts.awake) return sleeps;
+  auto const asleep = on_host<std::uint8_t>(parts.awake->asleep);
   Index const first = parts.patch_nodes->first_of_type[Parts::layout_type::template type_of<E>];
   for (std::size_t e = 0; e < sleeps.size(); ++e) {
     Index const patch = first + static_cast<Index>(e) / table.elements.patch_size();
     sleeps[static_cast<std::size_t>(table.user_element[e])] =
-        parts.state.rest[static_cast<std::size_t>(patch)] < 0;
+        asleep[static_cast<std::size_t>(patch)] != 0;
   }
   return sleeps;
 }

@@ -222,7 +222,7 @@ void load_state(Stream& stream, Parts& parts) {
   Parts next = parts_on(parts, std::move(layout), state.topology, state.prescribed);
   if (!state.prescribed->pressures.empty())
     next.upload_pressures = [](Parts& p) { upload_pressures(p); };
-  if (!state.rest.empty()) let_sleep(next);
+  if (state.rest.size() > 0) let_sleep(next);
   copy_state(next.backend, state, next.state);
   follow_state(next);
   put_in_force(parts, std::move(next));

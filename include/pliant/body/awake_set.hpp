@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,13 +22,18 @@ struct PatchNodes {
   template <class U>
   using Array = typename B::template Array<U>;
 
-  std::vector<Index> first_of_type;   // (types + 1): patches
-  std::vector<Index> patch_of_piece;  // (pieces): each patch's own number, then of its other pieces
+  std::vector<Index> first_of_type;  // (types + 1): patches
+  /// (pieces): each patch's own number, then those of other pieces, of one patch after the other.
+  std::vector<Index> patch_of_piece;
   std::vector<Index> first_of_node, pieces_of_node;  // compressed rows
   std::vector<Index> first_neighbour, neighbours;    // the same of patches, that share a node
   Array<Index> first, pieces, patch;  // rows of nodes, and patches, in the backend's memory
   Array<Index> first_beside, beside;  // rows of the pieces that share a node
-  Array<std::uint8_t> stirred;        // (pieces): scratch of looks
+  Array<Index> first_other;           // (patches + 1): where the other pieces of each begin
+  /// (pieces): the marks with which a look begins, at driven nodes, and those of the look.
+  Array<std::uint8_t> driven, stirred;
+  std::shared_ptr<void const> driven_by;  // the conditions that `driven` is of
+  Array<std::uint8_t> turns;              // (patches): which fall asleep or wake at a look
 
   Index count() const { return first_of_type.back(); }
   Index pieces_count() const { return static_cast<Index>(patch_of_piece.size()); }

@@ -185,7 +185,6 @@ ChangedTopology<Parts> change_topology(
       energy_before};
   auto& next = changed.parts;
   auto& state = next.state;
-  state.rest.clear();
   state.record.totals = detail::closed_totals(parts);
   state.record.born = state.steps;
   state.u = nodes.onto(next.layout, parts.state.u, u);

@@ -83,7 +83,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   PatchNodes<typename Parts::backend_type> made;
   auto const& layout = parts.layout;
   auto const& interpolation = parts.state.topology->interpolation;
-  std::vector<Index> nodes_of_pairs, pieces_of_pairs;
+  std::vector<Index> nodes_of_pairs, pieces_of_pairs, first_other;
   made.patch_of_piece.resize(patch_count(parts));
   std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
   made.first_of_type = {0};
@@ -116,6 +116,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
       for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
       Index const patch = before + p;
       Index const others = made.pieces_count() - 1;
+      first_other.push_back(made.pieces_count());
       Index const count = pieces.for_each_node([&](Index node, Index piece) {
         nodes_of_pairs.push_back(node);
         pieces_of_pairs.push_back(piece == 0 ? patch : others + piece);
@@ -125,6 +126,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
     }
     made.first_of_type.push_back(before + table.elements.patch_count());
   });
+  first_other.push_back(made.pieces_count());
   auto const by_node = group_by_key(nodes_of_pairs, layout.nodes);
   made.first_of_node = by_node.first;
   for (Index pair : by_node.order)
@@ -145,7 +147,10 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   made.patch = upload(parts.backend, made.patch_of_piece);
   made.first_beside = upload(parts.backend, beside.first);
   made.beside = upload(parts.backend, beside.others);
+  made.first_other = upload(parts.backend, first_other);
+  made.driven = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
   made.stirred = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
+  made.turns = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(made.count()));
   return made;
 }
 

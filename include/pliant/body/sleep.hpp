@@ -69,8 +69,9 @@ bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>
 template <class Parts>
 void bring_up_to_rest(Parts& parts) {
   using T = typename Parts::T;
-  auto& rest = parts.state.rest;
-  if (!rest.empty() && rest.size() != patch_count(parts)) rest.clear();
+  if (parts.state.rest.size() > 0 && parts.state.rest.size() != patch_count(parts))
+    parts.state.rest = {};
+  auto const rest = on_host<std::int32_t>(parts.state.rest);
   bool const slept = parts.awake.has_value();
   if (std::ranges::none_of(rest, [](std::int32_t steps) { return steps < 0; })) {
     if (!slept) return;
@@ -130,7 +131,8 @@ void relax_what_sleeps(Parts& parts) {
     double const passed = state.time - std::exchange(state.relaxed_until, state.time);
     if (!parts.awake || !(passed > 0)) return;
     std::vector<typename Parts::template Array<Index>> lists;
-    (void)detail::fill_lists(parts, lists, [&](std::size_t p) { return state.rest[p] < 0; });
+    auto const asleep = on_host<std::uint8_t>(parts.awake->asleep);
+    (void)detail::fill_lists(parts, lists, [&](std::size_t p) { return asleep[p] != 0; });
     WithStepSize const relaxing(parts, passed);
     commit_of(parts, std::as_const(parts).u(), [&]<class Table>(Table const& table) {
       constexpr std::size_t type = Parts::layout_type::template type_of<typename Table::element>;
@@ -168,17 +170,21 @@ namespace detail {
 /// See wake_all.
 template <class Parts>
 void wake_what_sleeps(Parts& parts) {
+  auto const wake = [&] {
+    parts.backend.for_each(static_cast<Index>(parts.state.rest.size()),
+                           FillValue<std::int32_t>{parts.state.rest.data(), 0});
+  };
   if (parts.awake)
-    change_rest(parts, [&] { std::ranges::fill(parts.state.rest, 0); });
+    change_rest(parts, wake);
   else
-    std::ranges::fill(parts.state.rest, 0);
+    wake();
 }
 /// See wake_nodes.
 template <class Parts>
 void wake_around(Parts& parts, std::span<Index const> nodes) {
   if (!parts.awake) return;
   auto const& rows = *parts.patch_nodes;
-  auto rest = parts.state.rest;
+  auto rest = download<std::int32_t>(parts.state.rest);
   bool wakes = false;
   for (Index node : nodes) {
     auto const i = static_cast<std::size_t>(node);
@@ -190,7 +196,7 @@ void wake_around(Parts& parts, std::span<Index const> nodes) {
       wakes = true;
     }
   }
-  if (wakes) change_rest(parts, [&] { parts.state.rest = std::move(rest); });
+  if (wakes) change_rest(parts, [&] { parts.state.rest.upload(rest); });
 }
 
 template <class Parts>

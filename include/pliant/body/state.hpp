@@ -86,7 +86,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   std::int64_t steps = 0;
   /// (patches of all types): for how many steps each has been at rest; negative while it sleeps. Empty where
   /// nothing looks for rest.
-  std::vector<std::int32_t> rest;
+  Array<std::int32_t> rest;
   std::int64_t rest_seen = 0;   // at which step that was looked at
   std::int64_t rest_until = 0;  // the step by which it has to be looked at again
   double relaxed_until = 0;     // s: to which internal variables of sleeping patches have relaxed
