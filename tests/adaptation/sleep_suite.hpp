@@ -181,8 +181,8 @@ TEST_CASE("patches are marked by how many others lie between them and what moves
   }
 }
 
-TEST_CASE("what moves in one body of a mesh does not reach another through patches that hold both",
-          "[adaptation]") {
+/// Two bars apart in one mesh, of which the second one moves as a whole, and patches of three triangles.
+inline auto two_bars() {
   auto mesh = mesh::rectangle<Tri3>({.size = {10, 1}, .cells = {10, 1}});
   auto const other = mesh::rectangle<Tri3>({.size = {10, 1}, .cells = {10, 1}, .origin = {0, 1.5}});
   auto const first = static_cast<Index>(mesh.nodes.size());
@@ -195,22 +195,53 @@ TEST_CASE("what moves in one body of a mesh does not reach another through patch
   auto v = body.velocities();
   for (std::size_t i = static_cast<std::size_t>(first); i < v.size(); ++i) v[i] = {0, 1};
   body.set_velocities(v);
+  return body;
+}
+/// How many triangles of each patch stand still, and how many move.
+template <class TheBody>
+auto still_and_moving(TheBody const& body) {
+  auto const& table = body.parts().layout.template table<Tri3>();
+  std::vector<std::array<int, 2>> counts(static_cast<std::size_t>(table.elements.patch_count()));
+  for (std::size_t e = 0; e < table.user_element.size(); ++e)
+    counts[e / 3][table.user_element[e] < 20 ? 0 : 1] += 1;
+  return counts;
+}
+
+TEST_CASE("what moves in one body of a mesh does not reach another through patches that hold both",
+          "[adaptation]") {
+  auto body = two_bars();
   auto& parts = body.parts();
   parts.patch_nodes.emplace(detail::make_patch_nodes(parts));
 
   auto const marks = marks_of(parts, 20);
 
-  auto const& users = parts.layout.table<Tri3>().user_element;
-  std::vector<int> still(marks.size()), moving(marks.size());
-  for (std::size_t e = 0; e < users.size(); ++e) (users[e] < 20 ? still : moving)[e / 3] += 1;
-  int both = 0;
+  auto const counts = still_and_moving(body);
+  int both = 0, alone = 0;
   for (std::size_t p = 0; p < marks.size(); ++p) {
     INFO(p);
-    CHECK(int{marks[p]} == (moving[p] > 0 ? 1 : 0));
-    both += moving[p] > 0 && still[p] > 0 ? 1 : 0;
+    auto const [still, moving] = counts[p];
+    CHECK(int{marks[p]} == (moving > 0 ? 1 : 0));
+    both += moving > 0 && still > 0 ? 1 : 0;
+    alone += moving == 0 ? 1 : 0;
   }
   CHECK(both > 0);
-  CHECK(std::ranges::count(moving, 0) > 0);
+  CHECK(alone > 0);
+}
+
+TEST_CASE("patches that hold parts of several bodies are awake while one of them moves",
+          "[adaptation]") {
+  auto body = two_bars();
+  CentralDifference step;
+  auto adapt = Adaptation{quick_sleep()}.every(8);
+  step(body, 40, adapt);
+
+  auto const counts = still_and_moving(body);
+  auto const sleeps = asleep_elements<Tri3>(body);
+  auto const& users = body.parts().layout.table<Tri3>().user_element;
+  for (std::size_t e = 0; e < users.size(); ++e) {
+    INFO(e);
+    CHECK(sleeps[static_cast<std::size_t>(users[e])] == (counts[e / 3][1] == 0));
+  }
 }
 
 TEST_CASE("a body that is at rest sleeps as a whole, and time goes on", "[adaptation]") {
@@ -377,6 +408,25 @@ TEST_CASE("nodes that are driven later on do not sleep", "[adaptation]") {
     CHECK(asleep(body).patches > 0);
     CHECK(asleep(body).patches < asleep(body).of_patches);
     CHECK(furthest_apart(plain, body) < 0.01 * largest(plain.displacements()));
+  });
+}
+
+TEST_CASE("nodes are taken for driven from when they are until they are released", "[adaptation]") {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
+    auto body = bar_on(backend);
+    CentralDifference step;
+    Adaptation adapt{quick_sleep()};
+    step(body, 40, adapt);
+    CHECK(asleep(body).patches == asleep(body).of_patches);
+    auto const handle =
+        body.drive(body.mesh().boundary("right"), Motion<2>([](double) { return Point<2>{}; }));
+    step(body, 40, adapt);
+    CHECK(asleep(body).patches > 0);
+    CHECK(asleep(body).patches < asleep(body).of_patches);
+    body.release(handle);
+    step(body, 40, adapt);
+    CHECK(asleep(body).patches > 0);
+    CHECK(asleep(body).patches == asleep(body).of_patches);
   });
 }
 

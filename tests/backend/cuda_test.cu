@@ -535,7 +535,7 @@ TEST_CASE("patches that a GPU has no room for are made smaller", "[cuda]") {
 }
 
 TEST_CASE("a kernel keeps the shared memory that it was allowed", "[cuda]") {
-  auto const kernel = reinterpret_cast<void const*>(detail::call_for_each<1, AddOne>);
+  auto const kernel = reinterpret_cast<void const*>(detail::call_for_each<AddOne>);
   auto const allowed = [&] {
     cudaFuncAttributes attributes{};
     REQUIRE(cudaFuncGetAttributes(&attributes, kernel) == cudaSuccess);

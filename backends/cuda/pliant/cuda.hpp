@@ -26,30 +26,19 @@
 namespace pliant {
 
 namespace detail {
-/// A functor that does nothing where selects(i) does not hold.
+/// A functor that stands for a list of what few nodes do. All blocks of its kernel start at once, and would let in the next
+/// kernel while the one before it, a loop over elements say, still runs: blocks that start then share a multiprocessor
+/// where others have none. With 111 of 13166 patches of Tet4 awake a step takes 7 µs, and 13 if the next one starts
+/// early (H100).
 template <class F>
-concept SelectsNodes = requires(F const& f, Index i) {
-  { f.selects(i) } -> std::same_as<bool>;
-};
-/// Calls f for the nodes below n, of which each thread looks at several.
-template <int Each, class F>
+concept OfFewNodes = requires { requires F::few_nodes; };
+
+template <class F>
 __global__ void __launch_bounds__(node_threads)
     call_for_each(Index n, __grid_constant__ F const f) {
-  begin_after_previous_kernel();
-  Index const first = static_cast<Index>(blockIdx.x * (Each * node_threads) + threadIdx.x);
-  if constexpr (Each == 1) {
-    if (first < n) f(first);
-  } else {
-    bool selected[Each];
-#pragma unroll
-    for (int k = 0; k < Each; ++k) {
-      Index const i = first + k * node_threads;
-      selected[k] = i < n && f.selects(i);
-    }
-#pragma unroll
-    for (int k = 0; k < Each; ++k)
-      if (selected[k]) f(first + k * node_threads);
-  }
+  begin_after_previous_kernel<OfFewNodes<F> ? Next::in_order : Next::early>();
+  Index const i = static_cast<Index>(blockIdx.x * node_threads + threadIdx.x);
+  if (i < n) f(i);
 }
 }  // namespace detail
 
@@ -90,11 +79,9 @@ class Cuda {
 
   template <class F>
   void for_each(Index n, F const& f) const {
-    if (n <= 0) return;
-    // Where most of many nodes are passed over, fewer threads start for nothing; of few nodes, all have room.
-    if constexpr (detail::SelectsNodes<F>)
-      if (n >= detail::many_nodes) return launch_for_each<4>(n, f);
-    launch_for_each<1>(n, f);
+    if (n > 0)
+      launch("for_each", {blocks(n, detail::node_threads), detail::node_threads},
+             detail::call_for_each<F>, n, f);
   }
   template <class F>
   double sum(Index n, F const& f) const {
@@ -181,11 +168,6 @@ class Cuda {
   }
 
  private:
-  template <int Each, class F>
-  void launch_for_each(Index n, F const& f) const {
-    launch("for_each", {blocks(n, Each * detail::node_threads), detail::node_threads},
-           detail::call_for_each<Each, F>, n, f);
-  }
   template <int Nodes, class Field>
   using Values = Matrix<T, Nodes, Field::components>;
 

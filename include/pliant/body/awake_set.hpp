@@ -14,6 +14,9 @@ namespace pliant {
 using NodeWatch = std::uint8_t;
 inline constexpr NodeWatch beside_awake = 1, beside_asleep = 2;
 
+/// Nodes that lists take together, since they are numbered as patches first touch them; a multiple of a warp.
+inline constexpr Index nodes_of_run = 64;
+
 /// Which nodes belong to which patches. Patches of all element types are numbered through, in the order of the
 /// types; the masters of a slave belong to its patches too. A patch falls into pieces that share no node with each other, most
 /// into one, where bodies lie in one mesh into more: what moves in one does not reach the others. Numbers are internal.
@@ -27,9 +30,10 @@ struct PatchNodes {
   std::vector<Index> patch_of_piece;
   std::vector<Index> first_of_node, pieces_of_node;  // compressed rows
   std::vector<Index> first_neighbour, neighbours;    // the same of patches, that share a node
-  Array<Index> first, pieces, patch;  // rows of nodes, and patches, in the backend's memory
-  Array<Index> first_beside, beside;  // rows of the pieces that share a node
-  Array<Index> first_other;           // (patches + 1): where the other pieces of each begin
+  std::vector<Index> first_run, runs;  // (patches): the same of the runs in which their nodes are
+  Array<Index> first, pieces, patch;   // rows of nodes, and patches, in the backend's memory
+  Array<Index> first_beside, beside;   // rows of the pieces that share a node
+  Array<Index> first_other;            // (patches + 1): where the other pieces of each begin
   /// (pieces): the marks with which a look begins, at driven nodes, and those of the look.
   Array<std::uint8_t> driven, stirred;
   std::shared_ptr<void const> driven_by;  // the conditions that `driven` is of
@@ -65,6 +69,7 @@ struct AwakeSet {
   std::vector<Array<Index>> patches;  // (types): the lists of those awake, for over()
   Array<std::uint8_t> asleep;         // (patches)
   Array<NodeWatch> nodes;             // (nodes)
+  Array<Index> runs;                  // how many have a node beside what is awake, and these
   Array<DirectionMask> still;         // (nodes): held by conditions, or asleep
   Array<typename B::scalar> kept;     // (nodes, 4) and scratch rows, N: of sleeping patches
   Index awake = 0;                    // patches
@@ -77,11 +82,25 @@ template <class F>
 struct AtAwakeNodes {
   NodeWatch const* nodes;
   F f;
-  PLIANT_HOST_DEVICE bool selects(Index i) const { return (nodes[i] & beside_awake) != 0; }
   PLIANT_HOST_DEVICE auto operator()(Index i) const {
     using Result = decltype(f(i));
-    if (!selects(i)) return Result();
+    if (!(nodes[i] & beside_awake)) return Result();
     return f(i);
+  }
+};
+
+/// The same for places of a list of runs.
+template <class F>
+struct InAwakeRuns {
+  static constexpr bool few_nodes = true;
+  Index const* runs;
+  AtAwakeNodes<F> at;
+  Index nodes;
+  PLIANT_HOST_DEVICE void operator()(Index place) const {
+    Index const k = place / nodes_of_run, run = runs[k + 1];
+    if (k >= runs[0]) return;
+    Index const i = run * nodes_of_run + place % nodes_of_run;
+    if (i < nodes) at(i);
   }
 };
 

@@ -86,7 +86,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   std::vector<Index> nodes_of_pairs, pieces_of_pairs, first_other;
   made.patch_of_piece.resize(patch_count(parts));
   std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
-  made.first_of_type = {0};
+  made.first_of_type = made.first_run = {0};
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
     auto const& elements = parts.state.topology->mesh.template elements<E>();
@@ -108,10 +108,13 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
           }
         }
       };
-      std::vector<Index> nodes;
+      std::vector<Index> nodes, runs;
       for_each_node([&](Index, Index node) { nodes.push_back(node); });
       std::ranges::sort(nodes);
       nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      for (Index node : nodes) runs.push_back(node / nodes_of_run);
+      made.runs.insert(made.runs.end(), runs.begin(), std::unique(runs.begin(), runs.end()));
+      made.first_run.push_back(static_cast<Index>(made.runs.size()));
       Pieces pieces(std::move(nodes));
       for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
       Index const patch = before + p;

@@ -41,6 +41,22 @@ inline Index room_for(Index count, Index most) {
   return std::min(most, (count / step + 1) * step);
 }
 
+/// Brings a list for over() or over_moving_nodes up to some numbers, of `most` at most. Returns whether it lies elsewhere
+/// now; otherwise recorded loops read it as it is.
+template <class B>
+bool fill_list(B const& backend, typename B::template Array<Index>& list,
+               std::vector<Index> numbers, Index most) {
+  auto const count = static_cast<Index>(numbers.size());
+  numbers.insert(numbers.begin(), count);
+  numbers.resize(static_cast<std::size_t>(room_for(count, most)) + 1);
+  if (list.size() == numbers.size()) {
+    list.upload(numbers);
+    return false;
+  }
+  list = upload(backend, numbers);
+  return true;
+}
+
 /// Brings lists for over() up to those patches of each type of which `chosen(patch)` holds. Returns whether they
 /// lie elsewhere now; otherwise recorded loops read them as they are.
 template <class Parts, class Chosen>
@@ -50,19 +66,29 @@ bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>
   lists.resize(first.size() - 1);
   bool moved = false;
   for (std::size_t type = 0; type < lists.size(); ++type) {
-    std::vector<Index> list{0};
+    std::vector<Index> list;
     for (Index p = first[type]; p < first[type + 1]; ++p)
       if (chosen(static_cast<std::size_t>(p))) list.push_back(p - first[type]);
-    list[0] = static_cast<Index>(list.size()) - 1;
-    list.resize(static_cast<std::size_t>(room_for(list[0], first[type + 1] - first[type])) + 1);
-    if (lists[type].size() == list.size()) {
-      lists[type].upload(list);
-    } else {
-      lists[type] = upload(parts.backend, list);
-      moved = true;
-    }
+    moved = fill_list(parts.backend, lists[type], std::move(list), first[type + 1] - first[type]) ||
+            moved;
   }
   return moved;
+}
+
+/// Brings the list of runs of nodes up to the patches that are awake. Returns whether it lies elsewhere now.
+template <class Parts>
+bool list_runs(Parts& parts, std::vector<std::uint8_t> const& asleep) {
+  auto const& rows = *parts.patch_nodes;
+  Index const most = (parts.layout.nodes + nodes_of_run - 1) / nodes_of_run;
+  std::vector<bool> awake(static_cast<std::size_t>(most));
+  for (std::size_t p = 0; p < asleep.size(); ++p)
+    if (!asleep[p])
+      for (Index k = rows.first_run[p]; k < rows.first_run[p + 1]; ++k)
+        awake[static_cast<std::size_t>(rows.runs[static_cast<std::size_t>(k)])] = true;
+  std::vector<Index> runs;
+  for (Index run = 0; run < most; ++run)
+    if (awake[static_cast<std::size_t>(run)]) runs.push_back(run);
+  return fill_list(parts.backend, parts.awake->runs, std::move(runs), most);
 }
 
 /// See follow_rest.
@@ -102,7 +128,9 @@ void bring_up_to_rest(Parts& parts) {
       WatchNodes{patch_nodes.first.data(), patch_nodes.pieces.data(), patch_nodes.patch.data(),
                  awake.asleep.data(), parts.layout.held.data(), awake.nodes.data(),
                  awake.still.data(), all_directions<Parts::dim>});
-  if (fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; })) ++parts.revision;
+  bool const patches_moved =
+      fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; });
+  if (list_runs(parts, asleep) || patches_moved) ++parts.revision;
 
   // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
   std::vector<typename Parts::template Array<Index>> beside;

@@ -20,17 +20,28 @@ bool has_added_terms(Parts const& parts) {
 
 namespace detail {
 
-/// loop(f) over the nodes, or over those that may move, where the forces of the others are zero. Loops over nodes take
-/// no list of patches, as those over elements do: a node may belong to several, of several types. They are told
-/// by one byte a node (AwakeSet::nodes) instead, so that f reads and writes nothing of a node around which all sleeps: of the
-/// 48 bytes or more that Advance moves for a node in single precision, one is left. Where that counts, lists need nodes
-/// numbered by the first patch that they belong to, so that each patch owns a run of them as it does of elements.
-template <class Parts, class F, class Loop>
-void over_moving_nodes(Parts const& parts, F const& f, Loop const& loop) {
-  if (parts.awake && !has_added_terms(parts) && !parts.forces_complete)
-    loop(AtAwakeNodes<F>{parts.awake->nodes.data(), f});
+/// Whether loops pass over nodes around which all sleeps. Nodes may belong to several patches, of several types: each
+/// has one byte (AwakeSet::nodes) that tells. Those beside what is awake stand together, in runs of which there is a list.
+template <class Parts>
+bool passes_over_sleepers(Parts const& parts) {
+  return parts.awake && !has_added_terms(parts) && !parts.forces_complete;
+}
+/// The sum of f(i) over the nodes, or those that may move: in the order of all, whichever sleep.
+template <class Parts, class F>
+void add_sum_over_moving_nodes(Parts const& parts, F const& f, double* to) {
+  if (passes_over_sleepers(parts))
+    parts.backend.add_sum(parts.layout.nodes, AtAwakeNodes<F>{parts.awake->nodes.data(), f}, to);
   else
-    loop(f);
+    parts.backend.add_sum(parts.layout.nodes, f, to);
+}
+/// f(i) for all nodes, or for those that may move.
+template <class Parts, class F>
+void for_each_moving_node(Parts const& parts, F const& f) {
+  Index const nodes = parts.layout.nodes;
+  if (!passes_over_sleepers(parts)) return parts.backend.for_each(nodes, f);
+  auto const& awake = *parts.awake;
+  parts.backend.for_each((static_cast<Index>(awake.runs.size()) - 1) * nodes_of_run,
+                         InAwakeRuns<F>{awake.runs.data(), {awake.nodes.data(), f}, nodes});
 }
 
 /// Whether some terms have no energy; makes room for their forces, which a recorded step cannot.
@@ -70,14 +81,12 @@ void book_work(Parts& parts, double lag, double kick, bool drifts) {
   for (bool first : {true, false}) {
     if ((first ? lag : kick) == 0) continue;
     if (parts.state.damping > 0)
-      over_moving_nodes(parts,
-                        DampingWork<T, dim>{v, f, layout.mass.data(), parts.still(), external,
-                                            half_kick(parts, lag), half_kick(parts, kick),
-                                            first ? lag : kick, first},
-                        [&](auto const& of_node) {
-                          parts.backend.add_sum(layout.nodes, of_node,
-                                                work + static_cast<int>(Work::damping));
-                        });
+      add_sum_over_moving_nodes(
+          parts,
+          DampingWork<T, dim>{v, f, layout.mass.data(), parts.still(), external,
+                              half_kick(parts, lag), half_kick(parts, kick), first ? lag : kick,
+                              first},
+          work + static_cast<int>(Work::damping));
     for (auto const& driven : parts.driven)
       driven.add_work(parts.backend, v, f, layout.mass.data(), external.gravity, external.load,
                       first ? lag : 0, first ? 0 : kick, drifts && !first,
@@ -104,12 +113,10 @@ void advance(Parts& parts, double lag, double kick, double drift) {
           parts.state.work.data() + static_cast<int>(Work::pressures));
   };
   book_hidden(lag);
-  detail::over_moving_nodes(
-      parts,
-      Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), parts.still(),
-                      external_forces(parts), half_kick(parts, lag), half_kick(parts, kick),
-                      static_cast<T>(drift)},
-      [&](auto const& of_node) { parts.backend.for_each(layout.nodes, of_node); });
+  detail::for_each_moving_node(
+      parts, Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), parts.still(),
+                             external_forces(parts), half_kick(parts, lag), half_kick(parts, kick),
+                             static_cast<T>(drift)});
   layout.interpolation.apply(parts.backend, parts.v());
   book_hidden(kick);
   if (drift != 0) {

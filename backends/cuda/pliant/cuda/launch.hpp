@@ -17,10 +17,14 @@ struct LaunchShape {
 /// it reads or writes what other kernels do, all of it in every thread.
 enum class Start { in_order, early };
 
+/// Whether the next kernel may start before this one has ended.
+enum class Next { early, in_order };
+
 /// Waits for the kernels before this one in the stream, and lets the next one start early.
+template <Next next = Next::early>
 __device__ __forceinline__ void begin_after_previous_kernel() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
-  cudaTriggerProgrammaticLaunchCompletion();
+  if constexpr (next == Next::early) cudaTriggerProgrammaticLaunchCompletion();
   cudaGridDependencySynchronize();
 #endif
 }

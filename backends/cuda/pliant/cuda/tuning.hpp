@@ -10,9 +10,6 @@ inline constexpr int warp_size = 32;
 /// Threads per block of loops over nodes, of reductions, and of visits to elements.
 inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 128,
                      scatter_threads = 128;
-/// From so many nodes on, a thread of a loop that passes over some looks at four: with 1.7 million on an H200 that takes
-/// half the time, with 180,000 it is slower by a third (bench/adaptation, sleep).
-inline constexpr Index many_nodes = 1 << 20;
 
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
 /// where an element computes much per node; patches are faster elsewhere, and where there are no
