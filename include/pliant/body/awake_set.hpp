@@ -92,7 +92,7 @@ struct AtAwakeNodes {
 /// The same for places of a list of runs.
 template <class F>
 struct InAwakeRuns {
-  static constexpr bool few_nodes = true;
+  static constexpr bool few_nodes = true;  // told to backends: see OfFewNodes of Cuda
   Index const* runs;
   AtAwakeNodes<F> at;
   Index nodes;
