@@ -65,7 +65,6 @@ template <class Parts>
 class CarriedNodes {
   static constexpr int dim = Parts::dim;
   using T = typename Parts::T;
-  using Backend = typename Parts::backend_type;
   using Array = typename Parts::template Array<T>;
   using M = typename Parts::mesh_type;
 
@@ -118,24 +117,11 @@ class CarriedNodes {
   /// change looks at.
   Array onto(typename Parts::layout_type const& next, Array const& field,
              Values const& values) const {
-    auto const& backend = parts_.backend;
-    auto to = zeros<T>(backend, next.rest.size());
-    auto const carried = node_field<dim>(to);
-    backend.for_each(parts_.layout.nodes,
-                     PutRows<T, dim>{node_field<dim>(field), carried, next.node_now.data()});
-    std::vector<T> rows(node_stride * values.values.size());
     std::vector<Index> places;
-    places.reserve(values.values.size());
-    for (std::size_t i = 0; i < values.values.size(); ++i) {
-      for (std::size_t k = 0; k < dim; ++k)
-        rows[node_stride * i + k] = static_cast<T>(values.values[i][k]);
-      places.push_back(next.internal_of(after_.nodes[i]));
-    }
-    auto const own = upload(backend, rows);
-    auto const at = upload(backend, places);
-    backend.for_each(static_cast<Index>(places.size()),
-                     PutRows<T, dim>{node_field<dim>(own), carried, at.data()});
-    return to;
+    places.reserve(after_.nodes.size());
+    for (Index const node : after_.nodes) places.push_back(next.internal_of(node));
+    return carried_field<dim>(parts_.backend, next.nodes, field, next.node_now, places,
+                              [&](std::size_t i, std::size_t k) { return values.values[i][k]; });
   }
 
  private:

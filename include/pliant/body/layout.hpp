@@ -8,6 +8,7 @@
 #include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/cell_order.hpp>
 #include <pliant/body/element_table.hpp>
+#include <pliant/body/layout_change.hpp>
 #include <pliant/body/lumped_masses.hpp>
 #include <pliant/body/motion.hpp>
 #include <pliant/body/numbering.hpp>
@@ -121,12 +122,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
  private:
   static constexpr Index few_nodes = 16384;
-  /// What is known of a layout by the one before a change.
-  struct Change {
-    Layout const& before;
-    Transfer<dim> const& transfer;
-    detail::TouchedElements<Mesh<Es...>> const& touched;
-  };
+  using Change = detail::LayoutChange<Layout, Mesh<Es...>>;
 
   /// The same of value(node, k).
   template <std::invocable<std::size_t, std::size_t> Value>
@@ -141,36 +137,6 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     return field;
   }
 
-  /// The numbering, and the blocks that elements are in.
-  std::pair<Numbering<Es...>, std::array<ElementBlocks, sizeof...(Es)>> numbered(
-      Topology<Mesh<Es...>> const& topology, Change const* change) const {
-    auto const& mesh = topology.mesh;
-    if (!first_order || !topology.tree) return {Numbering<Es...>(mesh), first_blocks(mesh)};
-    OrderedElements<sizeof...(Es)> ordered;
-    ChangedBlocks changed;
-    if (change != nullptr) {
-      changed = changed_blocks(topology, *first_order, change->transfer, change->touched);
-      auto const before = change->before.order(change->transfer, changed.elements);
-      ordered = elements_in_order(topology, *first_order, &before);
-    } else {
-      ordered = elements_in_order(topology, *first_order);
-    }
-    auto const keeps_nodes = [&](std::size_t block) {
-      return change != nullptr && !change->before.first_nodes[0].empty() &&
-             changed.nodes[block] == 0;
-    };
-    auto const number_kept = [&](std::size_t type, std::size_t block, auto const& take) {
-      auto const& before = change->before;
-      auto const& first = before.first_nodes[type];
-      for (auto old = static_cast<std::size_t>(first[block]);
-           old < static_cast<std::size_t>(first[block + 1]); ++old)
-        take(change->transfer.renumbered(before.user_node[old]));
-    };
-    Numbering<Es...> numbering(mesh, std::move(ordered.elements), ordered.blocks, keeps_nodes,
-                               number_kept);
-    return {std::move(numbering), std::move(ordered.blocks)};
-  }
-
   /// find_own_masses() gives own_masses. `change`: null where there was none.
   template <class FindOwnMasses>
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
@@ -178,7 +144,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
             FindOwnMasses const& find_own_masses) {
     auto const& mesh = topology.mesh;
     HostThreads const threads(backend, mesh);
-    auto [numbering, blocks] = numbered(topology, change);
+    auto [numbering, blocks] = detail::numbered(topology, first_order.get(), change);
     first_nodes = std::move(numbering.first_nodes);
     if (!first_order)
       first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
@@ -218,17 +184,10 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// Finds node_now, and tells blocks that stay where their elements were.
   void follow_nodes(B const& backend, Change const& change,
                     std::array<ElementBlocks, sizeof...(Es)>& blocks) {
-    auto const& before = change.before;
-    std::vector<Index> now(before.user_node.size());
-    detail::for_each_on_host(before.nodes, few_nodes, [&](Index old) {
-      Index const user =
-          change.transfer.renumbered(before.user_node[static_cast<std::size_t>(old)]);
-      now[static_cast<std::size_t>(old)] = user < 0 ? Index{-1} : internal_of(user);
-    });
-    node_now = upload(backend, now);
+    node_now = upload(backend, detail::nodes_now(change, internal_node));
     for (std::size_t type = 0; type < blocks.size(); ++type) {
       if (!blocks[type].some_stay()) continue;
-      blocks[type].first_before = before.first_of_block[type];
+      blocks[type].first_before = change.before.first_of_block[type];
       blocks[type].node_now = std::as_const(node_now).data();
     }
   }
@@ -290,24 +249,13 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// The same where most nodes are where they were, relative to the same middle: others lie between those.
   template <class Place>
   void carry_rest(B const& backend, Change const& change, Place const& place) {
-    rest = zeros<T>(backend, static_cast<std::size_t>(node_stride) * user_node.size());
-    auto const carried = node_field<dim>(rest);
-    backend.for_each(change.before.nodes,
-                     detail::PutRows<T, dim>{node_field<dim>(change.before.rest), carried,
-                                             std::as_const(node_now).data()});
     auto const& made = change.transfer.new_nodes();
-    std::vector<T> rows(node_stride * made.size());
     std::vector<Index> places;
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      for (std::size_t k = 0; k < dim; ++k)
-        rows[node_stride * i + k] =
-            static_cast<T>(place(static_cast<std::size_t>(made[i].node), k));
-      places.push_back(internal_of(made[i].node));
-    }
-    auto const own = upload(backend, rows);
-    auto const at = upload(backend, places);
-    backend.for_each(static_cast<Index>(places.size()),
-                     detail::PutRows<T, dim>{node_field<dim>(own), carried, at.data()});
+    for (NewNode const& n : made) places.push_back(internal_of(n.node));
+    rest = detail::carried_field<dim>(backend, nodes, change.before.rest, node_now, places,
+                                      [&](std::size_t i, std::size_t k) {
+                                        return place(static_cast<std::size_t>(made[i].node), k);
+                                      });
   }
 
   /// In internal order. Throws Error where T cannot hold one.
