@@ -26,6 +26,7 @@ constexpr double digits = sizeof(typename B::scalar) == 8 ? 1e-9 : 2e-4;
 template <class B, class Make>
 NewtonReport compare(Make const& make, NewtonOptions options = {}) {
   auto with = make(), without = make();
+  options.linear = LinearMethod::direct;
   auto const direct = solve_static(with, options);
   if (sizeof(typename B::scalar) == 4) options.tolerance = 1e-5;
   options.linear = LinearMethod::matrix_free;
@@ -38,6 +39,7 @@ NewtonReport compare(Make const& make, NewtonOptions options = {}) {
   CHECK(report.least_J.element == std::string(direct.least_J.element));
   if (sizeof(typename B::scalar) == 8) CHECK(report.least_J.number == direct.least_J.number);
   CHECK(report.linear.iterations > 0);
+  CHECK(report.unknowns == direct.unknowns);
   if (sizeof(typename B::scalar) == 8) CHECK(report.iterations <= direct.iterations + 2);
   CHECK(report.factorisations == 0);
   return report;

@@ -69,6 +69,7 @@ class MatrixFreeStatics {
       copy(reached, u_);
       preconditioning_.begin_anew();
     });
+    report_.unknowns = count_unknowns(parts_);
     report_.linear = preconditioning_.report();
     report_.linear.method = LinearMethod::matrix_free;
     report_.least_J = least_jacobian_on(parts_, {u_.data()}, true);

@@ -67,5 +67,22 @@ void keep_unknowns(Parts const& parts, typename Parts::Field field) {
                          KeepUnknowns<typename Parts::T, Parts::dim>{
                              field, parts.layout.mass.data(), parts.layout.held.data()});
 }
+/// How many unknowns a node has.
+template <class T, int Dim>
+struct CountUnknowns {
+  T const* mass;
+  DirectionMask const* held;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    int count = 0;
+    for (int k = 0; k < Dim; ++k) count += mass[i] > T(0) && !(held[i] >> k & 1);
+    return count;
+  }
+};
+template <class Parts>
+Index count_unknowns(Parts const& parts) {
+  return static_cast<Index>(parts.backend.sum(
+      parts.layout.nodes, CountUnknowns<typename Parts::T, Parts::dim>{parts.layout.mass.data(),
+                                                                       parts.layout.held.data()}));
+}
 
 }  // namespace pliant::detail
