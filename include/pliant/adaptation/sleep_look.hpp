@@ -84,11 +84,10 @@ void turn(Parts& parts, SleepRule const& rule) {
     changes = changes || sleeps || rest[p] < 0;
     rest[p] = sleeps ? -1 : 0;
   }
-  auto const change = [&] { parts.state.rest.upload(rest); };
   if (changes)
-    change_rest(parts, change);
+    change_rest(parts, rest);
   else
-    change();
+    parts.state.rest.upload(rest);
 }
 }  // namespace detail
 

@@ -38,6 +38,8 @@ struct PatchNodes {
   Array<std::uint8_t> driven, stirred;
   std::shared_ptr<void const> driven_by;  // the conditions that `driven` is of
   Array<std::uint8_t> turns;              // (patches): which fall asleep or wake at a look
+  /// While patches sleep: how many runs have a node beside what is awake, and these.
+  Array<Index> awake_runs;
 
   Index count() const { return first_of_type.back(); }
   Index pieces_count() const { return static_cast<Index>(patch_of_piece.size()); }
@@ -69,7 +71,6 @@ struct AwakeSet {
   std::vector<Array<Index>> patches;  // (types): the lists of those awake, for over()
   Array<std::uint8_t> asleep;         // (patches)
   Array<NodeWatch> nodes;             // (nodes)
-  Array<Index> runs;                  // how many have a node beside what is awake, and these
   Array<DirectionMask> still;         // (nodes): held by conditions, or asleep
   Array<typename B::scalar> kept;     // (nodes, 4) and scratch rows, N: of sleeping patches
   Index awake = 0;                    // patches

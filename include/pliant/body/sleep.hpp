@@ -78,7 +78,7 @@ bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>
 /// Brings the list of runs of nodes up to the patches that are awake. Returns whether it lies elsewhere now.
 template <class Parts>
 bool list_runs(Parts& parts, std::vector<std::uint8_t> const& asleep) {
-  auto const& rows = *parts.patch_nodes;
+  auto& rows = *parts.patch_nodes;
   Index const most = (parts.layout.nodes + nodes_of_run - 1) / nodes_of_run;
   std::vector<bool> awake(static_cast<std::size_t>(most));
   for (std::size_t p = 0; p < asleep.size(); ++p)
@@ -88,16 +88,13 @@ bool list_runs(Parts& parts, std::vector<std::uint8_t> const& asleep) {
   std::vector<Index> runs;
   for (Index run = 0; run < most; ++run)
     if (awake[static_cast<std::size_t>(run)]) runs.push_back(run);
-  return fill_list(parts.backend, parts.awake->runs, std::move(runs), most);
+  return fill_list(parts.backend, rows.awake_runs, std::move(runs), most);
 }
 
-/// See follow_rest.
+/// Brings parts.awake up to state.rest, which is also on the host.
 template <class Parts>
-void bring_up_to_rest(Parts& parts) {
+void bring_up_to_rest(Parts& parts, std::span<std::int32_t const> rest) {
   using T = typename Parts::T;
-  if (parts.state.rest.size() > 0 && parts.state.rest.size() != patch_count(parts))
-    parts.state.rest = {};
-  auto const rest = on_host<std::int32_t>(parts.state.rest);
   bool const slept = parts.awake.has_value();
   if (std::ranges::none_of(rest, [](std::int32_t steps) { return steps < 0; })) {
     if (!slept) return;
@@ -169,10 +166,10 @@ void relax_what_sleeps(Parts& parts) {
   }
 }
 
-/// Changes state.rest by change(), to wake patches or to put them to sleep; those lose their velocity. What that
-/// changes of the energy that is watched is booked, J.
-template <class Parts, class Change>
-void change_rest(Parts& parts, Change const& change) {
+/// Changes state.rest, to wake patches or to put them to sleep; those lose their velocity. What that changes of the energy that
+/// is watched is booked, J.
+template <class Parts>
+void change_rest(Parts& parts, std::span<std::int32_t const> rest) {
   using T = typename Parts::T;
   synchronize_velocities(parts);
   relax_what_sleeps(parts);
@@ -182,8 +179,8 @@ void change_rest(Parts& parts, Change const& change) {
                      step > 0 ? step * step * acceleration_term(parts) : 0.0};
   };
   auto const before = energies();
-  change();
-  detail::bring_up_to_rest(parts);
+  parts.state.rest.upload(rest);
+  detail::bring_up_to_rest(parts, rest);
   if (parts.awake) {
     parts.backend.for_each(parts.layout.nodes, StopHeld<T, Parts::dim>{parts.v(), parts.still()});
     parts.layout.interpolation.apply(parts.backend, parts.v());
@@ -195,17 +192,21 @@ void change_rest(Parts& parts, Change const& change) {
 
 namespace detail {
 
+/// See follow_rest.
+template <class Parts>
+void follow_state_of_rest(Parts& parts) {
+  auto& rest = parts.state.rest;
+  if (rest.size() > 0 && rest.size() != patch_count(parts)) rest = {};
+  bring_up_to_rest(parts, on_host<std::int32_t>(rest));
+}
 /// See wake_all.
 template <class Parts>
 void wake_what_sleeps(Parts& parts) {
-  auto const wake = [&] {
-    parts.backend.for_each(static_cast<Index>(parts.state.rest.size()),
-                           FillValue<std::int32_t>{parts.state.rest.data(), 0});
-  };
+  std::vector<std::int32_t> const none(parts.state.rest.size());
   if (parts.awake)
-    change_rest(parts, wake);
+    change_rest(parts, none);
   else
-    wake();
+    parts.state.rest.upload(none);
 }
 /// See wake_nodes.
 template <class Parts>
@@ -224,11 +225,11 @@ void wake_around(Parts& parts, std::span<Index const> nodes) {
       wakes = true;
     }
   }
-  if (wakes) change_rest(parts, [&] { parts.state.rest.upload(rest); });
+  if (wakes) change_rest(parts, rest);
 }
 
 template <class Parts>
-inline constexpr SleepVerbs<Parts> sleep_verbs{bring_up_to_rest<Parts>, wake_what_sleeps<Parts>,
+inline constexpr SleepVerbs<Parts> sleep_verbs{follow_state_of_rest<Parts>, wake_what_sleeps<Parts>,
                                                wake_around<Parts>};
 
 }  // namespace detail

@@ -39,9 +39,9 @@ template <class Parts, class F>
 void for_each_moving_node(Parts const& parts, F const& f) {
   Index const nodes = parts.layout.nodes;
   if (!passes_over_sleepers(parts)) return parts.backend.for_each(nodes, f);
-  auto const& awake = *parts.awake;
-  parts.backend.for_each((static_cast<Index>(awake.runs.size()) - 1) * nodes_of_run,
-                         InAwakeRuns<F>{awake.runs.data(), {awake.nodes.data(), f}, nodes});
+  auto const& runs = parts.patch_nodes->awake_runs;
+  parts.backend.for_each((static_cast<Index>(runs.size()) - 1) * nodes_of_run,
+                         InAwakeRuns<F>{runs.data(), {parts.awake->nodes.data(), f}, nodes});
 }
 
 /// Whether some terms have no energy; makes room for their forces, which a recorded step cannot.
