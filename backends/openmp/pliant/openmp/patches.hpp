@@ -32,7 +32,7 @@ class Patches {
       : groups_(groups),
         has_fans_(may_have_fans && node_order == NodeOrder::any_even),
         given_(std::move(connectivity)),
-        node_data_(given_.empty() ? nullptr : given_.front().data()),
+        nodes_(given_.data()),
         tags_(std::span<Tag const>(tags)),
         ordered_tags_(std::span<Tag const>(tags)),
         tag_data_(tags_.data()),
@@ -59,7 +59,7 @@ class Patches {
   HostArray<Tag> const& tags() const { return tags_; }
   HostArray<Tag> take_tags() { return std::move(tags_); }
 
-  Index const* nodes(Index e) const { return node_data_ + std::ptrdiff_t{Nodes} * e; }
+  Index const* nodes(Index e) const { return nodes_[static_cast<std::size_t>(e)].data(); }
   bool has_fans() const { return has_fans_; }
   Fans const& fans() const { return fans_; }
   /// The elements of a patch that belong to a group, in ascending order.
@@ -83,21 +83,28 @@ class Patches {
   }
 
  private:
-  Index const* all_nodes() const { return node_data_; }
+  Index const* all_nodes() const { return count() == 0 ? nullptr : nodes(0); }
   /// Puts what was given between the elements that stay.
   void carry(ElementBlocks const& blocks, Patches const& before) {
-    carried_ = HostArray<Index>::unset(static_cast<std::size_t>(Nodes) * order_.size());
+    auto const first_node = [](std::array<Index, Nodes> const* rows) {
+      return rows == nullptr ? nullptr : rows->data();
+    };
+    carried_ = HostArray<std::array<Index, Nodes>>::unset(order_.size());
     auto const sources = sources_of(blocks);
     CarryConnectivity<Nodes, Nodes> const carry{
-        blocks.first.data(), sources.data(), static_cast<Index>(sources.size()),
-        before.node_data_,   node_data_,     blocks.node_now,
-        carried_.data()};
+        blocks.first.data(),
+        sources.data(),
+        static_cast<Index>(sources.size()),
+        first_node(before.nodes_),
+        first_node(given_.data()),
+        blocks.node_now,
+        carried_.size() == 0 ? nullptr : carried_.data()->data()};
     constexpr Index few_blocks = 32;  // worth a thread
     for_each_on_host(carry.blocks, few_blocks, [&](Index block) {
       auto const b = static_cast<std::size_t>(block);
       for (Index e = blocks.first[b]; e < blocks.first[b + 1]; ++e) carry.carry(block, e);
     });
-    node_data_ = carried_.data();
+    nodes_ = carried_.data();
     given_ = {};
   }
   void order(Index patch) {
@@ -122,10 +129,10 @@ class Patches {
 
   int groups_ = 1;
   bool has_fans_ = false;
-  std::vector<std::array<Index, Nodes>> given_;  // nodes, or none where they are
-  HostArray<Index> carried_;                     // (elements, nodes)
-  Index const* node_data_ = nullptr;             // of one of these
-  PatchRows rows_;                               // of the connectivity, where there are no fans
+  std::vector<std::array<Index, Nodes>> given_;      // (elements), or none where they are
+  HostArray<std::array<Index, Nodes>> carried_;      // (elements)
+  std::array<Index, Nodes> const* nodes_ = nullptr;  // of one of these
+  PatchRows rows_;                                   // of the connectivity, where there are no fans
   Fans fans_;
   HostArray<Tag> tags_, ordered_tags_;  // as they are, and as the order knows them
   Tag const* tag_data_ = nullptr;       // whoever owns them
