@@ -86,6 +86,8 @@ class Problem:
 
 
 def time(seconds):
+    if math.isinf(seconds):
+        return "not reached"
     for size, unit in ((1, "s"), (1e-3, "ms"), (1e-6, "µs")):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
@@ -107,8 +109,12 @@ def level_of(problem):
     return LEVELS[problem.name]
 
 
-def ratio(value, extrapolated):
-    return f"{value:.2g}" + (" †" if extrapolated else "")
+def ratio(seconds, uniform, extrapolated, bar=None):
+    """Empty where uniform meshes do not reach the error."""
+    if math.isinf(uniform):
+        return ""
+    value = seconds / uniform
+    return f"{value:.2g}" + (" †" if extrapolated else "") + held(bar, value)
 
 
 def pays_below(problem, contestant):
@@ -141,8 +147,8 @@ def static_rows(problem):
         own, beyond_own, _ = problem.uniform(error, element)
         best, beyond, fastest = problem.uniform(error)
         yield [problem.name, percent(error), element, time(seconds), f"≤ {bar}" if bar else "",
-               time(own), ratio(seconds / own, beyond_own) + held(bar, seconds / own),
-               f"{fastest.split(',')[0]}, {time(best)}", ratio(seconds / best, beyond) + held(bar, seconds / best),
+               time(own), ratio(seconds, own, beyond_own, bar),
+               f"{fastest.split(',')[0]}, {time(best)}", ratio(seconds, best, beyond, bar),
                f"{row['n']}: {percent(row['error'])}, {row['unknowns']} unknowns, {time(row['seconds'])}",
                pays_below(problem, name)]
 
@@ -165,7 +171,7 @@ def rule_rows(problem, rules):
             # Too far from the error to say.
             far = not points or min(points)[0] > 1.5 * error
             cells.append("" if f"{element}, {rule}" not in problem.contestants else "not reached" if far
-                         else ratio(seconds / own, beyond or beyond_own))
+                         else ratio(seconds, own, beyond or beyond_own))
         yield [problem.name, percent(error), element, *cells]
 
 
