@@ -55,6 +55,17 @@ TEST_CASE("carried errors bound how far a body that buckles is off, their sum do
   check(BDF2{}, 5e-2);
 }
 
+TEST_CASE("carried errors of a body that buckles are the same with a matrix and without",
+          "[solver]") {
+  auto const carried = [](LinearMethod method) {
+    auto body = column(MainBackend{});
+    ImplicitOptions options{.step = 5e-2, .errors = ErrorEstimate::carried};
+    options.linear = method;
+    return Implicit{Newmark{}, options}.until(body, 2).error_in_all;
+  };
+  CHECK(carried(LinearMethod::matrix_free) == Approx(carried(LinearMethod::direct)).epsilon(0.02));
+}
+
 TEST_CASE("errors that have come to a tenth of displacements are told as lost", "[solver]") {
   auto rough = column(MainBackend{}), fine = column(MainBackend{});
   CHECK(fall(rough, BackwardEuler{}, 5e-2).errors_lost);
