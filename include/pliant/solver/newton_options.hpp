@@ -21,8 +21,8 @@ struct NewtonOptions {
   /// On which masses gravity acts. Consistent, ∫ ρ N g, is as accurate as the elements are; lumped is the
   /// gravity of explicit dynamics, whose rest it finds.
   MassMatrix gravity = MassMatrix::consistent;
-  /// For the linear systems: automatic takes a matrix, or none on a GPU in double precision where there are 500
-  /// unknowns or more and all forces have a potential. Without one iterations go on in the body's precision;
+  /// For the linear systems: automatic takes a matrix, or none on a GPU where there are 500 unknowns or more
+  /// and all forces have a potential. Without one iterations go on in the body's precision;
   /// where that is single, its answer is refined by residuals in double.
   LinearMethod linear = LinearMethod::automatic;
   int max_linear_iterations = 10000;              // without a matrix, per iteration
