@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "topology/cells_at_edges.hpp"
 #include "topology/level_jumps.hpp"
 #include "topology/random_changes.hpp"
 
@@ -28,7 +29,10 @@ void check_body(TheBody& body, Point<TheBody::dim> const& v) {
   for (std::size_t i = 0; i < mass.size(); ++i) wrong += hangs[i] ? mass[i] != 0 : !(mass[i] > 0);
   CHECK(wrong == 0);
   CHECK(std::ranges::count(body.velocities(), v) == body.nodes());
-  if (auto const& tree = body.parts().state.topology->tree) CHECK(count_level_jumps(*tree) == 0);
+  if (auto const& tree = body.parts().state.topology->tree) {
+    CHECK(count_level_jumps(*tree) == 0);
+    CHECK(count_edges_with_other_cells(*tree) == 0);
+  }
 }
 
 TEST_CASE("bodies stay sound under many changes of their meshes", "[topology]") {

@@ -53,6 +53,7 @@ class CellDivision {
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
       lists_.edges.push_back(
           {.nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
+           .cell = c,
            .level = level});
     std::array<Index, RefinementPattern::most_inner_sides> inner_side;
     inner_side.fill(-1);
@@ -156,7 +157,8 @@ class CellDivision {
     if (side.first_child >= 0) return;
     std::size_t const k = side.nodes[0] == corner || side.nodes[2] == corner ? 0 : 1;
     auto const diagonal = static_cast<Index>(lists_.edges.size());
-    lists_.edges.push_back({.nodes = {side.nodes[k], side.nodes[k + 2]}, .level = side.level});
+    lists_.edges.push_back(
+        {.nodes = {side.nodes[k], side.nodes[k + 2]}, .side = s, .level = side.level});
     lists_.sides.edit(at(s)).first_child = static_cast<Index>(lists_.sides.size());
     lists_.sides.edit(at(s)).first_inner_edge = diagonal;
     for (std::size_t a = k; a < k + 3; a += 2)

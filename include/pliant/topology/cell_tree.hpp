@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <pliant/error.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/cell_division.hpp>
+#include <pliant/topology/cells_at_edges.hpp>
 #include <pliant/topology/number_table.hpp>
 #include <pliant/topology/tree_compaction.hpp>
 #include <pliant/topology/tree_lists.hpp>
@@ -93,6 +95,17 @@ class CellTree {
   /// The sides of solid cells, each once, ascending.
   [[nodiscard]] std::vector<Index> sides_of(std::vector<Index> const& cells) const {
     return lists_.sides_of(cells);
+  }
+
+  /// What `cells_at` looks for cells by, which takes a look at all cells of the initial mesh, or was kept.
+  [[nodiscard]] std::shared_ptr<CellsAtEdges const> cells_at_edges() const {
+    return at_edges_ ? at_edges_ : std::make_shared<CellsAtEdges const>(lists_);
+  }
+  /// Keeps that, for copies of the tree too.
+  void keep_cells_at_edges() { at_edges_ = cells_at_edges(); }
+  /// The cells that have an edge as a whole one, leaves and refined ones.
+  [[nodiscard]] std::vector<Index> cells_at(CellsAtEdges const& by, Index e) const {
+    return by.of(lists_, e);
   }
 
   /// Divides a leaf, to be refined one that has no coarser neighbour, and appends the nodes that it makes: the points of
@@ -216,7 +229,8 @@ class CellTree {
   }
 
   TreeLists lists_;
-  NumberTable<2> initial_edges_;  // by their corners, ascending
+  std::shared_ptr<CellsAtEdges const> at_edges_;  // follows from the lists
+  NumberTable<2> initial_edges_;                  // by their corners, ascending
   NumberTable<4> initial_sides_;
 };
 

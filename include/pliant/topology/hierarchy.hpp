@@ -84,6 +84,8 @@ class Hierarchy {
     }
     wanted = detail::each_once(std::move(wanted), cells().size());
     if (wanted.empty()) return {};
+    auto const may_have_coarser_neighbours = [&](Index c) { return cell(c).level > 0; };
+    if (std::ranges::any_of(wanted, may_have_coarser_neighbours)) tree_.keep_cells_at_edges();
 
     Refinement<Dim> done{
         .parents = TreeQueries(tree_).closure(std::move(wanted)), .new_nodes = {}, .facets = {}};

@@ -61,6 +61,7 @@ struct TreeEdge {
   Index parent = -1;      ///< the edge of which it is a half
   Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
   Index side = -1;        ///< the divided side between whose parts it lies, if it is no half
+  Index cell = -1;        ///< the divided cell inside of which it lies, if it is none of these
   int leaves = 0;         ///< of how many leaves it is a whole edge
   int linear = 0;         ///< of how many of these that have corners only
   int refined = 0;        ///< of how many refined cells; split ones count by their children
@@ -73,6 +74,7 @@ struct TreeEdge {
     visit("parent", r.parent...);
     visit("first half", r.first_half...);
     visit("side", r.side...);
+    visit("cell", r.cell...);
     visit("leaves", r.leaves...);
     visit("linear leaves", r.linear...);
     visit("refined cells", r.refined...);

@@ -116,6 +116,7 @@ class TreeCompaction {
       move_within_edge(e);
       move(e.parent, edge);
       move(e.side, side);
+      move(e.cell, cell);
       for (Index& p : e.nodes) move(p, node);
     }
     for (Index n = i.sides; n < size(lists_.sides); ++n) {

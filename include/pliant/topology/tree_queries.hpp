@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -22,10 +22,9 @@ class TreeQueries {
   /// The leaves, given each once, and all that must be refined before them so that levels differ by
   /// one at most across edges and sides: coarser ones first, then ascending. Each part of a side has an edge that lies between
   /// parts, so that edges tell of coarser neighbours across sides too.
-  [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) const {
+  [[nodiscard]] std::vector<Index> closure(std::vector<Index> leaves) {
     std::vector<bool> seen(cells_.size(), false);
     for (Index const c : leaves) seen[at(c)] = true;
-    std::optional<std::vector<std::pair<Index, Index>>> on_edge;
     auto const want = [&](Index c) {
       if (c < 0 || !tree_.is_leaf(c) || seen[at(c)]) return;
       seen[at(c)] = true;
@@ -39,16 +38,12 @@ class TreeQueries {
           whole = coarse;
           coarse = edges_[at(coarse)].parent;
         } while (coarse >= 0 && edges_[at(coarse)].leaves == 0);
-        if (coarse <
-            0) {  // a leaf on the other side of a divided side may have none of it for an edge
-          if (Index const side = edges_[at(whole)].side; side >= 0)
-            for (Index const neighbour : sides_[at(side)].cells) want(neighbour);
-          continue;
+        if (coarse >= 0) {
+          for (Index const neighbour : cells_at(coarse)) want(neighbour);
+        } else if (Index const side = edges_[at(whole)].side; side >= 0) {
+          // a leaf on the other side of a divided side may have none of it for an edge
+          for (Index const neighbour : sides_[at(side)].cells) want(neighbour);
         }
-        if (!on_edge) on_edge = leaves_on_bisected_edges();
-        auto const first = std::ranges::lower_bound(*on_edge, std::pair(coarse, Index{-1}));
-        for (auto entry = first; entry != on_edge->end() && entry->first == coarse; ++entry)
-          want(entry->second);
       }
     }
     std::ranges::sort(leaves, {}, [&](Index c) { return std::pair(cells_[at(c)].level, c); });
@@ -56,25 +51,20 @@ class TreeQueries {
   }
 
   /// The leaves that share an edge, whole or in part, with given ones, and these: each once, ascending.
-  [[nodiscard]] std::vector<Index> with_neighbours(std::vector<Index> const& leaves) const {
-    std::vector<bool> near(edges_.size(), false);
+  [[nodiscard]] std::vector<Index> with_neighbours(std::vector<Index> const& leaves) {
+    std::vector<Index> found;
+    auto const add_leaves_at = [&](Index e) {
+      for (Index const c : cells_at(e))
+        if (tree_.is_leaf(c)) found.push_back(c);
+    };
     for (Index const e : tree_.edges_of(leaves)) {
       auto const& edge = edges_[at(e)];
-      near[at(e)] = true;
-      if (edge.parent >= 0 && edges_[at(edge.parent)].leaves > 0) near[at(edge.parent)] = true;
+      add_leaves_at(e);
+      if (edge.parent >= 0 && edges_[at(edge.parent)].leaves > 0) add_leaves_at(edge.parent);
       for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
-        near[at(half)] = true;
+        add_leaves_at(half);
     }
-    std::vector<Index> found;
-    for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
-      auto const& cell = cells_[at(c)];
-      for (std::size_t e = 0; cell.first_child < 0 && e < at(cell.pattern().edges); ++e)
-        if (near[at(cell.edges[e])]) {
-          found.push_back(c);
-          break;
-        }
-    }
-    return found;
+    return detail::each_once(std::move(found), cells_.size());
   }
 
   /// How many nodes it takes to refine all of these leaves.
@@ -171,20 +161,13 @@ class TreeQueries {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  /// (edge, leaf) for each leaf with a whole edge that is bisected, ascending.
-  [[nodiscard]] std::vector<std::pair<Index, Index>> leaves_on_bisected_edges() const {
-    std::vector<std::pair<Index, Index>> list;
-    for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
-      auto const& cell = cells_[at(c)];
-      if (cell.first_child >= 0) continue;
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-        if (edges_[at(cell.edges[e])].first_half >= 0) list.emplace_back(cell.edges[e], c);
-    }
-    std::ranges::sort(list);
-    return list;
+  [[nodiscard]] std::vector<Index> cells_at(Index e) {
+    if (!at_edges_) at_edges_ = tree_.cells_at_edges();
+    return tree_.cells_at(*at_edges_, e);
   }
 
   CellTree<Dim> const& tree_;
+  std::shared_ptr<CellsAtEdges const> at_edges_;  // once it is needed
   SharedList<TreeCell> const& cells_;
   SharedList<TreeEdge> const& edges_;
   SharedList<TreeSide> const& sides_;
