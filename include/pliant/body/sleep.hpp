@@ -34,8 +34,10 @@ struct WatchNodes {
 };
 
 /// Room for a list of so many patches, a little more, so that it seldom changes: a GPU starts a block for each place
-/// of a list, whatever is in it.
+/// of a list, whatever is in it. A few places it starts in no time, so that short lists have room for all.
 inline Index room_for(Index count, Index most) {
+  constexpr Index few = 512;
+  if (most <= few) return most;
   Index const step = std::max<Index>(
       16, static_cast<Index>(std::bit_floor(static_cast<std::uint32_t>(count))) / 8);
   return std::min(most, (count / step + 1) * step);
