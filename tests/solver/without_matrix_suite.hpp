@@ -80,6 +80,26 @@ TEST_CASE("single precision rests within the tolerance, and where double does", 
   });
 }
 
+TEST_CASE("on a GPU no matrix is taken unasked but by small bodies", "[solver]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    constexpr bool on_host = std::same_as<typename B::Recording, HostRecording>;
+    auto const takes_none = [&](int cells) {
+      Body body{backend, mesh::rectangle({.size = {1, 1}, .cells = {cells, cells}}),
+                Elastic{2e5, 0.3, 1000}, Group<Rubber>{}};
+      body.clamp(body.mesh().boundary("left"));
+      auto const still = solve_static(body);
+      CHECK(largest(body.displacements()) == 0);
+      body.set_gravity({0, -4});
+      auto const report = solve_static(body);
+      CHECK(largest(body.displacements()) > 1e-3);
+      CHECK(still.linear.method == report.linear.method);
+      return report.linear.method == LinearMethod::matrix_free;
+    };
+    CHECK_FALSE(takes_none(10));
+    CHECK(takes_none(20) == !on_host);
+  });
+}
+
 TEST_CASE("driven nodes and hanging ones are where they are with a matrix", "[solver]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     for (int load_steps : {1, 2}) {

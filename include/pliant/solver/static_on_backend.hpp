@@ -36,7 +36,7 @@ double refine_rest(TheBody const& body, NewtonOptions const& options,
     report.residual = left.residual;
     report.residuals.push_back(left.residual);
     report.energy = left.energy;
-    reached = left.residual / left.scale;
+    reached = left.scale > 0 ? left.residual / left.scale : 0;
   }
   statics.set(Problem::per_node(u));
   return reached;
