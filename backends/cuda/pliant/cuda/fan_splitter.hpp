@@ -27,6 +27,7 @@ class FanSplitter {
         votes_(memory.take<int>(mask_ + 1)),
         first_(memory.take<int>(mask_ + 1)),
         totals_(memory.take<int>(3)),
+        places_(memory.take<int>(most_fan_elements * most_runs)),
         edge_(memory.take<std::uint16_t>(6 * patch_size)),
         next_(memory.take<std::uint16_t>(6 * patch_size)),
         choice_(memory.take<std::uint8_t>(patch_size)),
@@ -72,9 +73,7 @@ class FanSplitter {
       before = now;
     }
     threads.meet();
-    if (threads.first() == 0) *count() = sort(size);
-    threads.meet();
-    return *count();
+    return sort(threads, size);
   }
 
   PLIANT_HOST_DEVICE int size(int fan) const { return size_[home_[fan]]; }
@@ -86,7 +85,7 @@ class FanSplitter {
   PLIANT_HOST_DEVICE int corner(FanMember member, int k) const { return member.corner(local_, k); }
 
  private:
-  static constexpr int none = 0xffff;
+  static constexpr int none = 0xffff, most_runs = 32;
 
   PLIANT_HOST_DEVICE int* left() const { return totals_; }       // elements in no fan
   PLIANT_HOST_DEVICE int* count() const { return totals_ + 1; }  // fans
@@ -215,13 +214,38 @@ class FanSplitter {
     claimed_[m.element()] = 1;
   }
 
-  /// Homes by the sizes of their fans, then in their order.
-  PLIANT_HOST_DEVICE int sort(int size) const {
-    int fans = 0;
-    for (int k = most_fan_elements; k > 0; --k)
-      for (int t = 0; t < size; ++t)
-        if (size_[t] == k) home_[fans++] = static_cast<std::uint16_t>(t);
-    return fans;
+  /// Homes by the sizes of their fans, then in their order; how many there are. All threads have met then.
+  template <class Threads>
+  PLIANT_HOST_DEVICE int sort(Threads const& threads, int size) const {
+    // A run of elements for each of the first threads: how many fans of each size are at home there, then their places.
+    int const runs = threads.lanes(), run = threads.first(), each = (size + runs - 1) / runs;
+    auto const place = [&](int k, int r) -> int& {
+      return places_[(most_fan_elements - k) * most_runs + r];
+    };
+    auto const for_each_home = [&](auto const& f) {
+      for (int t = run * each; t < (run + 1) * each && t < size; ++t)
+        if (size_[t] > 0) f(t);
+    };
+    if (run < runs) {
+      for (int k = 1; k <= most_fan_elements; ++k) place(k, run) = 0;
+      for_each_home([&](int t) { ++place(size_[t], run); });
+    }
+    threads.meet();
+    if (threads.first() == 0) {
+      int fans = 0;
+      for (int k = most_fan_elements; k > 0; --k)
+        for (int r = 0; r < runs; ++r) {
+          int const own = place(k, r);
+          place(k, r) = fans;
+          fans += own;
+        }
+      *count() = fans;
+    }
+    threads.meet();
+    if (run < runs)
+      for_each_home([&](int t) { home_[place(size_[t], run)++] = static_cast<std::uint16_t>(t); });
+    threads.meet();
+    return *count();
   }
 
   std::uint16_t const* local_ = nullptr;  // (elements, 4)
@@ -232,6 +256,7 @@ class FanSplitter {
   int mask_;
   int *key_, *around_, *votes_, *first_;  // (table), of edges; the first of a list of members
   int* totals_;
+  int* places_;                  // (sizes, runs): of fans
   std::uint16_t *edge_, *next_;  // (elements, 6): where in the table; the next in the edge's list
   std::uint8_t *choice_, *taken_,
       *claimed_;  // (elements): a fan has it since an earlier round, or this one

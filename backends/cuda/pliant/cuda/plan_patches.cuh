@@ -4,6 +4,7 @@
 #include <pliant/cuda/fan_plan.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/patch_plan.hpp>
+#include <pliant/cuda/tuning.hpp>
 
 // Patches are planned where they are used: a block plans one, in its shared memory.
 namespace pliant::detail {
@@ -24,6 +25,9 @@ struct BlockThreads {
   __device__ int first() const { return static_cast<int>(threadIdx.x); }
   __device__ int stride() const { return plan_threads; }
   __device__ void meet() const { __syncthreads(); }
+  __device__ int lanes() const { return warp_size; }
+  __device__ void meet_lanes() const { __syncwarp(); }
+  __device__ bool any(bool value) const { return __any_sync(0xffffffffu, value) != 0; }
 };
 
 /// The shared memory that planning patches of a size takes, bytes.

@@ -5,11 +5,14 @@
 // What plans of patches are made by: the threads of a block, or one thread of a host, which need not meet.
 namespace pliant::detail {
 
-/// A host's thread as planners see it.
+/// A host's thread as planners see it. The first lanes() threads run in step: those that call meet_lanes and any.
 struct OneThread {
   PLIANT_HOST_DEVICE int first() const { return 0; }
   PLIANT_HOST_DEVICE int stride() const { return 1; }
   PLIANT_HOST_DEVICE void meet() const {}
+  PLIANT_HOST_DEVICE int lanes() const { return 1; }
+  PLIANT_HOST_DEVICE void meet_lanes() const {}
+  PLIANT_HOST_DEVICE bool any(bool value) const { return value; }  // of the lanes
 };
 
 /// Calls f(i) for each i < n, in the calling threads together.

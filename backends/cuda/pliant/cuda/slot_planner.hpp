@@ -40,6 +40,8 @@ class SlotPlanner {
         lengths_(memory.take<std::uint16_t>(units * width + 1)),
         starts_(memory.take<std::uint16_t>(units * width)),
         writers_(memory.take<std::uint16_t>(lanes)),
+        choices_(memory.take<std::uint16_t>(lanes)),
+        claims_(memory.take<int>(lanes)),
         totals_(memory.take<int>(2)) {}
 
   /// local[units · width]: the node of each visit; none: there is no such visit. Adds to the nodes that are counted
@@ -69,8 +71,7 @@ class SlotPlanner {
                                Index const* nodes, PatchCounts const& counts,
                                PatchCounts const& capacity, PatchNode* out_nodes,
                                std::uint16_t* diagonals) const {
-    if (threads.first() == 0) sort_by_valence(counts);
-    threads.meet();
+    sort_by_valence(threads, counts);
     share_out(threads, capacity.nodes, [&](int n) {
       if (n >= counts.nodes) {
         out_nodes[n] = {};
@@ -83,7 +84,7 @@ class SlotPlanner {
     share_out(threads, capacity.diagonals,
               [&](int d) { diagonals[d] = d < counts.diagonals ? starts_[d] : std::uint16_t{0}; });
     threads.meet();
-    if (threads.first() == 0) assign_slots(local, units);
+    if (threads.first() < threads.lanes()) assign_slots(threads, local, units);
     threads.meet();
   }
 
@@ -92,63 +93,102 @@ class SlotPlanner {
   PLIANT_HOST_DEVICE std::uint16_t slot(int visit) const { return slot_[visit]; }
 
  private:
-  /// Ranks nodes by valence, those of one valence in their order; where each diagonal begins.
-  PLIANT_HOST_DEVICE void sort_by_valence(PatchCounts const& counts) const {
-    int const largest = counts.diagonals;
-    for (int d = 0; d < largest; ++d) lengths_[d] = 0;
-    for (int n = 0; n < counts.nodes; ++n) ++lengths_[valence_[n] - 1];
-    // lengths_[v − 1]: of valence v; from here on the first rank of these, that is how many have a larger one.
-    int larger = 0;
-    for (int d = largest - 1; d >= 0; --d) {
-      int const same = lengths_[d];
-      lengths_[d] = static_cast<std::uint16_t>(larger);
-      larger += same;
-    }
-    int free = 0;
-    for (int n = 0; n < counts.nodes; ++n) {
-      rank_[n] = lengths_[valence_[n] - 1]++;
+  /// Ranks nodes by valence, those of one valence in their order; where each diagonal begins. All threads have met then.
+  template <class Threads>
+  PLIANT_HOST_DEVICE void sort_by_valence(Threads const& threads, PatchCounts const& counts) const {
+    // Threads read the valence of one node at a time, all the same one.
+    share_out(threads, counts.nodes, [&](int n) {
+      int const own = valence_[n];
+      int rank = 0, free = 0;
+      for (int m = 0; m < counts.nodes; ++m) {
+        int const other = valence_[m];
+        rank += other > own || (other == own && m < n) ? 1 : 0;
+        free += m < n ? other : 0;
+      }
+      rank_[n] = static_cast<std::uint16_t>(rank);
       first_free_[n] = static_cast<std::uint16_t>(free);
-      free += valence_[n];
-    }
-    // Now lengths_[d] is how many nodes have a d-th slot, and so the length of that diagonal.
-    for (int d = 0, slot = 0; d < largest; ++d) {
-      starts_[d] = static_cast<std::uint16_t>(slot);
-      slot += lengths_[d];
-    }
+    });
+    // How many nodes have a d-th slot is the length of that diagonal.
+    share_out(threads, counts.diagonals, [&](int d) {
+      int length = 0;
+      for (int m = 0; m < counts.nodes; ++m) length += valence_[m] > d ? 1 : 0;
+      lengths_[d] = static_cast<std::uint16_t>(length);
+    });
+    threads.meet();
+    if (threads.first() == 0)
+      for (int d = 0, slot = 0; d < counts.diagonals; ++d) {
+        starts_[d] = static_cast<std::uint16_t>(slot);
+        slot += lengths_[d];
+      }
+    threads.meet();
   }
 
-  /// Any of a node's slots will do for any of its visits, so take one whose memory bank few threads of the warp write
-  /// to at the same time.
-  PLIANT_HOST_DEVICE void assign_slots(std::uint16_t const* local, int units) const {
+  /// Any of a node's slots will do for any of its visits, so take one whose memory bank few threads of the warp write to at
+  /// the same time. The visits of a warp choose together: in rounds, of those that chose a bank the first one has it.
+  template <class Threads>
+  PLIANT_HOST_DEVICE void assign_slots(Threads const& threads, std::uint16_t const* local,
+                                       int units) const {
     for (int begin = 0; begin < units; begin += lanes) {
-      int const end = begin + lanes < units ? begin + lanes : units;
+      int const count = begin + lanes < units ? lanes : units - begin;
+      auto const for_each_lane = [&](int n, auto const& f) {
+        for (int l = threads.first(); l < n; l += threads.lanes()) f(l);
+        threads.meet_lanes();
+      };
       for (int a = 0; a < width_; ++a) {
-        for (int bank = 0; bank < lanes; ++bank) writers_[bank] = 0;
-        for (int u = begin; u < end; ++u) {
-          int const i = u * width_ + a, n = local[i];
-          if (n == none) continue;
-          std::uint16_t* const free = free_ + first_free_[n];
-          int best = 0, least = writers_[free[0] % lanes];
-          for (int k = 1; k < valence_[n] && least > 0; ++k) {
-            int const writers = writers_[free[k] % lanes];
-            if (writers < least) least = writers, best = k;
-          }
-          slot_[i] = free[best];
-          ++writers_[slot_[i] % lanes];
-          free[best] = free[--valence_[n]];
+        auto const visit = [&](int l) { return (begin + l) * width_ + a; };
+        for_each_lane(lanes, [&](int l) {
+          writers_[l] = 0;
+          claims_[l] = lanes;
+          choices_[l] = l >= count || local[visit(l)] == none ? none : std::uint16_t{0};
+        });
+        while (true) {
+          bool some_left = false;
+          for_each_lane(count, [&](int l) {
+            if (choices_[l] == none) return;
+            some_left = true;
+            choices_[l] = choice(local[visit(l)]);
+            lower_shared(claims_[bank_of(local[visit(l)], choices_[l])], l);
+          });
+          if (!threads.any(some_left)) break;
+          for_each_lane(count, [&](int l) {
+            if (choices_[l] == none) return;
+            int const n = local[visit(l)], bank = bank_of(n, choices_[l]);
+            if (claims_[bank] != l) return;
+            std::uint16_t& free = free_[first_free_[n] + choices_[l]];
+            slot_[visit(l)] = free;
+            free = none;
+            ++writers_[bank];
+            choices_[l] = none;
+          });
+          for_each_lane(lanes, [&](int bank) { claims_[bank] = lanes; });
         }
       }
     }
   }
+  /// The first of a node's free slots in a bank that is written to least.
+  PLIANT_HOST_DEVICE std::uint16_t choice(int node) const {
+    int best = 0, least = lanes + 1;
+    for (int k = 0; k < valence_[node] && least > 0; ++k) {
+      if (free_[first_free_[node] + k] == none) continue;
+      int const writers = writers_[bank_of(node, k)];
+      if (writers < least) least = writers, best = k;
+    }
+    return static_cast<std::uint16_t>(best);
+  }
+  PLIANT_HOST_DEVICE int bank_of(int node, int k) const {
+    return free_[first_free_[node] + k] % lanes;
+  }
 
   int width_;
-  int* valence_;  // (nodes): how many slots each has, from assign_slots on how many are free
+  int* valence_;                       // (nodes): how many slots each has
   std::uint16_t *rank_, *first_free_;  // (nodes): by valence; in free_
-  std::uint16_t* free_;                // (visits): slots that no visit has, by node
+  std::uint16_t* free_;                // (visits): slots, by node; none: a visit has it
   std::uint16_t* slot_;                // (visits)
   std::uint16_t *lengths_, *starts_;   // (diagonals)
   std::uint16_t* writers_;             // (lanes): to each bank
-  int* totals_;                        // diagonals, slots
+  std::uint16_t* choices_;  // (lanes): of a visit, among its node's slots; none: it has one
+  int* claims_;             // (lanes): the first visit that chose each bank
+  int* totals_;             // diagonals, slots
 };
 
 }  // namespace pliant::detail
