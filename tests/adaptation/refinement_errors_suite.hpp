@@ -10,7 +10,7 @@ template <class TheBody>
 struct Portrait {
   typename TheBody::mesh_type mesh;
   FieldOf<2> u, v, f;
-  std::vector<double> masses;
+  SharedList<double> masses;
   std::vector<std::vector<Tag>> groups;
   double strain, kinetic, time;
   long steps;

@@ -20,6 +20,9 @@ struct AddSum : Whole {
 struct Histogram : Whole {
   void histogram() const;
 };
+struct Select : Whole {
+  void select() const;
+};
 struct Maximum : Whole {
   void maximum() const;
 };
@@ -63,6 +66,7 @@ TEST_CASE("what lacks one verb is no backend", "[backend]") {
   STATIC_REQUIRE_FALSE(Backend<lacking::AddSum>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Histogram>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Maximum>);
+  STATIC_REQUIRE_FALSE(Backend<lacking::Select>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Arrays>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Record>);
   STATIC_REQUIRE_FALSE(Backend<lacking::TimerOfSeconds>);

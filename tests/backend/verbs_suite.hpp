@@ -228,6 +228,44 @@ struct LastByte {
   }
 };
 
+struct LastNodeIs {
+  ElementRows rows;
+  Index node;
+  PLIANT_HOST_DEVICE bool operator()(Index e) const {
+    return rows[e][5] == node && rows[e][0] == e;
+  }
+};
+struct IsWanted {
+  Index every;  // 0: none
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return every > 0 && (i * 7) % every == 0; }
+};
+
+TEST_CASE("select gives the numbers for which a function holds, ascending", "[backend]") {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
+    for (Index n : {0, 1, 31, 32, 33, 4097, 100000})
+      for (Index every : {0, 1, 2, 33, 5000}) {
+        INFO("one in " << every << " of " << n);
+        std::vector<Index> expected;
+        for (Index i = 0; i < n; ++i)
+          if (IsWanted{every}(i)) expected.push_back(i);
+        CHECK(backend.select(n, IsWanted{every}) == expected);
+      }
+  });
+}
+
+TEST_CASE("tables give the nodes of their elements", "[backend]") {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
+    std::vector<std::array<Index, 6>> connectivity;
+    for (Index e = 0; e < 100; ++e) connectivity.push_back({e, e + 1, e + 2, e + 3, e + 4, 2 * e});
+    typename B::template Elements<6> const elements(
+        backend, connectivity, 1, std::vector<Tag>(100, 0), 200, NodeOrder::as_given);
+    auto const rows = elements.rows_of_nodes();
+    auto const last_is = [rows](Index node) { return LastNodeIs{rows, node}; };
+    CHECK(backend.select(100, last_is(84)) == std::vector<Index>{42});
+    CHECK(backend.select(100, last_is(85)).empty());
+  });
+}
+
 TEST_CASE("a histogram adds weights to bins", "[backend]") {
   on_each_backend<AllPairs>([]<class B>(B const& backend) {
     for (bool all_alike : {false, true})

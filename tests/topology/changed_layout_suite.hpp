@@ -15,7 +15,7 @@ void check_layout(TheBody& body) {
   auto const& own = parts.layout;
   using T = typename TheBody::scalar;
   typename TheBody::layout_type const anew(parts.backend, *parts.state.topology, parts.material,
-                                           parts.groups, own.first_order);
+                                           parts.groups, &own);
   CHECK(own.own_masses == anew.own_masses);
   CHECK(own.mass_list == anew.mass_list);
   CHECK(own.internal_node == anew.internal_node);
@@ -78,6 +78,24 @@ TEST_CASE("a layout that was changed is what a new one would be", "[topology]") 
   });
 }
 
+/// What TouchedElements asks for, by a look at all elements.
+template <class M>
+struct FoundByLooking {
+  M const& mesh;
+  std::vector<Index> const& nodes;
+  template <Element E>
+  std::vector<Index> of() const {
+    std::vector<Index> found;
+    auto const& elements = mesh.template elements<E>();
+    for (std::size_t e = 0; e < elements.size(); ++e)
+      if (std::ranges::any_of(elements[e], [&](Index node) {
+            return std::ranges::find(nodes, node) != nodes.end();
+          }))
+        found.push_back(static_cast<Index>(e));
+    return found;
+  }
+};
+
 /// By the new number of each element the old one of those that stay, -1 for others.
 template <class M>
 std::vector<Index> old_elements(TopologyChange<M> const& change) {
@@ -97,7 +115,10 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
   body.on_change([&](TopologyChange<Own> const& made) {
     if (!made.before.tree) return;
     auto const before = elements_in_order(made.before, first);
-    detail::TouchedElements<Own> const touched(made.before, made.after, made.transfer);
+    detail::TouchedElements<Own> const touched(
+        made.before, made.after, made.transfer, [&](std::vector<Index> const& nodes) {
+          return FoundByLooking<Own>{made.before.mesh(), nodes};
+        });
     auto const changed = changed_blocks(made.after, first, made.transfer, touched);
     OrderBefore<1, 3> const known{
         {before.elements[0]}, {before.blocks[0].first}, made.transfer, changed.elements};

@@ -21,14 +21,15 @@ template <class TheBody>
 std::vector<std::vector<Index>> some(TheBody const& body, std::size_t one_in, Random& random,
                                      int type_wanted) {
   std::vector<std::vector<Index>> lists;
-  detail::for_each_type_of(body.mesh(), [&]<Element E>(E, std::size_t type) {
-    auto& own = lists.emplace_back();
-    auto const count = static_cast<Index>(body.mesh().template elements<E>().size());
-    for (Index e = 0; e < count; ++e)
-      if ((type_wanted < 0 || type == static_cast<std::size_t>(type_wanted)) &&
-          random.below(one_in) == 0)
-        own.push_back(e);
-  });
+  detail::for_each_type_of<std::remove_cvref_t<decltype(body.mesh())>>(
+      [&]<Element E>(E, std::size_t type) {
+        auto& own = lists.emplace_back();
+        auto const count = static_cast<Index>(body.mesh().template elements<E>().size());
+        for (Index e = 0; e < count; ++e)
+          if ((type_wanted < 0 || type == static_cast<std::size_t>(type_wanted)) &&
+              random.below(one_in) == 0)
+            own.push_back(e);
+      });
   return lists;
 }
 template <class TheBody>
@@ -111,7 +112,7 @@ void check_continuity(TheBody& body, Random& random) {
   auto const u = body.displacements();
   auto const& mesh = body.mesh();
   FieldOf<dim> places, values;
-  detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t) {
+  detail::for_each_type_of<std::remove_cvref_t<decltype(mesh)>>([&]<Element E>(E, std::size_t) {
     for (auto const& nodes : mesh.template elements<E>())
       on_sides<typename E::cell>(16, [&](auto const& xi) {  // of the coarsest; levels up to 3
         auto const shape = E::shape(xi);

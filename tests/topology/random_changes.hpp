@@ -40,9 +40,10 @@ template <class TheBody, class Wanted>
 std::vector<std::vector<Index>> some_where(TheBody const& body, std::size_t one_in, Random& random,
                                            Wanted const& wanted) {
   auto lists = some(body, one_in, random, -1);
-  detail::for_each_type_of(body.mesh(), [&](auto element, std::size_t type) {
-    if (!wanted(element)) lists[type].clear();
-  });
+  detail::for_each_type_of<std::remove_cvref_t<decltype(body.mesh())>>(
+      [&](auto element, std::size_t type) {
+        if (!wanted(element)) lists[type].clear();
+      });
   return lists;
 }
 constexpr auto of_degree(int degree) {

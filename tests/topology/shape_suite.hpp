@@ -64,9 +64,10 @@ void on_cases(Visit const& visit) {
 template <class TheBody>
 std::vector<std::vector<Index>> all_parts(TheBody const& body) {
   auto lists = all(body, -1);
-  detail::for_each_type_of(body.mesh(), [&]<Element E>(E, std::size_t type) {
-    if (!is_part<E>) lists[type].clear();
-  });
+  detail::for_each_type_of<std::remove_cvref_t<decltype(body.mesh())>>(
+      [&]<Element E>(E, std::size_t type) {
+        if (!is_part<E>) lists[type].clear();
+      });
   return lists;
 }
 

@@ -1,8 +1,8 @@
 #include <random>
 
-#include <catch2/catch.hpp>
-
 #include <pliant/topology/shared_list.hpp>
+
+#include "support/catch.hpp"
 
 // Copies of a SharedList, and what changes in one of them.
 namespace pliant::test {

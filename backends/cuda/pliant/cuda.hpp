@@ -4,10 +4,12 @@
 #error "pliant/cuda.hpp needs nvcc: compile this file as CUDA (.cu), and link pliant::cuda."
 #endif
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/kernel.hpp>
@@ -20,6 +22,7 @@
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
 #include <pliant/cuda/scatter.cuh>
+#include <pliant/cuda/select.cuh>
 #include <pliant/cuda/timer.hpp>
 #include <pliant/cuda/visit.cuh>
 
@@ -95,6 +98,15 @@ class Cuda {
   double maximum(Index n, F const& f) const {
     return n <= 0 ? -std::numeric_limits<double>::infinity()
                   : reduce<detail::Maximum>("maximum", n, f);
+  }
+
+  template <class F>
+  std::vector<Index> select(Index n, F const& f) const {
+    if (n <= 0) return {};
+    auto words = array<std::uint32_t>(detail::selected_words(n));
+    launch("select", {blocks(n, detail::node_threads), detail::node_threads},
+           detail::mark_selected<F>, n, f, words.data());
+    return detail::numbers_of_bits(download<std::uint32_t>(words));
   }
 
   template <int Groups, class Table, class Kernel, int C, class... Fields>

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <limits>
+#include <map>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/dispatch.hpp>
@@ -117,6 +119,20 @@ class OpenMP {
       largest = std::max(largest, mine);
     });
     return largest;
+  }
+  template <class F>
+  std::vector<Index> select(Index n, F const& f) const {
+    std::map<Index, std::vector<Index>> of_parts;
+    threads_.for_each_part(n, small_loop, [&](Index first, Index last) {
+      std::vector<Index> own;
+      for (Index i = first; i < last; ++i)
+        if (f(i)) own.push_back(i);
+#pragma omp critical(pliant_select)
+      of_parts.emplace(first, std::move(own));
+    });
+    std::vector<Index> found;
+    for (auto const& [first, own] : of_parts) found.insert(found.end(), own.begin(), own.end());
+    return found;
   }
   template <class U>
   Array<U> array(std::size_t count) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <tuple>
+#include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/check_nodes.hpp>
@@ -49,6 +50,9 @@ class Reference {
     HostArray<Tag> take_tags() { return std::move(tags_); }
     Tag tag(Index e) const { return tag_data_[e]; }
     void regroup() {}
+    ElementRows rows_of_nodes() const {
+      return {connectivity_.empty() ? nullptr : nodes(0), Nodes};
+    }
     Index const* nodes(Index e) const { return connectivity_[static_cast<std::size_t>(e)].data(); }
 
    private:
@@ -76,6 +80,13 @@ class Reference {
     double largest = -std::numeric_limits<double>::infinity();
     for (Index i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(f(i)));
     return largest;
+  }
+  template <class F>
+  std::vector<Index> select(Index n, F const& f) const {
+    std::vector<Index> found;
+    for (Index i = 0; i < n; ++i)
+      if (f(i)) found.push_back(i);
+    return found;
   }
   template <class U>
   Array<U> array(std::size_t count) const {

@@ -25,62 +25,58 @@ Point<E::dim> momentum(Connectivity<E> const& nodes, Vector<double, E::nodes> co
   return p;
 }
 
-/// A velocity at a node of a family. Of two pyramids that are split or merged together it is the same: where their base is
-/// not plane, volume goes over from one to the other.
+/// A velocity at a node of a family, which has a number among all. Of two pyramids that are split or merged together it is the
+/// same: where their base is not plane, volume goes over from one to the other.
 template <class M>
-Point<M::dim> velocity_in(TopologyPlan<M> const& plan,
-                          typename Transfer<M::dim>::Family const& family,
+Point<M::dim> velocity_in(TouchedElements<M> const& touched,
+                          typename Transfer<M::dim>::Family const& family, std::size_t number,
                           ValuesAt<Point<M::dim>> const& v_before,
                           ValuesAt<Point<M::dim>> const& v) {
   bool const shares_base = family.pattern != nullptr && family.pattern->halved_side >= 0;
   bool const is_merged = family.before.size() > 1;
   Point<M::dim> velocity{};
-  auto const look_at = [&](M const& mesh, auto const& member, auto const& velocities) {
-    visit_member(mesh, member, [&](auto, auto const& nodes) {
+  auto const look_at = [&](FamilyNodes<M> const& families, auto const& velocities) {
+    families.visit(number, 0, [&](auto, auto const& nodes) {
       Index const node =
           shares_base ? *std::min_element(nodes.begin(), nodes.begin() + 4) : nodes[0];
       velocity = velocities[static_cast<std::size_t>(node)];
     });
   };
   if (shares_base && is_merged)
-    look_at(plan.after->mesh, family.after[0], v);
+    look_at(touched.families_after(), v);
   else
-    look_at(plan.before->mesh, family.before[0], v_before);
+    look_at(touched.families_before(), v_before);
   return velocity;
 }
 
-/// What each node must be given so that a family keeps its momentum: the difference that lumping made, shared in
-/// proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of the mesh before and
-/// after.
+/// What each node must be given so that a family, which has a number among all, keeps its momentum: the difference that lumping
+/// made, shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of the mesh
+/// before and after.
 template <class M>
-void add_family_impulse(TopologyPlan<M> const& plan,
-                        typename Transfer<M::dim>::Family const& family, double density,
-                        ValuesAt<Point<M::dim>> const& v_before, ValuesAt<Point<M::dim>> const& v,
-                        ValuesAt<Point<M::dim>>& impulse) {
+void add_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
+                        typename Transfer<M::dim>::Family const& family, std::size_t number,
+                        double density, ValuesAt<Point<M::dim>> const& v_before,
+                        ValuesAt<Point<M::dim>> const& v, ValuesAt<Point<M::dim>>& impulse) {
   constexpr std::size_t dim = M::dim;
-  auto const& old = plan.before->mesh;
-  auto const& now = plan.after->mesh;
-  Point<dim> const base = velocity_in(plan, family, v_before, v);
+  Point<dim> const base = velocity_in(touched, family, number, v_before, v);
   Point<dim> lost{};
-  for (auto const& member : family.before)
-    visit_member(old, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
-      auto const p =
-          momentum<E>(nodes, host_nodal_volumes<E>(nodal(old, nodes)), density, v_before, base);
-      for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
-    });
+  touched.families_before().visit_all(number, [&]<Element E>(E, Connectivity<E> const& nodes) {
+    auto const p = momentum<E>(nodes, host_nodal_volumes<E>(nodal(*plan.before, nodes)), density,
+                               v_before, base);
+    for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
+  });
   double volume = 0;
   std::vector<std::pair<Index, double>> shares;  // of nodes, in this volume
   shares.reserve(8 * family.after.size());
-  for (auto const& member : family.after)
-    visit_member(now, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
-      auto const own = host_nodal_volumes<E>(nodal(now, nodes));
-      auto const p = momentum<E>(nodes, own, density, v, base);
-      for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
-      for (int a = 0; a < E::nodes; ++a) {
-        volume += own[a];
-        shares.emplace_back(nodes[static_cast<std::size_t>(a)], own[a]);
-      }
-    });
+  touched.families_after().visit_all(number, [&]<Element E>(E, Connectivity<E> const& nodes) {
+    auto const own = host_nodal_volumes<E>(nodal(*plan.after, nodes));
+    auto const p = momentum<E>(nodes, own, density, v, base);
+    for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
+    for (int a = 0; a < E::nodes; ++a) {
+      volume += own[a];
+      shares.emplace_back(nodes[static_cast<std::size_t>(a)], own[a]);
+    }
+  });
   for (auto const& [node, share] : shares)
     for (std::size_t k = 0; k < dim; ++k)
       impulse[static_cast<std::size_t>(node)][k] += lost[k] * share / volume;
@@ -89,15 +85,12 @@ void add_family_impulse(TopologyPlan<M> const& plan,
 /// What each node must be given where an element stays, but one of its nodes begins or ceases to hang: the difference in the
 /// velocity at which its mass moves.
 template <Element E, class M>
-void add_impulse_of_slaves(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
+void add_impulse_of_slaves(Topology<M> const& now, TouchedElements<M> const& touched,
                            std::size_t type, double density,
                            ValuesAt<Point<M::dim>> const& v_before,
                            ValuesAt<Point<M::dim>> const& v, ValuesAt<Point<M::dim>>& impulse) {
-  auto const& old = plan.before->mesh;
-  auto const& now = plan.after->mesh;
   for (auto const& element : touched.of_type(type).staying) {
-    auto const& from = old.template elements<E>()[static_cast<std::size_t>(element.before)];
-    auto const& to = now.template elements<E>()[static_cast<std::size_t>(element.after)];
+    auto const& to = touched.template nodes_after<E>()[element.place];
     auto const changes = [&](Index node) { return touched.hangs_otherwise(node); };
     if (std::ranges::none_of(to, changes)) continue;
     auto const volumes = host_nodal_volumes<E>(nodal(now, to));
@@ -106,7 +99,7 @@ void add_impulse_of_slaves(TopologyPlan<M> const& plan, TouchedElements<M> const
         for (std::size_t k = 0; k < M::dim; ++k)
           impulse[static_cast<std::size_t>(to[a])][k] +=
               density * volumes[static_cast<int>(a)] *
-              (v_before[static_cast<std::size_t>(from[a])][k] -
+              (v_before[static_cast<std::size_t>(touched.old_number(to[a]))][k] -
                v[static_cast<std::size_t>(to[a])][k]);
   }
 }
@@ -129,10 +122,10 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M>
   plan.before->interpolation.apply_masses(components(v_before), M::dim);
   plan.after->interpolation.apply_masses(components(moving), M::dim);
   ValuesAt<Point<dim>> impulse(*v.subset);
-  for (auto const& family : plan.transfer.families())
-    add_family_impulse(plan, family, density, v_before, moving, impulse);
-  for_each_type_of(plan.after->mesh, [&]<Element E>(E, std::size_t type) {
-    add_impulse_of_slaves<E>(plan, touched, type, density, v_before, moving, impulse);
+  for (std::size_t number = 0; auto const& family : plan.transfer.families())
+    add_family_impulse(plan, touched, family, number++, density, v_before, moving, impulse);
+  for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
+    add_impulse_of_slaves<E>(*plan.after, touched, type, density, v_before, moving, impulse);
   });
   plan.after->interpolation.hand_masses(components(impulse), M::dim);
   Point<dim> taken{};

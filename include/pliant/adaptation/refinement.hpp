@@ -17,7 +17,7 @@ namespace detail {
 template <Element E, class Parts>
 std::vector<int> levels_of(Parts const& parts) {
   auto const& topology = *parts.state.topology;
-  if (!topology.tree) return std::vector<int>(topology.mesh.template elements<E>().size(), 0);
+  if (!topology.tree) return std::vector<int>(topology.mesh().template elements<E>().size(), 0);
   std::vector<int> levels;
   for (Index c : topology.cells[Parts::layout_type::template type_of<E>])
     levels.push_back(topology.tree->cell(c).level);
@@ -106,7 +106,7 @@ struct MergingReport {
 /// element is unknown or the body's limits would be exceeded.
 template <class Parts>
 auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
-  HostThreads const threads(parts.backend, parts.state.topology->mesh);
+  HostThreads const threads(parts.backend, *parts.state.topology);
   return plan_change(parts.state.topology, marked,
                      {parts.limits.nodes, parts.limits.elements, max_level},
                      detail::kept_parts(parts), detail::element_values_of(parts));
@@ -117,7 +117,7 @@ auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level
 template <class Parts>
 void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   constexpr int dim = Parts::dim;
-  HostThreads const threads(parts.backend, plan.after->mesh);
+  HostThreads const threads(parts.backend, *plan.after);
   wake_all(parts);
   auto const energies_but_strain = [](Parts& p) {
     return Energies{0, kinetic_energy_of(p), p.watched_energy ? potential_energy_of(p) : 0};
@@ -176,7 +176,7 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
                         int max_level = 30) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
-  detail::check_lists(body.mesh(), "refine", marked);
+  detail::check_lists<typename TheBody::mesh_type>("refine", marked);
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
   commit(body.parts(), *plan);
@@ -195,7 +195,7 @@ template <DeformableBody TheBody>
 CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& marked) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
-  detail::check_lists(body.mesh(), "coarsen", marked);
+  detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
   auto const plan = plan_change(body.parts(), {.coarsen = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);
@@ -217,7 +217,7 @@ RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked
                     RaiseOptions options = {}) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
-  detail::check_lists(body.mesh(), "raise", marked);
+  detail::check_lists<typename TheBody::mesh_type>("raise", marked);
   if (options.ring < 0)
     throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
   auto const plan = plan_change(body.parts(), {.raise = marked, .raised_rings = options.ring});
@@ -235,7 +235,7 @@ template <DeformableBody TheBody>
 LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marked) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
-  detail::check_lists(body.mesh(), "lower", marked);
+  detail::check_lists<typename TheBody::mesh_type>("lower", marked);
   auto const plan = plan_change(body.parts(), {.lower = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);
@@ -257,7 +257,7 @@ SplittingReport split(TheBody& body, std::vector<std::vector<Index>> const& mark
                       SplitOptions options = {}) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
-  detail::check_lists(body.mesh(), "split", marked);
+  detail::check_lists<typename TheBody::mesh_type>("split", marked);
   if (options.triangles != 2 && options.triangles != 4)
     throw Error("split: into ", options.triangles, " triangles; give 2 or 4");
   MarkedElements wanted;
@@ -277,7 +277,7 @@ template <DeformableBody TheBody>
 MergingReport merge(TheBody& body, std::vector<std::vector<Index>> const& marked) {
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
-  detail::check_lists(body.mesh(), "merge", marked);
+  detail::check_lists<typename TheBody::mesh_type>("merge", marked);
   auto const plan = plan_change(body.parts(), {.merge = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);

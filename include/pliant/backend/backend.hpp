@@ -2,6 +2,7 @@
 
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,6 +32,7 @@
 //                              nothing
 //   histogram(n, f, bins)      adds f(i).weight to bins[f(i).number], an array of at most 256 integers
 //                              in the backend's memory; a negative number: nowhere
+//   select(n, f)               std::vector<Index>; the i for which f(i), a bool, ascending
 //   for_each_task(n, f) threads()   of backends that have threads on the host, not asked of others: f(k) there,
 //                              in no order, each call worth a thread (backend/host_tasks.hpp)
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
@@ -50,6 +52,7 @@
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes, order)
 //                              throws Error where an element has a node outside [0, nodes); order: see NodeOrder;
 //                              two more arguments where a backend plans by blocks: see backend/element_blocks.hpp
+//   .rows_of_nodes()           an ElementRows: the nodes of each element, where loops run
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run
@@ -82,6 +85,15 @@ enum class NodeOrder { as_given, any_even };
 /// The tag of an element that no group holds.
 inline constexpr Tag no_group = 255;
 
+/// The nodes of elements, side by side; `width` entries for each, of which the first are its nodes.
+struct ElementRows {
+  Index const* nodes;
+  int width;
+  PLIANT_HOST_DEVICE Index const* operator[](Index e) const {
+    return nodes + static_cast<std::ptrdiff_t>(width) * e;
+  }
+};
+
 /// What a function adds to a histogram.
 struct Bin {
   int number;  // negative: none
@@ -103,6 +115,9 @@ namespace detail {
 struct NodeProbe {
   PLIANT_HOST_DEVICE double operator()(Index) const { return 0; }
   void operator()() const {}
+};
+struct SelectProbe {
+  PLIANT_HOST_DEVICE bool operator()(Index) const { return false; }
 };
 struct BinProbe {
   PLIANT_HOST_DEVICE Bin operator()(Index) const { return {0, 0}; }
@@ -142,6 +157,7 @@ concept TableOf =
       { e.take_tags() } -> std::same_as<typename B::template Array<Tag>>;
       e.regroup();
       { c.count() } -> std::same_as<Index>;
+      { c.rows_of_nodes() } -> std::same_as<ElementRows>;
       { c.scratch_nodes() } -> std::same_as<Index>;
       { c.patch_size() } -> std::same_as<Index>;
       { c.patch_count() } -> std::same_as<Index>;
@@ -162,11 +178,13 @@ template <class B>
 concept Backend =
     std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
     BackendArray<typename B::template Array<typename B::scalar>, typename B::scalar> &&
-    requires(B const& b, Index n, detail::NodeProbe f, detail::BinProbe bin, std::int64_t* bins,
-             typename B::Recording const& recording, typename B::Timer timer) {
+    requires(B const& b, Index n, detail::NodeProbe f, detail::SelectProbe wanted,
+             detail::BinProbe bin, std::int64_t* bins, typename B::Recording const& recording,
+             typename B::Timer timer) {
       b.for_each(n, f);
       { b.sum(n, f) } -> std::same_as<double>;
       { b.maximum(n, f) } -> std::same_as<double>;
+      { b.select(n, wanted) } -> std::same_as<std::vector<Index>>;
       b.add_sum(n, f, static_cast<double*>(nullptr));
       b.histogram(n, bin, bins);
       { b.record(f) } -> std::same_as<typename B::Recording>;

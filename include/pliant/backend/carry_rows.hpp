@@ -48,4 +48,32 @@ auto carried_field(B const& backend, Index nodes, Array const& from, Places cons
   return field;
 }
 
+/// to[places[i]] = from[i], except where that is negative.
+template <class T>
+struct PutValues {
+  T const* from;
+  T* to;
+  Index const* places;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (Index const place = places[i]; place >= 0) to[place] = from[i];
+  }
+};
+/// The same as carried_field of one value per node: value(i) at places[i].
+template <class B, class Array, class Places, class Value>
+auto carried_values(B const& backend, Index nodes, Array const& from, Places const& now,
+                    std::vector<Index> const& places, Value const& value) {
+  using Scalar = typename B::scalar;
+  auto values = zeros<Scalar>(backend, static_cast<std::size_t>(nodes));
+  backend.for_each(static_cast<Index>(now.size()),
+                   PutValues<Scalar>{from.data(), values.data(), now.data()});
+  std::vector<Scalar> some;
+  some.reserve(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) some.push_back(value(i));
+  auto const own = upload(backend, some);
+  auto const at = upload(backend, places);
+  backend.for_each(static_cast<Index>(places.size()),
+                   PutValues<Scalar>{own.data(), values.data(), at.data()});
+  return values;
+}
+
 }  // namespace pliant::detail

@@ -42,7 +42,9 @@ class HostThreads {
   explicit HostThreads(B const& backend) : HostThreads(threads_of(backend)) {}
   /// For work on a mesh: 1 for a small one, which is done before threads have started.
   template <class M>
-    requires requires(M const& mesh) { mesh.tables; }
+    requires(
+        requires(M const& mesh) { mesh.tables; } ||
+        requires(M const& mesh) { mesh.connectivity_size(); })
   explicit HostThreads(M const& mesh, int most = available())
       : HostThreads(worth(connectivity_size(mesh), most)) {}
   template <class B, class M>
@@ -112,12 +114,16 @@ class HostThreads {
 
   template <class M>
   static std::size_t connectivity_size(M const& mesh) {
-    std::size_t size = 0;
-    auto const add = [&]<class T, std::size_t N>(std::vector<std::array<T, N>> const& elements) {
-      size += N * elements.size();
-    };
-    std::apply([&](auto const&... elements) { (add(elements), ...); }, mesh.tables);
-    return size;
+    if constexpr (requires { mesh.connectivity_size(); }) {
+      return mesh.connectivity_size();
+    } else {
+      std::size_t size = 0;
+      auto const add = [&]<class T, std::size_t N>(std::vector<std::array<T, N>> const& elements) {
+        size += N * elements.size();
+      };
+      std::apply([&](auto const&... elements) { (add(elements), ...); }, mesh.tables);
+      return size;
+    }
   }
 
   void share(int count, FunctionRef<void(int)> task) {

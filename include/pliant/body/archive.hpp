@@ -18,7 +18,7 @@ namespace pliant {
 namespace detail {
 
 inline constexpr std::string_view archive_magic{"PLIANT\r\n", 8};
-inline constexpr std::uint32_t archive_version = 14;
+inline constexpr std::uint32_t archive_version = 15;
 
 /// Writes members of a state. The first mesh is not written: the body has it.
 template <class M>
@@ -211,7 +211,7 @@ void load_state(Stream& stream, Parts& parts) {
     State::for_each_member(detail::ReadMember<B, M>{read, state.topology}, checkpoint.emplace());
   read.finish();
   typename Parts::layout_type layout(parts.backend, *state.topology, parts.material, parts.groups,
-                                     parts.layout.first_order);
+                                     &parts.layout);
   auto const complete = [&](State& s) {
     detail::check_sizes(s, layout);
     s.prescribed = detail::with_motions<dim>(*s.prescribed, parts.motions);

@@ -45,7 +45,7 @@ class Body {
   // What it is made of, and where it is.
   B const& backend() const { return parts_->backend; }
   Elastic const& material() const { return parts_->material; }
-  M const& mesh() const { return parts_->state.topology->mesh; }
+  M const& mesh() const { return parts_->state.topology->mesh(); }
   Index nodes() const { return parts_->layout.nodes; }
   state_type const& state() const { return parts_->state; }
   double time() const { return parts_->state.time; }  // s
@@ -193,10 +193,8 @@ class Body {
                                                  std::tuple<Group<Fs>...> groups) {
     HostThreads const threads(backend, mesh);
     check(mesh);
-    auto topology = std::make_shared<Topology<M>>();
-    topology->interpolation = Interpolation(compose(mesh.slaves));
-    topology->element_values = element_values(mesh, groups, material);
-    topology->mesh = std::move(mesh);
+    auto topology = std::make_shared<Topology<M>>(std::move(mesh));
+    topology->element_values = element_values(topology->mesh(), groups, material);
     layout_type layout(backend, *topology, material, groups);
     auto parts = std::unique_ptr<parts_type>(new parts_type{.backend = std::move(backend),
                                                             .material = material,

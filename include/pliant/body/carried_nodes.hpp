@@ -9,6 +9,7 @@
 #include <pliant/backend/carry_rows.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/check_field.hpp>
+#include <pliant/body/touched_elements.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
@@ -71,17 +72,21 @@ class CarriedNodes {
  public:
   using Values = ValuesAt<Point<dim>>;
 
-  CarriedNodes(Parts const& parts, Topology<M> const& after, Transfer<dim> const& transfer)
+  CarriedNodes(Parts const& parts, Topology<M> const& after, Transfer<dim> const& transfer,
+               TouchedElements<M> const& touched)
       : parts_(parts),
         transfer_(transfer),
         old_numbers_(transfer.old_numbers()),
-        before_(nodes_before(*parts.state.topology, after), old_node_count()),
+        before_(nodes_before(*parts.state.topology, after, touched), old_node_count()),
         after_(nodes_after(), static_cast<std::size_t>(transfer.nodes())) {
     std::vector<Index> places;
     places.reserve(before_.nodes.size());
     for (Index const node : before_.nodes) places.push_back(parts.layout.internal_of(node));
     places_before_ = upload(parts.backend, places);
   }
+
+  /// The nodes that it looks at, by their new numbers, ascending.
+  std::vector<Index> const& looked_at() const { return after_.nodes; }
 
   /// Throws Error where a value of a field is not finite.
   void check(char const* what, Array const& field) const {
@@ -132,20 +137,14 @@ class CarriedNodes {
     return old_numbers_.empty() ? now : old_numbers_[static_cast<std::size_t>(now)];
   }
   /// Those of elements that come or go, of hanging nodes and what they hang at, and parents of new nodes.
-  std::vector<Index> nodes_before(Topology<M> const& before, Topology<M> const& after) const {
+  std::vector<Index> nodes_before(Topology<M> const& before, Topology<M> const& after,
+                                  TouchedElements<M> const& touched) const {
     std::vector<Index> list;
     auto const add_now = [&](Index now) {
       if (Index const old = old_number(now); old >= 0) list.push_back(old);
     };
-    for (auto const& family : transfer_.families()) {
-      for (auto const& member : family.before)
-        visit_member(before.mesh, member, [&](auto, auto const& nodes) {
-          list.insert(list.end(), nodes.begin(), nodes.end());
-        });
-      for (auto const& member : family.after)
-        visit_member(after.mesh, member,
-                     [&](auto, auto const& nodes) { std::ranges::for_each(nodes, add_now); });
-    }
+    std::ranges::for_each(touched.nodes(), add_now);
+    for (NewNode const& n : transfer_.gone()) list.push_back(n.node);
     auto const add_slaves = [](Interpolation const& interpolation, auto const& add) {
       for (auto const& [node, masters] : interpolation.slaves()) {
         add(node);

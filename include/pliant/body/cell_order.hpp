@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -66,7 +66,7 @@ std::array<ElementBlocks, sizeof...(Es)> first_blocks(Mesh<Es...> const& mesh) {
   std::array<ElementBlocks, sizeof...(Es)> blocks;
   auto const cells = static_cast<Index>((mesh.template elements<Es>().size() + ... + 0));
   Index before = 0;
-  detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+  detail::for_each_type_of<Mesh<Es...>>([&]<Element E>(E, std::size_t type) {
     auto const own = static_cast<Index>(mesh.template elements<E>().size());
     for (Index c = 0; c < cells; c += cells_per_block)
       blocks[type].first.push_back(std::clamp(c - before, Index{0}, own));
@@ -145,19 +145,33 @@ void for_each_leaf(Hierarchy<Dim> const& tree, CellOrder const& first, Index blo
   for (Index i = begin; i < end; ++i) descend(descend, first.cells[static_cast<std::size_t>(i)]);
 }
 
-/// By the old number of each element of a type that stays, its new one.
-template <int Dim>
-std::vector<Index> new_elements(Transfer<Dim> const& transfer, std::size_t type,
-                                std::size_t before) {
-  std::vector<Index> now(before, -1);
-  Index e = 0;
-  for (auto const& origin : transfer.origins(type)) {
-    if (origin.child == Transfer<Dim>::Origin::same)
-      std::iota(now.begin() + origin.element, now.begin() + origin.element + origin.count, e);
-    e += origin.count;
+/// The new numbers of elements of a type that stay.
+class NewElements {
+ public:
+  template <class Origin>
+  explicit NewElements(std::vector<Origin> const& origins) {
+    Index e = 0;
+    for (auto const& origin : origins) {
+      if (origin.child == Origin::same)
+        runs_.push_back({origin.element, origin.element + origin.count, e - origin.element});
+      e += origin.count;
+    }
   }
-  return now;
-}
+  /// To be asked for elements of which many follow each other.
+  auto numbers() const {
+    return [this, run = Run{}](Index old) mutable {
+      if (old < run.first || old >= run.last)
+        run = *(std::ranges::upper_bound(runs_, old, {}, &Run::first) - 1);
+      return old + run.shift;
+    };
+  }
+
+ private:
+  struct Run {
+    Index first = 0, last = 0, shift = 0;
+  };
+  std::vector<Run> runs_;
+};
 
 }  // namespace detail
 
@@ -180,7 +194,7 @@ OrderedElements<sizeof...(Es)> elements_in_order(
       begin[type].push_back(static_cast<Index>(own[type].size()));
     if (stays(block)) continue;
     detail::for_each_leaf(*topology.tree, first, block, [&](Index c) {
-      detail::for_each_type_of(topology.mesh, [&]<Element E>(E, std::size_t type) {
+      detail::for_each_type_of<Mesh<Es...>>([&]<Element E>(E, std::size_t type) {
         if (types == 1 || detail::is_cell_of<E>(topology.tree->cell(c)))
           own[type].push_back(places[type](c));
       });
@@ -191,9 +205,8 @@ OrderedElements<sizeof...(Es)> elements_in_order(
     begin[type].push_back(static_cast<Index>(own[type].size()));
     auto& cut = ordered.blocks[type].first;
     auto& kept = ordered.blocks[type].stays;
-    std::vector<Index> now;  // of elements that stay
-    if (before != nullptr)
-      now = detail::new_elements(before->transfer, type, before->elements[type].size());
+    std::optional<detail::NewElements> now;
+    if (before != nullptr) now.emplace(before->transfer.origins(type));
     auto const all_of = [&](Index block) {
       auto const b = static_cast<std::size_t>(block);
       auto const part = [b](std::span<Index const> list, std::span<Index const> first_of) {
@@ -214,8 +227,7 @@ OrderedElements<sizeof...(Es)> elements_in_order(
     detail::for_each_on_host(blocks, few_blocks, [&](Index block) {
       auto const to = elements.begin() + cut[static_cast<std::size_t>(block)];
       if (stays(block))
-        std::ranges::transform(all_of(block), to,
-                               [&](Index old) { return now[static_cast<std::size_t>(old)]; });
+        std::ranges::transform(all_of(block), to, now->numbers());
       else
         std::ranges::copy(all_of(block), to);
     });

@@ -140,7 +140,10 @@ ChangedTopology<Parts> change_topology(
     Transfer<Parts::dim> const& transfer, GiveBack const& give_back) {
   constexpr int dim = Parts::dim;
   synchronize_velocities(parts);
-  detail::CarriedNodes<Parts> const nodes(parts, *topology, transfer);
+  detail::TouchedElements<typename Parts::mesh_type> const touched(
+      *parts.state.topology, *topology, transfer,
+      [&](std::vector<Index> const& at) { return detail::ElementsAtNodes<Parts>(parts, at); });
+  detail::CarriedNodes<Parts> const nodes(parts, *topology, transfer, touched);
   nodes.check("change of the mesh (displacements)", parts.state.u);
   nodes.check("change of the mesh (velocities)", parts.state.v);
   auto const u = nodes.after(nodes.before(parts.state.u));
@@ -148,8 +151,6 @@ ChangedTopology<Parts> change_topology(
   auto v = nodes.after(v_before);
   std::vector<Point<dim>> loads;
   if (parts.state.load.size() > 0) loads = parts.layout.in_user_order(parts.state.load);
-  detail::TouchedElements<typename Parts::mesh_type> const touched(*parts.state.topology, *topology,
-                                                                   transfer);
   std::vector<std::vector<Tag>> groups, tags;  // by type: before and after
   std::vector<std::vector<Index> const*> elements, elements_before;
   std::vector<detail::CarriedPoints> points;
@@ -161,8 +162,9 @@ ChangedTopology<Parts> change_topology(
     elements.push_back(&own.after);
     groups.push_back(user_groups<typename Table::element>(std::as_const(parts)));
   });
-  double const energy_before =
-      detail::energy_of_some(std::as_const(parts), elements_before, groups);
+  double const energy_before = detail::energy_of_some(
+      std::as_const(parts), elements_before,
+      [&]<Element E>() -> auto& { return touched.template nodes_before<E>(); }, groups);
   parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
     std::size_t const type = tags.size();
@@ -173,8 +175,9 @@ ChangedTopology<Parts> change_topology(
       std::make_shared<Prescribed<dim> const>(detail::carried(*parts.state.prescribed, transfer));
 
   typename Parts::layout_type layout(parts.backend, *topology, parts.material, parts.groups,
-                                     parts.layout, transfer, touched);
-  std::vector<DirectionMask> held(topology->mesh.nodes.size(), 0);  // by the user's number
+                                     parts.layout, transfer, touched, nodes.looked_at());
+  std::vector<DirectionMask> held(static_cast<std::size_t>(topology->nodes()),
+                                  0);  // by the user's number
   for (auto const& condition : prescribed->conditions)
     for (Index node : condition.nodes) held[static_cast<std::size_t>(node)] |= condition.directions;
   Point<dim> const taken = give_back(touched, layout, held, std::move(v_before), v);
@@ -198,8 +201,9 @@ ChangedTopology<Parts> change_topology(
   }
   std::size_t type = 0;
   next.for_each_type([&](auto& table, auto& of_type) {
+    using Table = std::remove_cvref_t<decltype(table)>;
     auto const internal = table.tags_in_internal_order(tags[type]);
-    of_type.tags.upload(internal);
+    if constexpr (Table::groups > 1) of_type.tags.upload(internal);
     auto const& own = points[type++];
     of_type.internal_variables.upload(table.in_internal_order(own.rows));
     of_type.statistics = {};
@@ -208,7 +212,9 @@ ChangedTopology<Parts> change_topology(
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
   state.implicit = {};
-  changed.strain_energy = detail::energy_of_some(std::as_const(next), elements, tags);
+  changed.strain_energy = detail::energy_of_some(
+      std::as_const(next), elements,
+      [&]<Element E>() -> auto& { return touched.template nodes_after<E>(); }, tags);
   return changed;
 }
 

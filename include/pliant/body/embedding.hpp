@@ -42,9 +42,9 @@ template <class Parts>
 typename Parts::Field from_user(Parts& parts, typename Parts::T const* values, int stride,
                                 typename Parts::template Array<typename Parts::T>& to) {
   typename Parts::Field const field{to.data()};
-  parts.backend.for_each(parts.layout.nodes,
-                         FromUser<typename Parts::T, Parts::dim>{
-                             field, values, stride, parts.layout.user_node_array.data()});
+  parts.backend.for_each(parts.layout.nodes, FromUser<typename Parts::T, Parts::dim>{
+                                                 field, values, stride,
+                                                 parts.layout.user_nodes_on(parts.backend).data()});
   parts.layout.interpolation.apply(parts.backend, field);
   return field;
 }
@@ -52,9 +52,10 @@ typename Parts::Field from_user(Parts& parts, typename Parts::T const* values, i
 template <class Parts>
 void add_to_user(Parts& parts, typename Parts::Field field, typename Parts::T* to, int stride) {
   parts.layout.interpolation.clear(parts.backend, field);
-  parts.backend.for_each(parts.layout.nodes,
-                         AddToUser<typename Parts::T, Parts::dim>{
-                             {field.data}, to, stride, parts.layout.user_node_array.data()});
+  parts.backend.for_each(
+      parts.layout.nodes,
+      AddToUser<typename Parts::T, Parts::dim>{
+          {field.data}, to, stride, parts.layout.user_nodes_on(parts.backend).data()});
 }
 }  // namespace detail
 
@@ -99,9 +100,9 @@ double energy_of(Parts& parts, typename Parts::T const* u, int stride) {
 
 template <class Parts>
 void add_lumped_mass(Parts const& parts, typename Parts::T* m) {
-  parts.backend.for_each(
-      parts.layout.nodes,
-      AddMass<typename Parts::T>{parts.layout.mass.data(), m, parts.layout.user_node_array.data()});
+  parts.backend.for_each(parts.layout.nodes, AddMass<typename Parts::T>{
+                                                 parts.layout.mass.data(), m,
+                                                 parts.layout.user_nodes_on(parts.backend).data()});
 }
 
 template <class Parts>

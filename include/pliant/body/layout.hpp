@@ -49,13 +49,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   std::shared_ptr<CellOrder const> first_order;
-  std::vector<double> own_masses;               // kg, in the user's order, slaves' with them
-  std::vector<double> mass_list;                // the same, slaves' handed on
-  double mass_in_all = 0;                       // kg
+  SharedList<double> own_masses;                // kg, in the user's order, slaves' with them
+  SharedList<double> mass_list;                 // the same, slaves' handed on
+  double mass_in_all = 0;                       // kg, of the first mesh
   std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
   Index nodes = 0;
-  Point<dim> middle{};  // m, of the box around the body: `rest` is relative to it
-  Array<Index> user_node_array;
+  Point<dim> middle{};        // m, of the box around the first mesh: `rest` is relative to it
   Array<T> rest, f;           // (nodes, 4); f with scratch rows behind
   Array<T> mass;              // (nodes)
   Array<DirectionMask> held;  // (nodes)
@@ -68,21 +67,26 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// gone.
   Array<Index> node_now;
 
-  /// `first`: the order of the body's first mesh; null: this is it.
+  /// `other`: a layout of the same body, of another topology; null: this is the first one.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-         std::tuple<Group<Fs>...> const& groups, std::shared_ptr<CellOrder const> first = nullptr)
-      : first_order(std::move(first)) {
+         std::tuple<Group<Fs>...> const& groups, Layout const* other = nullptr) {
+    if (other != nullptr) {
+      first_order = other->first_order;
+      middle = other->middle;
+      mass_in_all = other->mass_in_all;
+    }
     make(backend, topology, material, groups, nullptr,
-         [&] { return detail::lumped_masses(topology.mesh, material.density); });
+         [&] { return SharedList(detail::lumped_masses(topology.mesh(), material.density)); });
   }
   /// The same from the layout before a change.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups, Layout const& before,
-         Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched)
-      : first_order(before.first_order) {
-    Change const change{before, transfer, touched};
+         Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched,
+         std::vector<Index> const& looked_at)
+      : first_order(before.first_order), mass_in_all(before.mass_in_all), middle(before.middle) {
+    Change const change{before, transfer, touched, looked_at};
     make(backend, topology, material, groups, &change, [&] {
-      return detail::changed_masses(topology.mesh, material.density, before.own_masses, transfer,
+      return detail::changed_masses(topology, material.density, before.own_masses, transfer,
                                     touched);
     });
   }
@@ -93,6 +97,11 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     std::apply([&](auto const&... table) { kept.elements = {table.user_element...}; }, tables);
     std::ranges::copy(first_of_block, kept.first.begin());
     return kept;
+  }
+  /// The user's numbers of nodes, in the backend's memory.
+  Array<Index> const& user_nodes_on(B const& backend) const {
+    if (user_node_array_.size() == 0) user_node_array_ = upload(backend, user_node);
+    return user_node_array_;
   }
   Index internal_of(Index user) const { return internal_node[static_cast<std::size_t>(user)]; }
 
@@ -142,18 +151,18 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
             std::tuple<Group<Fs>...> const& groups, Change const* change,
             FindOwnMasses const& find_own_masses) {
-    auto const& mesh = topology.mesh;
-    HostThreads const threads(backend, mesh);
-    auto [numbering, blocks] = detail::numbered(topology, first_order.get(), change);
+    HostThreads const threads(backend, topology);
+    auto [numbering, blocks, changed] = detail::numbered(topology, first_order.get(), change);
     first_nodes = std::move(numbering.first_nodes);
-    if (!first_order)
+    if (!first_order) {
       first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
+      middle = detail::extent(topology).middle;
+    }
     internal_node = numbering.internal_node;
     user_node = std::move(numbering.user_node);
     nodes = static_cast<Index>(user_node.size());
-    user_node_array = upload(backend, user_node);
 
-    if (change != nullptr) follow_nodes(backend, *change, blocks);
+    if (change != nullptr) follow_nodes(backend, *change, blocks, changed);
     Index scratch = 0;
     [&, &numbering = numbering, &blocks = blocks]<std::size_t... I>(std::index_sequence<I...>) {
       (make_table<I>(backend, numbering, blocks[I], change, topology, material, groups, scratch),
@@ -162,7 +171,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     for (std::size_t type = 0; type < first_of_block.size(); ++type)
       first_of_block[type] = std::move(blocks[type].first);
 
-    make_rest(backend, mesh, change);
+    make_rest(backend, topology, change);
     f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
                                             static_cast<std::size_t>(scratch));
     held = zeros<DirectionMask>(backend, static_cast<std::size_t>(nodes));
@@ -176,15 +185,18 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     own_masses = find_own_masses();
     mass_list = own_masses;
     topology.interpolation.hand_masses(
-        [&](Index i, int) -> double& { return mass_list[static_cast<std::size_t>(i)]; }, 1);
-    for (double m : mass_list) mass_in_all += m;
-    mass = upload(backend, internal_masses(material.density));
+        [&](Index i, int) -> double& { return mass_list.edit(static_cast<std::size_t>(i)); }, 1);
+    if (mass_in_all == 0)
+      for (double m : mass_list) mass_in_all += m;
+    make_mass(backend, material.density, change);
   }
 
   /// Finds node_now, and tells blocks that stay where their elements were.
   void follow_nodes(B const& backend, Change const& change,
-                    std::array<ElementBlocks, sizeof...(Es)>& blocks) {
-    node_now = upload(backend, detail::nodes_now(change, internal_node));
+                    std::array<ElementBlocks, sizeof...(Es)>& blocks,
+                    ChangedBlocks const& changed) {
+    node_now = detail::nodes_now(backend, change, detail::KeptNodes(&change, changed), first_nodes,
+                                 [&](Index user) { return internal_of(user); });
     for (std::size_t type = 0; type < blocks.size(); ++type) {
       if (!blocks[type].some_stay()) continue;
       blocks[type].first_before = change.before.first_of_block[type];
@@ -200,7 +212,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     using TableType = std::remove_reference_t<decltype(table)>;
     constexpr bool by_blocks = PlansByBlocks<decltype(table.elements), B>;
     auto rows = std::move(std::get<I>(numbering.tables));
-    if (rows.empty()) rows = numbering.template rows_of<I>(topology.mesh, blocks, !by_blocks);
+    if (rows.empty()) rows = numbering.template rows_of<I>(topology, blocks, !by_blocks);
     table.user_element = std::move(numbering.user_element[I]);
     auto const make_elements = [&](auto const&... planned) {
       table.elements = {backend,
@@ -217,7 +229,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     else
       make_elements();
     scratch = std::max(scratch, table.elements.scratch_nodes());
-    table.straight = detail::is_straight<typename TableType::element, T>(topology.mesh);
+    table.straight = detail::is_straight<typename TableType::element, T>(topology);
     table.values = upload(backend, table.in_internal_order(topology.element_values[I]));
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((std::get<G>(table.laws.laws) =
@@ -228,25 +240,22 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     }(std::make_integer_sequence<int, TableType::groups>());
   }
 
-  /// Positions relative to the middle of the body: single precision keeps its digits.
-  void make_rest(B const& backend, Mesh<Es...> const& mesh, Change const* change) {
-    auto const box = detail::extent(mesh);
-    middle = box.middle;
+  /// Positions relative to the middle of the first mesh: single precision keeps its digits.
+  void make_rest(B const& backend, Topology<Mesh<Es...>> const& topology, Change const* change) {
     auto const place = [&](std::size_t i, std::size_t k) {
-      return mesh.nodes[i][k] - box.middle[k];
+      return topology.point(static_cast<Index>(i))[k] - middle[k];
     };
-    if (change != nullptr && change->before.middle == middle)
-      return carry_rest(backend, *change, place);
+    if (change != nullptr) return carry_rest(backend, *change, place);
     auto const places = padded(place);
     detail::for_each_on_host(static_cast<Index>(places.size()), few_nodes, [&](Index i) {
       if (!std::isfinite(places[static_cast<std::size_t>(i)]))
-        throw Error("body: the mesh reaches over ", 2 * box.reach, " m, which ", 8 * sizeof(T),
-                    " bits cannot hold; take other units");
+        throw Error("body: the mesh reaches over ", 2 * detail::extent(topology).reach,
+                    " m, which ", 8 * sizeof(T), " bits cannot hold; take other units");
     });
     rest = upload(backend, places);
   }
 
-  /// The same where most nodes are where they were, relative to the same middle: others lie between those.
+  /// The same where most nodes are where they were: others lie between those.
   template <class Place>
   void carry_rest(B const& backend, Change const& change, Place const& place) {
     auto const& made = change.transfer.new_nodes();
@@ -258,21 +267,32 @@ struct Layout<B, Mesh<Es...>, Fs...> {
                                       });
   }
 
-  /// In internal order. Throws Error where T cannot hold one.
-  std::vector<T> internal_masses(double density) const {
-    std::vector<T> masses(mass_list.size());
-    detail::for_each_on_host(nodes, few_nodes, [&](Index node) {
-      auto const i = static_cast<std::size_t>(node);
-      T const m = static_cast<T>(mass_list[i]);
-      if (!(std::isfinite(m) && (m > T(0) || !(mass_list[i] > 0)) &&
+  void make_mass(B const& backend, double density, Change const* change) {
+    auto const checked = [&](Index user) {
+      double const exact = mass_list[static_cast<std::size_t>(user)];
+      T const m = static_cast<T>(exact);
+      if (!(std::isfinite(m) && (m > T(0) || !(exact > 0)) &&
             std::isfinite(static_cast<T>(density))))
         throw Error("body: ", 8 * sizeof(T),
                     " bits cannot hold the mass of a node under the density ", density,
                     " kg/m³; take double, or other units");
-      masses[static_cast<std::size_t>(internal_node[i])] = m;
+      return m;
+    };
+    if (change != nullptr) {
+      std::vector<Index> places;
+      for (Index const node : change->looked_at) places.push_back(internal_of(node));
+      mass = detail::carried_values(backend, nodes, change->before.mass, node_now, places,
+                                    [&](std::size_t i) { return checked(change->looked_at[i]); });
+      return;
+    }
+    std::vector<T> masses(mass_list.size());
+    detail::for_each_on_host(nodes, few_nodes, [&](Index user) {
+      masses[static_cast<std::size_t>(internal_of(user))] = checked(user);
     });
-    return masses;
+    mass = upload(backend, masses);
   }
+
+  mutable Array<Index> user_node_array_;  // empty until it is asked for
 };
 
 }  // namespace pliant

@@ -71,23 +71,33 @@ std::vector<double> lumped_masses(Mesh<Es...> const& mesh, double density) {
   (add_masses<Es>(mesh, density, masses), ...);
   return masses;
 }
-/// The same by those `before` a change of the mesh: summed anew where nodes have elements that came or went, in the same
+/// The same by those `before` a change of the topology: summed anew where nodes have elements that came or went, in the same
 /// order.
-template <Element... Es>
-std::vector<double> changed_masses(Mesh<Es...> const& mesh, double density,
-                                   std::vector<double> const& before,
-                                   Transfer<Mesh<Es...>::dim> const& transfer,
-                                   TouchedElements<Mesh<Es...>> const& touched) {
-  auto masses = transfer.carry_sums(before);
-  for (std::size_t i = 0; i < masses.size(); ++i)
-    if (touched.changes_elements(static_cast<Index>(i))) masses[i] = 0;
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    for (Index const e : touched.of_type(type).after) {
-      auto const& element = mesh.template elements<E>()[static_cast<std::size_t>(e)];
-      auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
+template <class M>
+SharedList<double> changed_masses(Topology<M> const& topology, double density,
+                                  SharedList<double> const& before,
+                                  Transfer<M::dim> const& transfer,
+                                  TouchedElements<M> const& touched) {
+  auto masses = before;
+  if (transfer.staying_nodes() < transfer.old_nodes()) {
+    std::size_t next = 0;
+    for (Index old = 0; old < transfer.old_nodes(); ++old) {
+      if (transfer.renumbered(old) < 0) continue;
+      if (next != static_cast<std::size_t>(old))
+        masses.edit(next) = before[static_cast<std::size_t>(old)];
+      ++next;
+    }
+    masses.shrink(next);
+  }
+  for (Index node = transfer.staying_nodes(); node < transfer.nodes(); ++node) masses.push_back(0);
+  for (Index const node : touched.nodes())
+    if (touched.changes_elements(node)) masses.edit(static_cast<std::size_t>(node)) = 0;
+  for_each_type_of<M>([&]<Element E>(E, std::size_t) {
+    for (auto const& element : touched.template nodes_after<E>()) {
+      auto const share = host_nodal_masses<E>(nodal(topology, element), density);
       for (std::size_t a = 0; a < E::nodes; ++a)
         if (touched.changes_elements(element[a]))
-          masses[static_cast<std::size_t>(element[a])] += share[static_cast<int>(a)];
+          masses.edit(static_cast<std::size_t>(element[a])) += share[static_cast<int>(a)];
     }
   });
   return masses;

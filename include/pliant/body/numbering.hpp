@@ -12,6 +12,7 @@
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/hilbert.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/topology.hpp>
 
 namespace pliant {
 
@@ -50,36 +51,47 @@ struct Numbering {
     }(std::index_sequence_for<Es...>());
     number_others();
   }
-  /// The same of elements in blocks: per type, where each begins. Nodes of a block that keeps_nodes(block) keep their order:
-  /// number_kept(type, block, take) calls take(user's number) for those that it has and no block before it.
-  template <class KeepsNodes, class NumberKept>
-  Numbering(Mesh<Es...> const& mesh, std::array<std::vector<Index>, types> order,
-            std::array<ElementBlocks, types> const& blocks, KeepsNodes const& keeps_nodes,
-            NumberKept const& number_kept)
-      : internal_node(mesh.nodes.size(), -1),
-        user_node(mesh.nodes.size()),
+  /// The same of a topology's elements in blocks: per type, where each begins. Nodes that blocks `keep` keep their order: see
+  /// KeptNodes.
+  template <class Kept>
+  Numbering(Topology<Mesh<Es...>> const& topology, std::array<std::vector<Index>, types> order,
+            std::array<ElementBlocks, types> const& blocks, Kept const& kept)
+      : internal_node(static_cast<std::size_t>(topology.nodes()), -1),
+        user_node(static_cast<std::size_t>(topology.nodes())),
         user_element(std::move(order)) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (number_by_blocks<I, Es>(mesh, blocks[I].first, keeps_nodes, number_kept), ...);
+      (number_by_blocks<I, Es>(topology, blocks[I].first, kept), ...);
+      (take_kept<I>(kept), ...);
     }(std::index_sequence_for<Es...>());
     number_others();
   }
 
   /// The table of a type, whose elements are in blocks: all elements, or those of blocks that do not stay, one after another.
   template <std::size_t I>
-  std::vector<Connectivity<TypeAt<I>>> rows_of(Mesh<Es...> const& mesh, ElementBlocks const& blocks,
-                                               bool all) const {
-    auto const& elements = mesh.template elements<TypeAt<I>>();
-    std::vector<Connectivity<TypeAt<I>>> rows;
-    if (all) rows.reserve(elements.size());
-    for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b) {
-      if (!all && blocks.some_stay() && blocks.stays[b] != 0) continue;
-      for (auto i = static_cast<std::size_t>(blocks.first[b]);
-           i < static_cast<std::size_t>(blocks.first[b + 1]); ++i) {
-        auto& row = rows.emplace_back(elements[static_cast<std::size_t>(user_element[I][i])]);
+  std::vector<Connectivity<TypeAt<I>>> rows_of(Topology<Mesh<Es...>> const& topology,
+                                               ElementBlocks const& blocks, bool all) const {
+    auto const& looked_up = std::get<I>(looked_up_);
+    std::vector<Index> first{0};  // row, by block
+    auto const is_wanted = [&](std::size_t b) {
+      return all || !blocks.some_stay() || blocks.stays[b] == 0;
+    };
+    for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b)
+      first.push_back(first.back() + (is_wanted(b) ? blocks.first[b + 1] - blocks.first[b] : 0));
+    std::vector<Connectivity<TypeAt<I>>> rows(static_cast<std::size_t>(first.back()));
+    constexpr Index few_blocks = 32;  // worth a thread
+    detail::for_each_on_host(static_cast<Index>(first.size()) - 1, few_blocks, [&](Index block) {
+      auto const b = static_cast<std::size_t>(block);
+      auto const begin = static_cast<std::size_t>(first[b]),
+                 count = static_cast<std::size_t>(first[b + 1]) - begin;
+      Index const known = looked_up.first.empty() ? -1 : looked_up.first[b];
+      for (std::size_t k = 0; k < count; ++k) {
+        auto& row = rows[begin + k];
+        row = known >= 0 ? looked_up.rows[static_cast<std::size_t>(known) + k]
+                         : topology.template nodes_of<TypeAt<I>>(
+                               user_element[I][static_cast<std::size_t>(blocks.first[b]) + k]);
         for (Index& node : row) node = internal_node[static_cast<std::size_t>(node)];
       }
-    }
+    });
     return rows;
   }
 
@@ -115,22 +127,46 @@ struct Numbering {
     for (std::size_t i = 0; next_ < static_cast<Index>(internal_node.size()); ++i)
       if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);
   }
-  template <std::size_t I, Element E, class KeepsNodes, class NumberKept>
-  void number_by_blocks(Mesh<Es...> const& mesh, std::vector<Index> const& first,
-                        KeepsNodes const& keeps_nodes, NumberKept const& number_kept) {
-    auto const& elements = mesh.template elements<E>();
+  /// Numbers the nodes of blocks that keep none, and tells where those of each block begin.
+  template <std::size_t I, Element E, class Kept>
+  void number_by_blocks(Topology<Mesh<Es...>> const& topology, std::vector<Index> const& first,
+                        Kept const& kept) {
+    auto has_kept = kept.has();
+    auto& looked_up = std::get<I>(looked_up_);
     for (std::size_t b = 0; b + 1 < first.size(); ++b) {
       first_nodes[I].push_back(next_);
-      if (keeps_nodes(b)) {
-        number_kept(I, b, [&](Index user) { take(user, next_++); });
+      if (kept.keeps(b)) {
+        looked_up.first.push_back(-1);
+        next_ += kept.count(I, b);
         continue;
       }
+      if (kept.keeps_some(b)) {
+        looked_up.first.push_back(-1);
+        kept.for_each(I, b, [&](Index user) {
+          if (internal_node[static_cast<std::size_t>(user)] < 0) take(user, next_++);
+        });
+        continue;
+      }
+      looked_up.first.push_back(static_cast<Index>(looked_up.rows.size()));
       for (auto i = static_cast<std::size_t>(first[b]); i < static_cast<std::size_t>(first[b + 1]);
            ++i)
-        for (Index const node : elements[static_cast<std::size_t>(user_element[I][i])])
-          if (internal_node[static_cast<std::size_t>(node)] < 0) take(node, next_++);
+        for (Index const node :
+             looked_up.rows.emplace_back(topology.template nodes_of<E>(user_element[I][i])))
+          if (internal_node[static_cast<std::size_t>(node)] < 0 && !has_kept(node))
+            take(node, next_++);
     }
     first_nodes[I].push_back(next_);
+  }
+  template <std::size_t I, class Kept>
+  void take_kept(Kept const& kept) {
+    constexpr Index few_blocks = 64;  // worth a thread
+    detail::for_each_on_host(static_cast<Index>(first_nodes[I].size()) - 1, few_blocks,
+                             [&](Index block) {
+                               auto const b = static_cast<std::size_t>(block);
+                               Index next = first_nodes[I][b];
+                               if (kept.keeps(b))
+                                 kept.for_each(I, b, [&](Index user) { take(user, next++); });
+                             });
   }
   template <std::size_t I, Element E>
   void fill_table(Mesh<Es...> const& mesh) {
@@ -249,6 +285,14 @@ struct Numbering {
     });
   }
 
+  /// Elements of blocks, by the user's numbers of nodes, and by the block the first of them; −1: of a block that keeps its
+  /// nodes.
+  template <Element E>
+  struct LookedUp {
+    std::vector<Index> first;
+    std::vector<Connectivity<E>> rows;
+  };
+  std::tuple<LookedUp<Es>...> looked_up_;
   Index next_ = 0;  // internal number
 };
 

@@ -89,7 +89,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   made.first_of_type = made.first_run = {0};
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto const& elements = parts.state.topology->mesh.template elements<E>();
+    auto const& elements = parts.state.topology->mesh().template elements<E>();
     Index const before = made.first_of_type.back();
     for (Index p = 0; p < table.elements.patch_count(); ++p) {
       Index const first = p * table.elements.patch_size();

@@ -55,7 +55,7 @@ Signature signature_of(Parts<B, M, Fs...> const& parts) {
   ByteWriter(bytes).put(*parts.first);
   char digits[32];
   std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(checksum(bytes)));
-  add("first mesh", message({parts.first->mesh.nodes.size(), " nodes, checksum ", digits}));
+  add("first mesh", message({parts.first->nodes(), " nodes, checksum ", digits}));
   return signature;
 }
 

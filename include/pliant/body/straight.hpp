@@ -10,19 +10,20 @@
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/element/quadratic_simplex.hpp>
 #include <pliant/mesh/bounding_box.hpp>
-#include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/topology.hpp>
 
 namespace pliant::detail {
 
-/// The box around a mesh: its middle, and how far it reaches from there, m.
+/// The box around a topology's nodes: its middle, and how far it reaches from there, m.
 template <int Dim>
 struct Extent {
   Point<Dim> middle;
   double reach = 0;
 };
 template <class M>
-Extent<M::dim> extent(M const& mesh) {
-  BoundingBox<M::dim> const bounds{std::span<Point<M::dim> const>(mesh.nodes)};
+Extent<M::dim> extent(Topology<M> const& topology) {
+  BoundingBox<M::dim> const bounds(topology.nodes(),
+                                   [&](Index node) -> auto& { return topology.point(node); });
   Extent<M::dim> box;
   for (std::size_t k = 0; k < M::dim; ++k) {
     box.middle[k] = (bounds.low[k] + bounds.high[k]) / 2;
@@ -43,21 +44,21 @@ double bend(Nodal<E, double> const& x) {
   return furthest;
 }
 
-/// Whether the nodes between the corners of a mesh's elements lie in the middle, as far as T tells.
+/// Whether the nodes between the corners of a topology's elements lie in the middle, as far as T tells.
 template <Element E, class T, class M>
-bool is_straight(M const& mesh) {
+bool is_straight(Topology<M> const& topology) {
   if constexpr (CurvedSimplex<E>) {
-    auto const& elements = mesh.template elements<E>();
-    HostParts const parts(static_cast<Index>(elements.size()), few_elements(E::nodes));
+    auto const count = static_cast<Index>(topology.counts()[type_in<E, M>]);
+    HostParts const parts(count, few_elements(E::nodes));
     std::vector<double> of_parts(static_cast<std::size_t>(parts.count()), 0.0);
     parts([&](Index first, Index last, int part) {
       double most = 0;
       for (Index e = first; e < last; ++e)
-        most = std::max(most, bend<E>(nodal(mesh, elements[static_cast<std::size_t>(e)])));
+        most = std::max(most, bend<E>(nodal(topology, topology.template nodes_of<E>(e))));
       of_parts[static_cast<std::size_t>(part)] = most;
     });
     double const furthest = *std::ranges::max_element(of_parts);
-    auto const box = extent(mesh);
+    auto const box = extent(topology);
     double distance = 0;  // of the body from the origin: its mesh is rounded there
     for (double x : box.middle) distance = std::max(distance, std::abs(x));
     return furthest <= 8 * (double{std::numeric_limits<T>::epsilon()} * box.reach +

@@ -8,10 +8,11 @@
 namespace pliant::detail {
 
 /// The energy of some elements, and of force terms that have one, J. `elements`, `groups`: per type, by the user's numbers,
-/// and the groups of all. Where laws read what is kept per element, that of all elements of the type.
-template <class Parts>
+/// and the groups of all; rows_of.operator()<E>(): the nodes of those of one type, by the user's numbers. Where laws read what
+/// is kept per element, that of all elements of the type.
+template <class Parts, class RowsOf>
 double energy_of_some(Parts const& parts, std::vector<std::vector<Index> const*> const& elements,
-                      std::vector<std::vector<Tag>> const& groups) {
+                      RowsOf const& rows_of, std::vector<std::vector<Tag>> const& groups) {
   double sum = 0;
   std::size_t type = 0;
   parts.for_each_type([&](auto const& table, auto const&) {
@@ -29,14 +30,11 @@ double energy_of_some(Parts const& parts, std::vector<std::vector<Index> const*>
     if constexpr (Table::Laws::reads_elements) {
       add(table.elements);
     } else if (!list.empty()) {
-      std::vector<Connectivity<E>> nodes;
+      std::vector<Connectivity<E>> nodes = rows_of.template operator()<E>();
       std::vector<Tag> own;
-      for (Index const e : list) {
-        auto& row = nodes.emplace_back(
-            parts.state.topology->mesh.template elements<E>()[static_cast<std::size_t>(e)]);
+      for (auto& row : nodes)
         for (Index& node : row) node = parts.layout.internal_of(node);
-        own.push_back(tags[static_cast<std::size_t>(e)]);
-      }
+      for (Index const e : list) own.push_back(tags[static_cast<std::size_t>(e)]);
       add(typename Parts::backend_type::template Elements<E::nodes>(
           parts.backend, std::move(nodes), Table::groups, own, parts.layout.nodes));
     }

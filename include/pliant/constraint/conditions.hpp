@@ -104,7 +104,9 @@ void upload_conditions(Parts& parts) {
     if (!condition.motion) continue;
     std::vector<Index> internal;
     for (Index node : condition.nodes) internal.push_back(parts.layout.internal_of(node));
-    parts.driven.emplace_back(parts.backend, condition, internal, parts.state.topology->mesh.nodes);
+    parts.driven.emplace_back(parts.backend, condition, internal, [&](Index node) -> auto& {
+      return parts.state.topology->point(node);
+    });
   }
   parts.layout.held.upload(held_directions<Parts>(parts, parts.state.prescribed->conditions));
   ++parts.revision;
@@ -191,7 +193,7 @@ void prescribe(Parts& parts, Prescribed<Parts::dim> prescribed) {
 template <class Parts>
 Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
   if (!condition.facets.empty()) {
-    condition.facets = mesh::sides_of(parts.state.topology->mesh, condition.facets);
+    condition.facets = mesh::sides_of(parts.state.topology->mesh(), condition.facets);
     condition.nodes = nodes_of(condition.facets);
   }
   std::sort(condition.nodes.begin(), condition.nodes.end());
@@ -210,8 +212,7 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
                   "\" already; give each a name of its own");
     for (Index node : condition.nodes)
       (void)detail::position_at<Parts::dim, typename Parts::T>(
-          condition.motion, parts.state.topology->mesh.nodes[static_cast<std::size_t>(node)], node,
-          parts.state.time);
+          condition.motion, parts.state.topology->point(node), node, parts.state.time);
     parts.motions.insert_or_assign(condition.name, condition.motion);
   }
   Handle const handle = condition.handle;

@@ -98,12 +98,13 @@ class DrivenNodes {
   using Field = NodeField<T, Dim>;
 
  public:
-  /// `internal`: the internal numbers of the condition's nodes; `places`: where all nodes rest.
+  /// `internal`: the internal numbers of the condition's nodes; place_of(node): where one rests.
+  template <std::invocable<Index> PlaceOf>
   DrivenNodes(B const& backend, Condition<Dim> const& condition, std::vector<Index> const& internal,
-              std::vector<Point<Dim>> const& places)
+              PlaceOf const& place_of)
       : condition_(condition), nodes_(upload(backend, internal)) {
     if (condition.motion.is_uniform()) return;
-    for (Index node : condition.nodes) places_.push_back(places[static_cast<std::size_t>(node)]);
+    for (Index node : condition.nodes) places_.push_back(place_of(node));
     rows_ = zeros<T>(backend, 2 * Dim * internal.size());
     host_rows_.resize(2 * Dim * internal.size());
   }

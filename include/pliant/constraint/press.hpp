@@ -51,7 +51,7 @@ Handle press(Parts& parts, std::vector<Facet<Parts::dim>> const& facets, double 
     return pressure.facets.size() == keys.size() && detail::sorted_keys(pressure.facets) == keys;
   });
   if (same == prescribed.pressures.end()) {
-    auto own = detail::outer_facets(parts.state.topology->mesh, facets);
+    auto own = detail::outer_facets(parts.state.topology->mesh(), facets);
     prescribed.pressures.push_back({{prescribed.next_id++}, std::move(own), 0});
     same = prescribed.pressures.end() - 1;
   }

@@ -19,12 +19,17 @@ struct BoundingBox {
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
   }
-  explicit BoundingBox(std::span<std::array<double, Dim> const> points) : BoundingBox() {
-    detail::HostParts const parts(static_cast<Index>(points.size()));
+  explicit BoundingBox(std::span<std::array<double, Dim> const> points)
+      : BoundingBox(static_cast<Index>(points.size()),
+                    [&](Index i) -> auto& { return points[static_cast<std::size_t>(i)]; }) {}
+  /// Of point_of(i) for i < count.
+  template <std::invocable<Index> PointOf>
+  BoundingBox(Index count, PointOf const& point_of) : BoundingBox() {
+    detail::HostParts const parts(count);
     std::vector<BoundingBox> boxes(static_cast<std::size_t>(parts.count()));
     parts([&](Index first, Index last, int part) {
       BoundingBox box;
-      for (Index i = first; i < last; ++i) box.include(points[static_cast<std::size_t>(i)]);
+      for (Index i = first; i < last; ++i) box.include(point_of(i));
       boxes[static_cast<std::size_t>(part)] = box;
     });
     for (BoundingBox const& box : boxes) {

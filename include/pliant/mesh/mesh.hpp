@@ -86,26 +86,35 @@ struct Mesh {
   }
 };
 
-/// The positions of an element's nodes: (nodes, dim).
-template <std::size_t Nodes, Element... Es>
-auto nodal(Mesh<Es...> const& mesh, std::array<Index, Nodes> const& element) {
-  Matrix<double, int{Nodes}, Mesh<Es...>::dim> rest;
+/// The positions of an element's nodes, which point_of(node) has: (nodes, dim).
+template <int Dim, std::size_t Nodes, std::invocable<Index> PointOf>
+auto nodal(std::array<Index, Nodes> const& element, PointOf const& point_of) {
+  Matrix<double, int{Nodes}, Dim> rest;
   for (std::size_t a = 0; a < Nodes; ++a)
-    for (int k = 0; k < Mesh<Es...>::dim; ++k)
-      rest(static_cast<int>(a), k) =
-          mesh.nodes[static_cast<std::size_t>(element[a])][static_cast<std::size_t>(k)];
+    for (int k = 0; k < Dim; ++k)
+      rest(static_cast<int>(a), k) = point_of(element[a])[static_cast<std::size_t>(k)];
   return rest;
 }
+template <std::size_t Nodes, Element... Es>
+auto nodal(Mesh<Es...> const& mesh, std::array<Index, Nodes> const& element) {
+  return nodal<Mesh<Es...>::dim>(
+      element, [&](Index node) -> auto& { return mesh.nodes[static_cast<std::size_t>(node)]; });
+}
 
-/// The mean of an element's nodes, m.
+/// The mean of an element's nodes, which point_of(node) has, m.
+template <int Dim, std::size_t Nodes, std::invocable<Index> PointOf>
+Point<Dim> mean_of_nodes(std::array<Index, Nodes> const& element, PointOf const& point_of) {
+  Point<Dim> mean{};
+  for (Index const node : element)
+    for (std::size_t k = 0; k < mean.size(); ++k)
+      mean[k] += point_of(node)[k] / static_cast<double>(Nodes);
+  return mean;
+}
 template <std::size_t Nodes, Element... Es>
 Point<Mesh<Es...>::dim> mean_of_nodes(Mesh<Es...> const& mesh,
                                       std::array<Index, Nodes> const& element) {
-  Point<Mesh<Es...>::dim> mean{};
-  for (Index const node : element)
-    for (std::size_t k = 0; k < mean.size(); ++k)
-      mean[k] += mesh.nodes[static_cast<std::size_t>(node)][k] / static_cast<double>(Nodes);
-  return mean;
+  return mean_of_nodes<Mesh<Es...>::dim>(
+      element, [&](Index node) -> auto& { return mesh.nodes[static_cast<std::size_t>(node)]; });
 }
 
 /// The nodes on some facets, ascending, each once.

@@ -88,7 +88,7 @@ void with_law(Table const&, LawsOnHost<Table> const& host, Tag tag, Index elemen
 /// Nodes that pull at each other as elements of the body's mesh, and lists besides.
 template <class Parts>
 auto stiffness_blocks(Parts const& parts, std::vector<std::vector<Index>> const& besides) {
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   CoupledNodes coupled(parts.state.topology->interpolation, static_cast<Index>(mesh.nodes.size()));
   parts.for_each_type([&](auto const& table, auto const&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
@@ -103,7 +103,7 @@ template <class Parts>
 void add_groups(Parts const& parts, Eigen::VectorXd const& u, double dt,
                 Assembler<Parts::dim>& sum) {
   constexpr int dim = Parts::dim;
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   std::size_t type = 0;
   parts.for_each_type([&](auto const& table, auto const& state) {
     using Table = std::remove_cvref_t<decltype(table)>;
@@ -151,7 +151,7 @@ template <class Parts>
 void add_terms(Parts const& parts, Eigen::VectorXd const& u, double pressure_share,
                Assembler<Parts::dim>& sum) {
   constexpr int dim = Parts::dim;
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   auto const middle = middle_of(mesh);
   auto const user = [&](Index node) {
     return parts.layout.user_node[static_cast<std::size_t>(node)];

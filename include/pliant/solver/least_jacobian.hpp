@@ -89,7 +89,7 @@ template <class Parts, class Visit>
 void for_each_least_jacobian(Parts const& parts, Eigen::VectorXd const& u, bool all,
                              Visit const& visit) {
   constexpr int dim = Parts::dim;
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
     using E = typename Table::element;

@@ -15,7 +15,7 @@ auto nodes_of_terms(Parts const& parts) {
   if (parts.pressures.empty() && parts.terms.empty()) return none;
   auto const at_rest = [](Index) { return Point<dim>{}; };
   std::vector<Point<dim>> places(static_cast<std::size_t>(parts.layout.nodes));
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   for (std::size_t i = 0; i < places.size(); ++i)
     places[static_cast<std::size_t>(parts.layout.internal_node[i])] = mesh.nodes[i];
   std::vector<StepLevel> touched(places.size(), 0);

@@ -10,26 +10,66 @@
 
 namespace pliant {
 
+namespace detail {
+
+/// The places of slaves in a list, by their nodes: a table of all nodes where slaves are many, else a sorted list.
+class SlavePlaces {
+ public:
+  static constexpr Index none = -1;
+
+  /// Throws Error for a slave of no node, and for a node that is a slave twice.
+  explicit SlavePlaces(std::vector<Slave> const& slaves) {
+    Index largest = -1;
+    for (Slave const& slave : slaves) {
+      if (slave.node < 0) throw Error("compose: there is no node ", slave.node);
+      largest = std::max(largest, slave.node);
+    }
+    bool const many = static_cast<std::size_t>(largest) / 64 < slaves.size();
+    if (many) table_.assign(static_cast<std::size_t>(largest) + 1, none);
+    for (Index i = 0; Slave const& slave : slaves) {
+      if (!many) {
+        sorted_.emplace_back(slave.node, i++);
+      } else if (std::exchange(table_[static_cast<std::size_t>(slave.node)], i++) != none) {
+        refuse(slave.node);
+      }
+    }
+    std::ranges::sort(sorted_);
+    auto const twice = std::ranges::adjacent_find(sorted_, {}, &std::pair<Index, Index>::first);
+    if (twice != sorted_.end()) refuse(twice->first);
+  }
+  /// `none` for a node that is no slave.
+  [[nodiscard]] Index of(Index node) const {
+    if (!table_.empty())
+      return static_cast<std::size_t>(node) < table_.size() ? table_[static_cast<std::size_t>(node)]
+                                                            : none;
+    auto const found = std::ranges::lower_bound(sorted_, node, {}, &std::pair<Index, Index>::first);
+    return found != sorted_.end() && found->first == node ? found->second : none;
+  }
+  /// visit(place), by ascending nodes.
+  template <class Visit>
+  void for_each(Visit const& visit) const {
+    for (Index const place : table_)
+      if (place != none) visit(place);
+    for (auto const& [node, place] : sorted_) visit(place);
+  }
+
+ private:
+  [[noreturn]] static void refuse(Index node) {
+    throw Error("compose: node ", node,
+                " is a slave twice; list each slave once, with all of its masters");
+  }
+  std::vector<Index> table_;
+  std::vector<std::pair<Index, Index>> sorted_;
+};
+
+}  // namespace detail
+
 /// Replaces masters that are slaves themselves by their own masters, until every master is free;
 /// a master reached along several ways appears once, with the sum of the weights. The result ascends by node.
 /// A slave must come after the slaves among its masters. Throws Error where one does not (which is
 /// so for any circle of slaves) and where a node is a slave twice.
 [[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> slaves) {
-  constexpr Index none = -1;
-  std::vector<Index> position;  // in the list, by node
-  auto const position_of = [&](Index node) {
-    return static_cast<std::size_t>(node) < position.size()
-               ? position[static_cast<std::size_t>(node)]
-               : none;
-  };
-  for (Index i = 0; Slave const& slave : slaves) {
-    if (slave.node < 0) throw Error("compose: there is no node ", slave.node);
-    auto const node = static_cast<std::size_t>(slave.node);
-    if (node >= position.size()) position.resize(std::max(node + 1, 2 * position.size()), none);
-    if (std::exchange(position[node], i++) != none)
-      throw Error("compose: node ", slave.node,
-                  " is a slave twice; list each slave once, with all of its masters");
-  }
+  detail::SlavePlaces const places(slaves);
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     // Ascending, equal ones in the order in which they come, so that they are summed in a fixed order.
     std::vector<std::pair<Index, double>> composed;
@@ -39,8 +79,8 @@ namespace pliant {
           {master, weight});
     };
     for (auto const& [master, weight] : slaves[i].masters) {
-      Index const found = position_of(master);
-      if (found == none) {
+      Index const found = places.of(master);
+      if (found == detail::SlavePlaces::none) {
         add(master, weight);
         continue;
       }
@@ -61,8 +101,9 @@ namespace pliant {
   }
   std::vector<Slave> ascending;  // as an Interpolation wants them
   ascending.reserve(slaves.size());
-  for (Index const found : position)
-    if (found != none) ascending.push_back(std::move(slaves[static_cast<std::size_t>(found)]));
+  places.for_each([&](Index place) {
+    ascending.push_back(std::move(slaves[static_cast<std::size_t>(place)]));
+  });
   return ascending;
 }
 

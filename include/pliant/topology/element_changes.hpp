@@ -48,11 +48,10 @@ class ElementChanges {
   using Member = typename Transfer<dim>::Member;
 
  public:
-  ElementChanges(M const& mesh, std::vector<std::vector<Index>> const& old_cells,
-                 Hierarchy<dim> const& before, std::vector<Index> const& merged,
-                 ChangedCells<dim> const& changed)
+  ElementChanges(std::vector<std::vector<Index>> const& old_cells, Hierarchy<dim> const& before,
+                 std::vector<Index> const& merged, ChangedCells<dim> const& changed)
       : old_cells_(old_cells), before_(before), after_(*changed.tree), changed_(changed) {
-    for_each_type_of(mesh, [&]<Element E>(E, std::size_t) {
+    for_each_type_of<M>([&]<Element E>(E, std::size_t) {
       types_.emplace_back(kind_of<typename E::cell>, nodes_on_cell<E>);
     });
     families_.reserve(merged.size() + changed.converted.size() + changed.refinement.parents.size() +
@@ -227,17 +226,14 @@ class ElementChanges {
 
 /// The shares of the elements before in the volume of their family, for those that are merged.
 template <class M>
-void share_volumes(M const& mesh, std::vector<typename Transfer<M::dim>::Family>& families) {
+void share_volumes(Topology<M> const& before,
+                   std::vector<typename Transfer<M::dim>::Family>& families) {
   for (auto& family : families) family.shares.resize(family.before.size());
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    for (auto& family : families)
-      for (std::size_t i = 0; i < family.before.size(); ++i) {
-        if (family.before[i].type != type) continue;
-        auto const element = static_cast<std::size_t>(family.before[i].element);
-        family.shares[i] =
-            volume<E, MassQuadrature<E>>(nodal(mesh, mesh.template elements<E>()[element]));
-      }
-  });
+  for (auto& family : families)
+    for (std::size_t i = 0; i < family.before.size(); ++i)
+      visit_member(before, family.before[i], [&]<Element E>(E, Connectivity<E> const& nodes) {
+        family.shares[i] = volume<E, MassQuadrature<E>>(nodal(before, nodes));
+      });
   for (auto& family : families) {
     double const sum = std::accumulate(family.shares.begin(), family.shares.end(), 0.0);
     for (double& share : family.shares) share /= sum;
@@ -246,7 +242,7 @@ void share_volumes(M const& mesh, std::vector<typename Transfer<M::dim>::Family>
 
 /// The values that laws read, of the elements of a type after a change: (elements, values).
 template <Element E, class M>
-std::vector<double> carried_values(Topology<M> const& before, M const& mesh,
+std::vector<double> carried_values(Topology<M> const& before, Topology<M> const& after,
                                    Transfer<M::dim> const& transfer,
                                    ElementValues<M::dim> const& values, std::size_t type) {
   std::size_t const width = values.widths[type];
@@ -273,7 +269,7 @@ std::vector<double> carried_values(Topology<M> const& before, M const& mesh,
     std::size_t e = 0;
     for (auto const& origin : transfer.origins(type)) {
       if (origin.child != Transfer<M::dim>::Origin::same)
-        set(mean_of_nodes(mesh, mesh.template elements<E>()[e]),
+        set(mean_of_nodes(after, after.template nodes_of<E>(static_cast<Index>(e))),
             std::span(carried).subspan(e * width, width));
       e += static_cast<std::size_t>(origin.count);
     }

@@ -76,26 +76,35 @@ bool is_cell_of(TreeCell const& cell) {
   return cell.kind == kind_of<typename E::cell> && cell.has == nodes_on_cell<E>;
 }
 
-/// Calls visit(E{}, place of E among the mesh's types) for each element type.
-template <Element... Es, class Visit>
-void for_each_type_of(Mesh<Es...> const&, Visit const& visit) {
-  std::size_t type = 0;
-  (visit(Es{}, type++), ...);
-}
-
-/// Calls visit(E{}, nodes) for an element of a mesh, a Transfer's Member.
-template <class M, class Member, class Visit>
-void visit_member(M const& mesh, Member const& member, Visit const& visit) {
-  for_each_type_of(mesh, [&]<Element E>(E element, std::size_t type) {
-    if (type == member.type)
-      visit(element, mesh.template elements<E>()[static_cast<std::size_t>(member.element)]);
-  });
-}
-
+template <class M>
+struct TypesOf;
+template <Element... Es>
+struct TypesOf<Mesh<Es...>> {
+  using tuple = std::tuple<Es...>;
+  static constexpr std::size_t count = sizeof...(Es);
+  template <class E>
+  static constexpr std::size_t place_of = [] {
+    std::size_t at = 0, found = no_type;
+    ((std::same_as<E, Es> ? found = at++ : at++), ...);
+    return found;
+  }();
+  template <class Visit>
+  static void for_each(Visit const& visit) {
+    std::size_t type = 0;
+    (visit(Es{}, type++), ...);
+  }
+};
+/// The place of an element type among a mesh's.
+template <Element E, class M>
+inline constexpr std::size_t type_in = TypesOf<M>::template place_of<E>;
 template <class M, std::size_t Type>
-struct ElementOfType;
-template <Element... Es, std::size_t Type>
-struct ElementOfType<Mesh<Es...>, Type> : std::tuple_element<Type, std::tuple<Es...>> {};
+using ElementOfType = std::tuple_element<Type, typename TypesOf<M>::tuple>;
+
+/// Calls visit(E{}, place of E among the mesh's types) for each element type.
+template <class M, class Visit>
+void for_each_type_of(Visit const& visit) {
+  TypesOf<M>::for_each(visit);
+}
 
 /// How many elements there are, by type.
 template <Element... Es>

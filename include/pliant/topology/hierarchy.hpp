@@ -17,6 +17,7 @@
 #include <pliant/topology/refinable.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/shape_weights.hpp>
+#include <pliant/topology/shared_list.hpp>
 #include <pliant/topology/transfer.hpp>
 #include <pliant/topology/tree_facets.hpp>
 #include <pliant/topology/tree_queries.hpp>
@@ -53,7 +54,7 @@ class Hierarchy {
     tree_.seal();
   }
 
-  [[nodiscard]] std::vector<Point<Dim>> const& points() const { return points_; }
+  [[nodiscard]] SharedList<Point<Dim>> const& points() const { return points_; }
   [[nodiscard]] CellTree<Dim> const& tree() const { return tree_; }
   [[nodiscard]] SharedList<TreeCell> const& cells() const { return tree_.cells(); }
   [[nodiscard]] TreeCell const& cell(Index c) const { return tree_[c]; }
@@ -136,8 +137,8 @@ class Hierarchy {
     for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
     std::size_t next = at(done.renumbered.first_node);
     for (std::size_t i = next; i < points_.size(); ++i)
-      if (done.renumbered.nodes[i] >= 0) points_[next++] = points_[i];
-    points_.resize(next);
+      if (done.renumbered.nodes[i] >= 0) points_.edit(next++) = points_[i];
+    points_.shrink(next);
     return done;
   }
 
@@ -292,7 +293,7 @@ class Hierarchy {
     return sum;
   }
 
-  std::vector<Point<Dim>> points_;
+  SharedList<Point<Dim>> points_;
   CellTree<Dim> tree_;
   std::size_t leaf_count_ = 0;
 };

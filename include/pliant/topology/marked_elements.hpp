@@ -45,7 +45,7 @@ template <class M>
 RefinementTree<M> tree_of(std::shared_ptr<Topology<M> const> const& topology) {
   using Cells = std::shared_ptr<std::vector<std::vector<Index>> const>;
   if (topology->tree) return {topology->tree, Cells(topology, &topology->cells)};
-  auto const& mesh = topology->mesh;
+  auto const& mesh = topology->mesh();
   if (!mesh.slaves.empty())
     throw Error("refine: the mesh came with ", mesh.slaves.size(),
                 " hanging nodes, of which it is not known what was refined; give the coarse mesh, "
@@ -61,10 +61,11 @@ RefinementTree<M> tree_of(std::shared_ptr<Topology<M> const> const& topology) {
 
 /// The cells of marked elements, which are given by the user's numbers for each element type.
 template <class M>
-std::vector<Index> cells_of(M const& mesh, std::vector<std::vector<Index>> const& cells,
-                            char const* verb, std::vector<std::vector<Index>> const& marked) {
+std::vector<Index> cells_of(RefinementTree<M> const& old, char const* verb,
+                            std::vector<std::vector<Index>> const& marked) {
+  auto const& cells = *old.cells;
   std::vector<Index> found;
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+  for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty()) return;
     for (Index e : marked[type]) {
       if (e < 0 || e >= static_cast<Index>(cells[type].size()))
@@ -77,8 +78,8 @@ std::vector<Index> cells_of(M const& mesh, std::vector<std::vector<Index>> const
 }
 
 template <class M>
-void check_lists(M const& mesh, char const* verb, std::vector<std::vector<Index>> const& marked) {
-  std::size_t const types = element_counts(mesh).size();
+void check_lists(char const* verb, std::vector<std::vector<Index>> const& marked) {
+  constexpr std::size_t types = TypesOf<M>::count;
   if (marked.size() != types)
     throw Error(verb, ": got lists of marked elements for ", marked.size(),
                 " element types, but the mesh has ", types,
@@ -87,9 +88,8 @@ void check_lists(M const& mesh, char const* verb, std::vector<std::vector<Index>
 
 /// Throws Error where elements are marked to be of another degree than `from` that no type of the mesh is of.
 template <class M>
-void check_conversion(M const& mesh, char const* verb, int from,
-                      std::vector<std::vector<Index>> const& marked) {
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+void check_conversion(char const* verb, int from, std::vector<std::vector<Index>> const& marked) {
+  for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if (E::degree != from)
       throw Error(verb, ": ", E::name(), " elements are of degree ", E::degree, "; mark others");
@@ -101,22 +101,22 @@ void check_conversion(M const& mesh, char const* verb, int from,
 
 /// The cells of marked elements that lose the nodes between their corners, each once.
 template <class M>
-std::vector<Index> lowered_cells(M const& mesh, RefinementTree<M> const& old,
+std::vector<Index> lowered_cells(RefinementTree<M> const& old,
                                  std::vector<std::vector<Index>> const& marked) {
-  check_conversion(mesh, "lower", 2, marked);
-  return each_once(cells_of(mesh, *old.cells, "lower", marked));
+  check_conversion<M>("lower", 2, marked);
+  return each_once(cells_of(old, "lower", marked));
 }
 /// The cells of marked elements and of rings of neighbours that get such nodes, each once.
 template <class M>
-std::vector<CellConversion> raised_cells(M const& mesh, RefinementTree<M> const& old,
+std::vector<CellConversion> raised_cells(RefinementTree<M> const& old,
                                          std::vector<std::vector<Index>> const& marked, int rings) {
-  check_conversion(mesh, "raise", 1, marked);
-  auto cells = each_once(cells_of(mesh, *old.cells, "raise", marked));
+  check_conversion<M>("raise", 1, marked);
+  auto cells = each_once(cells_of(old, "raise", marked));
   for (int ring = 0; ring < rings && !cells.empty(); ++ring)
     cells = TreeQueries(old.tree->tree()).with_neighbours(cells);
   std::vector<CellConversion> raised;
   for (Index const c : cells)
-    for_each_type_of(mesh, [&]<Element E>(E, std::size_t) {
+    for_each_type_of<M>([&]<Element E>(E, std::size_t) {
       constexpr std::size_t to = converted_type<E, M>;
       if constexpr (E::degree == 1 && to != no_type)
         if (is_cell_of<E>(old.tree->cell(c)))
@@ -156,8 +156,8 @@ void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit
 
 /// Throws Error where elements are marked that cannot be split.
 template <class M>
-void check_splits(M const& mesh, std::vector<std::vector<Index>> const& marked) {
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+void check_splits(std::vector<std::vector<Index>> const& marked) {
+  for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if constexpr (std::is_void_v<SplitInto<E>>)
       throw Error("split: ", E::name(),
@@ -171,12 +171,11 @@ void check_splits(M const& mesh, std::vector<std::vector<Index>> const& marked) 
 
 /// The cells of elements to split, each once, and how; of those that are marked for both, in two.
 template <class M>
-std::vector<CellSplit> split_cells(M const& mesh, RefinementTree<M> const& old,
-                                   MarkedElements const& marked) {
-  check_splits(mesh, marked.split);
-  check_splits(mesh, marked.split_in_two);
-  auto const in_two = each_once(cells_of(mesh, *old.cells, "split", marked.split_in_two));
-  auto cells = cells_of(mesh, *old.cells, "split", marked.split);
+std::vector<CellSplit> split_cells(RefinementTree<M> const& old, MarkedElements const& marked) {
+  check_splits<M>(marked.split);
+  check_splits<M>(marked.split_in_two);
+  auto const in_two = each_once(cells_of(old, "split", marked.split_in_two));
+  auto cells = cells_of(old, "split", marked.split);
   cells.insert(cells.end(), in_two.begin(), in_two.end());
   std::vector<CellSplit> splits;
   for (Index const c : each_once(std::move(cells))) {
@@ -204,14 +203,14 @@ std::vector<CellSplit> split_cells(M const& mesh, RefinementTree<M> const& old,
 
 /// The cells that were split into marked ones, all of which are; of two pyramids that share a base both or none.
 template <class M>
-std::vector<Index> merged_cells(M const& mesh, RefinementTree<M> const& old,
+std::vector<Index> merged_cells(RefinementTree<M> const& old,
                                 std::vector<std::vector<Index>> const& marked) {
-  for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+  for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (!is_part<E> && !marked.empty() && !marked[type].empty())
       throw Error("merge: no element is split into ", E::name(),
                   " elements; mark Tri3, Pyramid5 or Tet4 elements");
   });
-  auto merged = old.tree->split_cells(cells_of(mesh, *old.cells, "merge", marked));
+  auto merged = old.tree->split_cells(cells_of(old, "merge", marked));
   auto const all = merged;
   std::erase_if(merged, [&](Index c) {
     return old.tree->cell(c).kind == CellKind::pyramid &&
@@ -222,14 +221,13 @@ std::vector<Index> merged_cells(M const& mesh, RefinementTree<M> const& old,
 
 /// What is to become of the cells of a topology by marks on its elements. A family that is merged is not lowered.
 template <class M>
-CellChanges changes_of(M const& mesh, RefinementTree<M> const& old, MarkedElements const& marked) {
-  CellChanges changes{
-      .families = old.tree->families(cells_of(mesh, *old.cells, "coarsen", marked.coarsen)),
-      .refine = cells_of(mesh, *old.cells, "refine", marked.refine),
-      .lower = lowered_cells(mesh, old, marked.lower),
-      .raise = raised_cells(mesh, old, marked.raise, marked.raised_rings),
-      .split = split_cells(mesh, old, marked)};
-  std::ranges::move(merged_cells(mesh, old, marked.merge), std::back_inserter(changes.families));
+CellChanges changes_of(RefinementTree<M> const& old, MarkedElements const& marked) {
+  CellChanges changes{.families = old.tree->families(cells_of(old, "coarsen", marked.coarsen)),
+                      .refine = cells_of(old, "refine", marked.refine),
+                      .lower = lowered_cells(old, marked.lower),
+                      .raise = raised_cells(old, marked.raise, marked.raised_rings),
+                      .split = split_cells(old, marked)};
+  std::ranges::move(merged_cells(old, marked.merge), std::back_inserter(changes.families));
   std::ranges::sort(changes.families);
   std::erase_if(changes.lower, [&](Index c) {
     return std::ranges::binary_search(changes.families, old.tree->cell(c).parent);

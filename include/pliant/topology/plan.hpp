@@ -40,7 +40,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
                  ElementValues<M::dim> const& values) -> std::optional<TopologyPlan<M>> {
   constexpr int dim = M::dim;
   auto const check = [&](char const* verb, std::vector<std::vector<Index>> const& lists) {
-    if (!lists.empty()) detail::check_lists(before->mesh, verb, lists);
+    if (!lists.empty()) detail::check_lists<M>(verb, lists);
   };
   check("refine", marked.refine);
   check("coarsen", marked.coarsen);
@@ -51,7 +51,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   check("merge", marked.merge);
   if (marked.none()) return std::nullopt;
   auto const old = detail::tree_of(before);
-  auto changes = detail::changes_of(before->mesh, old, marked);
+  auto changes = detail::changes_of(old, marked);
   if (changes.none()) return std::nullopt;
   auto changed = detail::change_cells(*old.tree, changes, limits);
   while (detail::take_back(*old.tree, changes, changed, kept))
@@ -67,52 +67,32 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   std::ranges::move(changed.tree->whole_facets(converted),
                     std::back_inserter(changed.refinement.facets));
   typename Transfer<dim>::Parts parts{
-      .old_nodes = static_cast<Index>(before->mesh.nodes.size()),
+      .old_nodes = before->nodes(),
       .renumbered = std::move(changed.coarsening.renumbered.nodes),
       .new_nodes = std::move(new_nodes),
       .gone = std::move(changed.coarsening.gone),
-      .old_elements = detail::element_counts(before->mesh),
+      .old_elements = before->counts(),
       .divided = std::move(changed.refinement.facets),
       .merged = std::move(changed.coarsening.facets),
   };
-  auto topology = std::make_shared<Topology<M>>();
-  M& mesh = topology->mesh;
-  mesh.nodes = changed.tree->points();
-  Index const first_moved = changed.coarsening.renumbered.first_node;
-  detail::ElementChanges<M> element_changes(mesh, *old.cells, *old.tree, changes.families, changed);
-  detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
+  detail::ElementChanges<M> element_changes(*old.cells, *old.tree, changes.families, changed);
+  std::vector<std::vector<Index>> cells;
+  detail::for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     auto changed_elements = element_changes.template of<E>(type);
-    auto& elements = mesh.template elements<E>();
-    elements.reserve(changed_elements.cells.size());
-    for (auto const& origin : changed_elements.origins) {
-      auto const first = elements.size();
-      if (origin.child == Transfer<dim>::Origin::same) {
-        auto const from = before->mesh.template elements<E>().begin() + origin.element;
-        elements.insert(elements.end(), from, from + origin.count);
-        if (parts.renumbered.empty()) continue;
-        for (auto e = first; e < elements.size(); ++e)
-          if (std::ranges::max(elements[e]) >= first_moved)
-            for (Index& node : elements[e]) node = parts.renumbered[static_cast<std::size_t>(node)];
-      } else {
-        std::ranges::copy(changed.tree->tree().element_nodes(changed_elements.cells[first]),
-                          elements.emplace_back().begin());
-      }
-    }
     parts.origins.push_back(std::move(changed_elements.origins));
-    topology->cells.push_back(std::move(changed_elements.cells));
+    cells.push_back(std::move(changed_elements.cells));
   });
   parts.families = std::move(element_changes).families();
-  detail::share_volumes(before->mesh, parts.families);
+  detail::share_volumes(*before, parts.families);
   Transfer<dim> transfer(std::move(parts));
-  for (auto const& [name, facets] : before->mesh.boundaries)
-    mesh.boundaries.emplace(name, transfer.carry_facets(facets));
-  mesh.slaves = changed.tree->slaves();
-  detail::for_each_type_of(mesh, [&]<Element E>(E, std::size_t type) {
-    topology->element_values.push_back(
-        detail::carried_values<E>(*before, mesh, transfer, values, type));
+  auto topology = std::make_shared<Topology<M>>(changed.tree, std::move(cells));
+  topology->set_boundaries(before->boundaries(), [&](std::vector<Facet<dim>> const& facets) {
+    return transfer.carry_facets(facets);
   });
-  topology->interpolation = Interpolation(mesh.slaves);
-  topology->tree = changed.tree;
+  detail::for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
+    topology->element_values.push_back(
+        detail::carried_values<E>(*before, *topology, transfer, values, type));
+  });
   auto const split_before = [&](Index c) { return old.tree->cell(c).is_split(); };
   auto const merged =
       static_cast<std::size_t>(std::ranges::count_if(changes.families, split_before));

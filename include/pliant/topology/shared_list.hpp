@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <iterator>
@@ -33,6 +34,18 @@ class SharedList {
     SharedList const* list_ = nullptr;
     std::size_t i_ = 0;
   };
+
+  SharedList() = default;
+  explicit SharedList(std::vector<V> const& values) : size_(values.size()) {
+    for (std::size_t first = 0; first < size_; first += per_block) {
+      auto const& block = blocks_.emplace_back(std::make_shared<Block>());
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first),
+                  std::min(per_block, size_ - first), block->begin());
+    }
+  }
+  friend bool operator==(SharedList const& one, SharedList const& other) {
+    return std::ranges::equal(one, other);
+  }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] Iterator begin() const { return {*this, 0}; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <span>
@@ -112,6 +113,7 @@ class CudaElements {
   }
 
   Index count() const { return count_; }
+  ElementRows rows_of_nodes() const { return {connectivity_.data(), View::width}; }
   Index scratch_nodes() const { return 0; }
   DeviceArray<Tag>& tags() { return tags_; }
   DeviceArray<Tag> const& tags() const { return tags_; }
@@ -142,7 +144,8 @@ class CudaElements {
                CudaElements const* before = nullptr)
       : count_(static_cast<Index>(tags.size())) {
     detail::check_nodes(connectivity, nodes);
-    tags_ = uploaded(backend, tags);
+    bool const all_of_first_group = std::ranges::all_of(tags, [](Tag tag) { return tag == 0; });
+    tags_ = all_of_first_group ? backend.template array<Tag>(tags.size()) : uploaded(backend, tags);
     tag_data_ = tags_.data();
     if (before != nullptr && blocks.some_stay())
       carry(backend, connectivity, blocks, *before);

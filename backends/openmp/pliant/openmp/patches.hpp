@@ -59,6 +59,7 @@ class Patches {
   HostArray<Tag> const& tags() const { return tags_; }
   HostArray<Tag> take_tags() { return std::move(tags_); }
 
+  ElementRows rows_of_nodes() const { return {all_nodes(), Nodes}; }
   Index const* nodes(Index e) const { return nodes_[static_cast<std::size_t>(e)].data(); }
   bool has_fans() const { return has_fans_; }
   Fans const& fans() const { return fans_; }

@@ -76,7 +76,7 @@ struct CornersOfBody {
   static void for_each_type(Parts const& parts, Visit const& visit) {
     parts.for_each_type([&](auto const& table, auto const&) {
       using E = typename std::remove_cvref_t<decltype(table)>::element;
-      auto const& mesh = parts.state.topology->mesh.template elements<E>();
+      auto const& mesh = parts.state.topology->mesh().template elements<E>();
       std::vector<Connectivity<E>> elements;
       elements.reserve(table.user_element.size());
       for (Index user : table.user_element) {

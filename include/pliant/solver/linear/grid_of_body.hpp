@@ -19,7 +19,7 @@ struct GridOfBody {
 /// then the grid's functions are as good as linear ones on the elements' own cells.
 template <class Parts>
 bool lies_in_boxes(Parts const& parts) {
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   auto const grid = grid_around(mesh, GridFor::nodes);
   constexpr double rounding = 0.05;  // of a box
   std::size_t others = 0, all = 0;
@@ -50,7 +50,7 @@ template <class Parts>
 GridOfBody<Parts::dim> grid_of_body(Parts const& parts, GridFor finer) {
   constexpr std::size_t dim = Parts::dim;
   using Place = typename BackgroundGrid<Parts::dim>::Place;
-  auto const& mesh = parts.state.topology->mesh;
+  auto const& mesh = parts.state.topology->mesh();
   GridOfBody<Parts::dim> body{grid_around(mesh, finer)};
   auto& grid = body.grid;
   auto const relative = [&](Point<dim> x) {
