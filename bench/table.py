@@ -163,6 +163,16 @@ def unstructured_rows(results):
             yield [*at, *elements, *map(si, rates), f"{rates[0] / rates[1]:.2f}"]
 
 
+def memory_rows(results):
+    """Bytes of bodies by element and node, on the device and on the host."""
+    for name, run in results.runs.items():
+        if "host bytes/element" not in run:
+            continue
+        what, element, law, precision, backend = name.split("/")[:5]
+        taken = (f"{run[f'{where} bytes/{of}']:.4g}" for where in ("device", "host") for of in ("element", "node"))
+        yield [what, element, law, precision, backend, f"{run['elements']:.0f}", *taken]
+
+
 def section(title, text, header, rows):
     """Nothing where nothing of it was measured."""
     rows = list(rows)
@@ -206,6 +216,14 @@ def main():
         ["what", "precision", "backend", "Delaunay elements", "box elements", "Delaunay", "box", "ratio"],
         unstructured_rows(results),
     )
+    memory = section(
+        "Memory",
+        "Bytes that bodies hold after some explicit steps, by the element and by the node: in the memory of a GPU (to\n"
+        "2 MiB an array, with what its kernels reserve), and in that of the host.",
+        ["what", "element", "law", "precision", "backend", "elements", "device, of an element", "of a node",
+         "host, of an element", "of a node"],
+        memory_rows(results),
+    )  # fmt: skip
     Path(sys.argv[2]).write_text(
         f"""# {context["backend"]} on {context["machine"]}
 
@@ -232,7 +250,7 @@ repetitions of both: what else runs on a machine only adds.
 
 {laws}
 
-{sizes}{unstructured}## Everything
+{sizes}{unstructured}{memory}## Everything
 
 `of copy` is the mandatory traffic (connectivity, and each value of a node read or written, once)
 over the copy ceiling; `of FMA` counts 265 operations for a Tet4 force and 2734 for a Hex8 one.
