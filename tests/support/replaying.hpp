@@ -75,6 +75,11 @@ class Replaying : private SmallPatches<T, Size> {
     return Verbs::maximum(n, f);
   }
   template <class F>
+  std::vector<Index> select(Index n, F const& f) const {
+    REQUIRE(!*queue_);
+    return Verbs::select(n, f);
+  }
+  template <class F>
   void histogram(Index n, F const& f, std::int64_t* bins) const {
     run([=, *this] { Verbs::histogram(n, f, bins); });
   }

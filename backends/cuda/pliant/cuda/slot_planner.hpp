@@ -41,6 +41,7 @@ class SlotPlanner {
         starts_(memory.take<std::uint16_t>(units * width)),
         writers_(memory.take<std::uint16_t>(lanes)),
         choices_(memory.take<std::uint16_t>(lanes)),
+        banks_(memory.take<std::uint16_t>(lanes)),
         claims_(memory.take<int>(lanes)),
         totals_(memory.take<int>(2)) {}
 
@@ -147,17 +148,17 @@ class SlotPlanner {
             if (choices_[l] == none) return;
             some_left = true;
             choices_[l] = choice(local[visit(l)]);
-            lower_shared(claims_[bank_of(local[visit(l)], choices_[l])], l);
+            banks_[l] = static_cast<std::uint16_t>(bank_of(local[visit(l)], choices_[l]));
+            lower_shared(claims_[banks_[l]], l);
           });
           if (!threads.any(some_left)) break;
           for_each_lane(count, [&](int l) {
             if (choices_[l] == none) return;
-            int const n = local[visit(l)], bank = bank_of(n, choices_[l]);
-            if (claims_[bank] != l) return;
-            std::uint16_t& free = free_[first_free_[n] + choices_[l]];
+            if (claims_[banks_[l]] != l) return;
+            std::uint16_t& free = free_[first_free_[local[visit(l)]] + choices_[l]];
             slot_[visit(l)] = free;
             free = none;
-            ++writers_[bank];
+            ++writers_[banks_[l]];
             choices_[l] = none;
           });
           for_each_lane(lanes, [&](int bank) { claims_[bank] = lanes; });
@@ -187,6 +188,7 @@ class SlotPlanner {
   std::uint16_t *lengths_, *starts_;   // (diagonals)
   std::uint16_t* writers_;             // (lanes): to each bank
   std::uint16_t* choices_;  // (lanes): of a visit, among its node's slots; none: it has one
+  std::uint16_t* banks_;    // (lanes): of these slots
   int* claims_;             // (lanes): the first visit that chose each bank
   int* totals_;             // diagonals, slots
 };
