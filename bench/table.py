@@ -218,8 +218,8 @@ def main():
     )
     memory = section(
         "Memory",
-        "Bytes that bodies hold after some explicit steps, by the element and by the node: in the memory of a GPU (to\n"
-        "2 MiB an array, with what its kernels reserve), and in that of the host.",
+        "Bytes that bodies hold after some explicit steps, by the element and by the node: in the memory of a GPU,\n"
+        "with what its kernels reserve, and in that of the host.",
         ["what", "element", "law", "precision", "backend", "elements", "device, of an element", "of a node",
          "host, of an element", "of a node"],
         memory_rows(results),

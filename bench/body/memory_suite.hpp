@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "support/bodies.hpp"
@@ -21,12 +22,21 @@ inline double host_bytes() {
   auto const use = mallinfo2();
   return static_cast<double>(use.uordblks) + static_cast<double>(use.hblkhd);
 }
-/// What is taken of the GPU's memory, in bytes: multiples of 2 MiB an array.
+/// What is taken of the GPU's memory, in bytes: what arrays take of the device's pool, which holds more, and what else is
+/// taken, as kernels do for what their threads keep.
 inline double device_bytes() {
 #if defined(__CUDACC__)
   std::size_t free = 0, total = 0;
   cudaMemGetInfo(&free, &total);
-  return static_cast<double>(total - free);
+  int device = 0;
+  cudaGetDevice(&device);
+  cudaMemPool_t pool = nullptr;
+  cudaDeviceGetDefaultMemPool(&pool, device);
+  std::uint64_t reserved = 0, used = 0;
+  cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReservedMemCurrent, &reserved);
+  cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &used);
+  return static_cast<double>(total - free) - static_cast<double>(reserved) +
+         static_cast<double>(used);
 #else
   return 0;
 #endif
