@@ -17,7 +17,7 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
     std::size_t const i = any(lists.size());
     auto& list = lists[i];
     auto& model = models[i];
-    switch (any(4)) {
+    switch (any(5)) {
       case 0:
         for (std::size_t k = any(300); k > 0; --k) {
           list.push_back(round);
@@ -35,6 +35,16 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
         model.resize(model.size() - any(model.size() / 8 + 1));
         list.shrink(model.size());
         break;
+      case 3: {
+        std::size_t const first = any(model.size() + 1), one_in = 50 + any(50);
+        auto const stays = [&](std::size_t i) { return i % one_in != 0; };
+        list.keep(first, stays);
+        std::vector<int> left;
+        for (std::size_t k = 0; k < model.size(); ++k)
+          if (k < first || stays(k)) left.push_back(model[k]);
+        model = left;
+        break;
+      }
       default:
         if (lists.size() < 8) {
           auto const copy = list;

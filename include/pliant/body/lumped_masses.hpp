@@ -79,16 +79,8 @@ SharedList<double> changed_masses(Topology<M> const& topology, double density,
                                   Transfer<M::dim> const& transfer,
                                   TouchedElements<M> const& touched) {
   auto masses = before;
-  if (transfer.staying_nodes() < transfer.old_nodes()) {
-    std::size_t next = 0;
-    for (Index old = 0; old < transfer.old_nodes(); ++old) {
-      if (transfer.renumbered(old) < 0) continue;
-      if (next != static_cast<std::size_t>(old))
-        masses.edit(next) = before[static_cast<std::size_t>(old)];
-      ++next;
-    }
-    masses.shrink(next);
-  }
+  if (transfer.staying_nodes() < transfer.old_nodes())
+    masses.keep(0, [&](std::size_t i) { return transfer.renumbered(static_cast<Index>(i)) >= 0; });
   for (Index node = transfer.staying_nodes(); node < transfer.nodes(); ++node) masses.push_back(0);
   for (Index const node : touched.nodes())
     if (touched.changes_elements(node)) masses.edit(static_cast<std::size_t>(node)) = 0;

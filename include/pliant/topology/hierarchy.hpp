@@ -135,10 +135,8 @@ class Hierarchy {
     for (NewNode const& node : inside)
       if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
     for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
-    std::size_t next = at(done.renumbered.first_node);
-    for (std::size_t i = next; i < points_.size(); ++i)
-      if (done.renumbered.nodes[i] >= 0) points_.edit(next++) = points_[i];
-    points_.shrink(next);
+    points_.keep(at(done.renumbered.first_node),
+                 [&](std::size_t i) { return done.renumbered.nodes[i] >= 0; });
     return done;
   }
 

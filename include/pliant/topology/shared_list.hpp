@@ -65,6 +65,17 @@ class SharedList {
     blocks_.resize((size + per_block - 1) / per_block);
   }
   void clear() { shrink(0); }
+  /// Takes those entries from `first` on away for which not stays(place); the others move up.
+  template <class Stays>
+  void keep(std::size_t first, Stays const& stays) {
+    std::size_t next = first;
+    for (std::size_t i = first; i < size_; ++i) {
+      if (!stays(i)) continue;
+      if (next != i) edit(next) = (*this)[i];
+      ++next;
+    }
+    shrink(next);
+  }
 
  private:
   static constexpr std::size_t per_block = 256;
