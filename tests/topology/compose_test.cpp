@@ -42,7 +42,8 @@ TEST_CASE("slaves that are listed twice or before their masters are refused", "[
     INFO("numbers " << apart << " apart");
     auto twice = chains(3, apart);
     twice.push_back(twice[1]);
-    CHECK_THROWS_WITH(compose(twice), says(detail::message({"node ", 19 * apart, " is a slave twice"})));
+    CHECK_THROWS_WITH(compose(twice),
+                      says(detail::message({"node ", 19 * apart, " is a slave twice"})));
     auto unordered = chains(1, apart);
     std::swap(unordered[0], unordered[2]);
     CHECK_THROWS_WITH(compose(unordered), says("does not come before it"));
