@@ -27,9 +27,9 @@ double patches_in_corner(TheBody& body, double size) {
   auto const& mesh = body.mesh();
   auto const& elements = mesh.template elements<Tet4>();
   std::set<Index> patches;
-  for (std::size_t e = 0; e < table.user_element.size(); ++e) {
+  for (std::size_t e = 0; e < table.user_elements().size(); ++e) {
     std::array<double, 3> middle{};
-    for (Index node : elements[static_cast<std::size_t>(table.user_element[e])])
+    for (Index node : elements[static_cast<std::size_t>(table.user_elements()[e])])
       for (std::size_t k = 0; k < 3; ++k)
         middle[k] += mesh.nodes[static_cast<std::size_t>(node)][k] / 4;
     if (std::ranges::max(middle) < size)

@@ -684,7 +684,7 @@ TEST_CASE("under local steps a budget counts an element as often as its level is
       auto const groups = of.template groups_of<Quad4>();
       std::pair<double, double> sums;  // with levels, and without
       for (std::size_t k = 0; k < groups.size(); ++k) {
-        auto const e = static_cast<std::size_t>(table.user_element[k]);
+        auto const e = static_cast<std::size_t>(table.user_elements()[k]);
         auto const patch = k / static_cast<std::size_t>(table.elements.patch_size());
         double const cost = some_costs[groups[e]] / some_costs[2];
         sums.first += std::ldexp(cost, parts.schedule->patch_levels[0][patch]);

@@ -169,8 +169,8 @@ TEST_CASE("patches are marked by how many others lie between them and what moves
   std::vector<int> by_place(marks.size());
   for (std::size_t e = 0; e < marks.size(); ++e) {
     Point<2> middle{};
-    auto const& own =
-        mesh.elements<Tri3>()[static_cast<std::size_t>(parts.layout.table<Tri3>().user_element[e])];
+    auto const& own = mesh.elements<Tri3>()[static_cast<std::size_t>(
+        parts.layout.table<Tri3>().user_elements()[e])];
     for (Index node : own) middle[0] += mesh.nodes[static_cast<std::size_t>(node)][0] / 3;
     by_place[static_cast<std::size_t>(2 * middle[0])] = marks[e];
   }
@@ -202,8 +202,8 @@ template <class TheBody>
 auto still_and_moving(TheBody const& body) {
   auto const& table = body.parts().layout.template table<Tri3>();
   std::vector<std::array<int, 2>> counts(static_cast<std::size_t>(table.elements.patch_count()));
-  for (std::size_t e = 0; e < table.user_element.size(); ++e)
-    counts[e / 3][table.user_element[e] < 20 ? 0 : 1] += 1;
+  for (std::size_t e = 0; e < table.user_elements().size(); ++e)
+    counts[e / 3][table.user_elements()[e] < 20 ? 0 : 1] += 1;
   return counts;
 }
 
@@ -237,7 +237,7 @@ TEST_CASE("patches that hold parts of several bodies are awake while one of them
 
   auto const counts = still_and_moving(body);
   auto const sleeps = asleep_elements<Tri3>(body);
-  auto const& users = body.parts().layout.table<Tri3>().user_element;
+  auto const& users = body.parts().layout.table<Tri3>().user_elements();
   for (std::size_t e = 0; e < users.size(); ++e) {
     INFO(e);
     CHECK(sleeps[static_cast<std::size_t>(users[e])] == (counts[e / 3][1] == 0));

@@ -101,8 +101,8 @@ TEST_CASE("steps are counted beyond 32 bits, and counts of switches end at the l
     statistics.switches.upload(switches);
     auto const counts_are = [&](int first, int others) {
       std::vector<int> expected(n, others);
-      expected[static_cast<std::size_t>(table.user_element[0])] = first;
-      expected[static_cast<std::size_t>(table.user_element[1])] = most;
+      expected[static_cast<std::size_t>(table.user_elements()[0])] = first;
+      expected[static_cast<std::size_t>(table.user_elements()[1])] = most;
       CHECK(switch_counts<Quad4>(body) == expected);
     };
     for (int k = 0; k < 4; ++k) body.parts().state.steps += most;

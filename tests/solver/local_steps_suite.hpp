@@ -350,7 +350,7 @@ TEST_CASE("fine elements have two rings of their level around them", "[solver]")
   auto const levels = levels_of(body);
   auto const own = download<StepLevel>(std::get<0>(parts.state.elements).step_levels);
   auto const& mesh = body.mesh();
-  auto const& user_element = parts.layout.template table<Quad4>().user_element;
+  auto const& user_element = parts.layout.template table<Quad4>().user_elements();
   // Two elements touch where they read the same free node.
   std::vector<std::vector<Index>> read(own.size());
   for (std::size_t e = 0; e < own.size(); ++e)

@@ -23,8 +23,10 @@ void check_layout(TheBody& body) {
   CHECK(download<T>(own.mass) == download<T>(anew.mass));
   CHECK(download<T>(own.rest) == download<T>(anew.rest));
   parts.for_each_type([&](auto const& table, auto const&) {
-    CHECK(table.user_element ==
-          std::get<std::remove_cvref_t<decltype(table)>>(anew.tables).user_element);
+    auto const& all = std::get<std::remove_cvref_t<decltype(table)>>(anew.tables).user_elements();
+    CHECK(table.user_elements() == all);
+    for (std::size_t e = 0; e < all.size(); e += 7)
+      CHECK(table.numbers[static_cast<Index>(e)] == all[e]);
   });
 }
 
@@ -106,6 +108,12 @@ std::vector<Index> old_elements(TopologyChange<M> const& change) {
   return old;
 }
 
+/// By the internal number the user's one.
+template <class M>
+std::vector<Index> numbers(OrderedElements<1> const& ordered, Topology<M> const& topology) {
+  return ElementNumbers(ordered.cells[0], ordered.blocks[0].first, topology.cells[0]).all();
+}
+
 TEST_CASE("blocks that are said to stay have the elements that they had", "[topology]") {
   using Own = Mesh<Tet4>;
   Body body{Reference<double>{}, mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {12, 12, 12}}), soft,
@@ -120,18 +128,18 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
           return FoundByLooking<Own>{made.before.mesh(), nodes};
         });
     auto const changed = changed_blocks(made.after, first, made.transfer, touched);
-    OrderBefore<1, 3> const known{
-        {before.elements[0]}, {before.blocks[0].first}, made.transfer, changed.elements};
+    OrderBefore<1, 3> const known{{before.cells[0]}, made.transfer, changed.elements};
     auto const after = elements_in_order(made.after, first, &known);
     auto const& [now, then] = std::pair(after.blocks[0], before.blocks[0]);
-    auto const old = old_elements(made);
+    auto const old = old_elements(made), new_numbers = numbers(after, made.after),
+               old_numbers = numbers(before, made.before);
     REQUIRE(now.first.size() == then.first.size());
     for (std::size_t b = 0; b < now.stays.size(); ++b) {
       bool same = now.first[b + 1] - now.first[b] == then.first[b + 1] - then.first[b];
       for (Index k = 0; same && k < now.first[b + 1] - now.first[b]; ++k)
         same = old[static_cast<std::size_t>(
-                   after.elements[0][static_cast<std::size_t>(now.first[b] + k)])] ==
-               before.elements[0][static_cast<std::size_t>(then.first[b] + k)];
+                   new_numbers[static_cast<std::size_t>(now.first[b] + k)])] ==
+               old_numbers[static_cast<std::size_t>(then.first[b] + k)];
       CHECK((now.stays[b] != 0) == same);
       ++(same ? stay : change);
     }

@@ -52,8 +52,8 @@ void adapt(TheBody& body, C const& criterion, S const& strategy) {
   auto& table = parts.layout.template table<typename F::element>();
   using Table = std::remove_cvref_t<decltype(table)>;
   auto& workspace = table.criteria;
-  if (workspace.number.size() < table.user_element.size())
-    workspace.number = upload(parts.backend, table.user_element);
+  if (workspace.number.size() < table.numbers.size())
+    workspace.number = upload(parts.backend, table.user_elements());
   detail::TableRules<Table, detail::Look<F, C>> const rules{{detail::Look<F, C>{criterion}}};
   detail::evaluate_criteria(
       std::as_const(parts), std::as_const(table), detail::active(std::as_const(table).elements),

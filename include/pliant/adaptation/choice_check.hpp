@@ -236,9 +236,10 @@ double evaluations_per_step(TheBody& body, ChoiceRule<Fs...> const& rule) {
   auto const asleep = asleep_elements<E>(body);
   auto const levels = detail::levels_of_patches<E>(parts);
   std::array const places{Table::template group_of<Fs>...};
+  auto const& user = table.user_elements();
   double sum = 0;
   for (std::size_t internal = 0; internal < groups.size(); ++internal) {
-    auto const e = static_cast<std::size_t>(table.user_element[internal]);
+    auto const e = static_cast<std::size_t>(user[internal]);
     auto const patch = internal / static_cast<std::size_t>(table.elements.patch_size());
     auto const place = std::ranges::find(places, int{groups[e]}) - places.begin();
     if (place < ChoiceRule<Fs...>::count && !asleep[e])

@@ -96,7 +96,7 @@ class ElementCheck {
     void hold_ranking(std::size_t rankings) {
       auto& w = check_.workspace();
       if (w.number.size() < count()) {
-        w.number = upload(check_.backend(), check_.table_.user_element);
+        w.number = upload(check_.backend(), check_.table_.user_elements());
         made = true;
       }
       hold(w.rankings, rankings);

@@ -37,9 +37,9 @@ std::vector<double> evaluate_on(Parts const& parts, C const& criterion) {
                     parts.no_counters);
   auto const internal = download<T>(values);
   std::vector<double> in_user_order(internal.size());
+  auto const& user = table.user_elements();
   for (std::size_t e = 0; e < internal.size(); ++e)
-    in_user_order[static_cast<std::size_t>(table.user_element[e])] =
-        static_cast<double>(internal[e]);
+    in_user_order[static_cast<std::size_t>(user[e])] = static_cast<double>(internal[e]);
   return in_user_order;
 }
 }  // namespace detail

@@ -77,9 +77,9 @@ std::array<double, sizeof...(Fs)> measure_costs(TheBody const& body) {
                 "measure_costs: the body has no Group of one of these formulations");
   auto connectivity = body.mesh().template elements<E>();
   if (connectivity.empty()) throw Error("measure_costs: the mesh has no ", E::name(), " element");
+  auto const& user = table.user_elements();
   for (std::size_t e = 0; e < connectivity.size(); ++e) {
-    connectivity[e] =
-        body.mesh().template elements<E>()[static_cast<std::size_t>(table.user_element[e])];
+    connectivity[e] = body.mesh().template elements<E>()[static_cast<std::size_t>(user[e])];
     for (Index& node : connectivity[e]) node = parts.layout.internal_of(node);
   }
   auto f = zeros<T>(backend, parts.layout.f.size());

@@ -67,9 +67,10 @@ class HeldCheck : private ElementCheck<Parts, Table, Elements> {
     auto const rows = download<T>(workspace().values);
     auto const count = static_cast<std::size_t>(table_.count());
     std::vector<double> errors(count * Of::count);
+    auto const& user = table_.user_elements();
     for (std::size_t e = 0; e < count; ++e)
       for (std::size_t k = 0; k + 1 < Of::count; ++k)
-        errors[static_cast<std::size_t>(table_.user_element[e]) * Of::count + k] =
+        errors[static_cast<std::size_t>(user[e]) * Of::count + k] =
             static_cast<double>(rows[count * k + e]);
     return errors;
   }

@@ -169,14 +169,14 @@ namespace detail {
 template <Element E, class Parts>
 std::vector<bool> asleep_on(Parts const& parts) {
   auto const& table = parts.layout.template table<E>();
-  std::vector<bool> sleeps(table.user_element.size(), false);
+  std::vector<bool> sleeps(table.numbers.size(), false);
   if (!parts.awake) return sleeps;
   auto const asleep = on_host<std::uint8_t>(parts.awake->asleep);
   Index const first = parts.patch_nodes->first_of_type[Parts::layout_type::template type_of<E>];
+  auto const& user = table.user_elements();
   for (std::size_t e = 0; e < sleeps.size(); ++e) {
     Index const patch = first + static_cast<Index>(e) / table.elements.patch_size();
-    sleeps[static_cast<std::size_t>(table.user_element[e])] =
-        asleep[static_cast<std::size_t>(patch)] != 0;
+    sleeps[static_cast<std::size_t>(user[e])] = asleep[static_cast<std::size_t>(patch)] != 0;
   }
   return sleeps;
 }

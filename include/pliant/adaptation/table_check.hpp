@@ -141,7 +141,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
       auto const masks = download<std::uint32_t>(workspace().mesh_marks);
       for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
-        if (masks[e] != 0) lists.add(table_.user_element[e], masks[e]);
+        if (masks[e] != 0) lists.add(table_.numbers[static_cast<Index>(e)], masks[e]);
     }
   }
   void keep() const {
@@ -257,7 +257,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
   std::vector<int> internal_levels() const {
     auto const levels = levels_of<typename Table::element>(parts_);
     std::vector<int> internal;
-    for (Index element : table_.user_element)
+    for (Index element : table_.user_elements())
       internal.push_back(levels[static_cast<std::size_t>(element)]);
     return internal;
   }

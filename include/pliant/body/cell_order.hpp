@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/element_blocks.hpp>
+#include <pliant/body/element_numbers.hpp>
 #include <pliant/body/numbering.hpp>
 #include <pliant/body/touched_elements.hpp>
 #include <pliant/topology/element_types.hpp>
@@ -44,18 +45,18 @@ CellOrder first_order(Numbering<Es...> const& numbering) {
   return order;
 }
 
-/// The elements of each type by the user's numbers, in the order that a body keeps, and the blocks that they are in.
+/// The elements of each type in the order that a body keeps: the cells that those of each block are, and the blocks.
 template <std::size_t Types>
 struct OrderedElements {
-  std::array<std::vector<Index>, Types> elements;
+  std::array<std::vector<std::shared_ptr<BlockCells const>>, Types> cells;
   std::array<ElementBlocks, Types> blocks;
 };
 
-/// The same before a change, as a layout keeps it, what the change means, and by the block whether other elements stand there
-/// now.
+/// The same cells before a change, as a layout keeps them (of a first mesh it keeps none), what the change means, and by the
+/// block whether other elements stand there now.
 template <std::size_t Types, int Dim>
 struct OrderBefore {
-  std::array<std::span<Index const>, Types> elements, first;
+  std::array<std::span<std::shared_ptr<BlockCells const> const>, Types> cells;
   Transfer<Dim> const& transfer;
   std::span<char const> changed;
 };
@@ -104,31 +105,6 @@ ChangedBlocks changed_blocks(Topology<Mesh<Es...>> const& after, CellOrder const
 
 namespace detail {
 
-/// The places of cells in an ascending list, of which those that are asked for stand near each other or near those of
-/// numbers as far apart.
-class PlacesOfCells {
- public:
-  explicit PlacesOfCells(std::vector<Index> const& cells)
-      : cells_(cells), count_(static_cast<Index>(cells.size())) {}
-
-  /// Of a cell that is there.
-  Index operator()(Index c) {
-    Index const guess = std::clamp(last_ + (c - at(last_)), Index{0}, count_ - 1);
-    Index low = guess, high = guess + 1;  // the cell is in [low, high)
-    for (Index step = 1; at(low) > c; step *= 2) high = std::exchange(low, std::max(0, low - step));
-    for (Index step = 1; high < count_ && at(high) <= c; step *= 2)
-      low = std::exchange(high, std::min(count_, high + step));
-    auto const found = std::lower_bound(cells_.begin() + low, cells_.begin() + high, c);
-    return last_ = static_cast<Index>(found - cells_.begin());
-  }
-
- private:
-  Index at(Index place) const { return cells_[static_cast<std::size_t>(place)]; }
-
-  std::vector<Index> const& cells_;
-  Index count_, last_ = 0;
-};
-
 /// Calls visit(cell) for the leaves in a block of a tree: cells of the first mesh in their order, children in the place of
 /// their parents.
 template <int Dim, class Visit>
@@ -145,34 +121,6 @@ void for_each_leaf(Hierarchy<Dim> const& tree, CellOrder const& first, Index blo
   for (Index i = begin; i < end; ++i) descend(descend, first.cells[static_cast<std::size_t>(i)]);
 }
 
-/// The new numbers of elements of a type that stay.
-class NewElements {
- public:
-  template <class Origin>
-  explicit NewElements(std::vector<Origin> const& origins) {
-    Index e = 0;
-    for (auto const& origin : origins) {
-      if (origin.child == Origin::same)
-        runs_.push_back({origin.element, origin.element + origin.count, e - origin.element});
-      e += origin.count;
-    }
-  }
-  /// To be asked for elements of which many follow each other.
-  auto numbers() const {
-    return [this, run = Run{}](Index old) mutable {
-      if (old < run.first || old >= run.last)
-        run = *(std::ranges::upper_bound(runs_, old, {}, &Run::first) - 1);
-      return old + run.shift;
-    };
-  }
-
- private:
-  struct Run {
-    Index first = 0, last = 0, shift = 0;
-  };
-  std::vector<Run> runs_;
-};
-
 }  // namespace detail
 
 /// The elements of a topology with a tree, in the order that follows from the first mesh's. `before`: null, or this order
@@ -182,55 +130,44 @@ OrderedElements<sizeof...(Es)> elements_in_order(
     Topology<Mesh<Es...>> const& topology, CellOrder const& first,
     OrderBefore<sizeof...(Es), Mesh<Es...>::dim> const* before = nullptr) {
   constexpr std::size_t types = sizeof...(Es);
-  Index const blocks = first.blocks();
-  auto const stays = [&](Index block) {
-    return before != nullptr && before->changed[static_cast<std::size_t>(block)] == 0;
+  auto const blocks = static_cast<std::size_t>(first.blocks());
+  auto const stays = [&](std::size_t block) {
+    return before != nullptr && before->changed[block] == 0;
   };
-  // Those of blocks that do not stay, one after another, and where each block begins.
-  std::array<std::vector<Index>, types> own, begin;
-  std::vector<detail::PlacesOfCells> places(topology.cells.begin(), topology.cells.end());
-  for (Index block = 0; block < blocks; ++block) {
-    for (std::size_t type = 0; type < types; ++type)
-      begin[type].push_back(static_cast<Index>(own[type].size()));
-    if (stays(block)) continue;
+  // Cells of the first mesh have the same numbers for good.
+  auto const is_known = [&](std::size_t block) {
+    return stays(block) && std::ranges::all_of(before->cells, [&](auto const& known) {
+             return !known.empty() &&
+                    (!before->transfer.renumbers() || known[block]->greatest < first.count());
+           });
+  };
+  OrderedElements<types> ordered;
+  for (auto& cells : ordered.cells) cells.resize(blocks);
+  constexpr Index few_blocks = 8;  // worth a thread
+  detail::for_each_on_host(first.blocks(), few_blocks, [&](Index block) {
+    auto const b = static_cast<std::size_t>(block);
+    if (is_known(b)) {
+      for (std::size_t type = 0; type < types; ++type)
+        ordered.cells[type][b] = before->cells[type][b];
+      return;
+    }
+    std::array<BlockCells, types> own;
     detail::for_each_leaf(*topology.tree, first, block, [&](Index c) {
       detail::for_each_type_of<Mesh<Es...>>([&]<Element E>(E, std::size_t type) {
-        if (types == 1 || detail::is_cell_of<E>(topology.tree->cell(c)))
-          own[type].push_back(places[type](c));
+        if (types == 1 || detail::is_cell_of<E>(topology.tree->cell(c))) own[type].add(c);
       });
     });
-  }
-  OrderedElements<types> ordered;
+    for (std::size_t type = 0; type < types; ++type)
+      ordered.cells[type][b] = std::make_shared<BlockCells const>(std::move(own[type]));
+  });
   for (std::size_t type = 0; type < types; ++type) {
-    begin[type].push_back(static_cast<Index>(own[type].size()));
     auto& cut = ordered.blocks[type].first;
-    auto& kept = ordered.blocks[type].stays;
-    std::optional<detail::NewElements> now;
-    if (before != nullptr) now.emplace(before->transfer.origins(type));
-    auto const all_of = [&](Index block) {
-      auto const b = static_cast<std::size_t>(block);
-      auto const part = [b](std::span<Index const> list, std::span<Index const> first_of) {
-        return list.subspan(static_cast<std::size_t>(first_of[b]),
-                            static_cast<std::size_t>(first_of[b + 1] - first_of[b]));
-      };
-      return stays(block) ? part(before->elements[type], before->first[type])
-                          : part(own[type], begin[type]);
-    };
+    cut.reserve(blocks + 1);
     cut = {0};
-    for (Index block = 0; block < blocks; ++block) {
-      cut.push_back(cut.back() + static_cast<Index>(all_of(block).size()));
-      if (before != nullptr) kept.push_back(stays(block) ? 1 : 0);
-    }
-    auto& elements = ordered.elements[type];
-    elements.resize(static_cast<std::size_t>(cut.back()));
-    constexpr Index few_blocks = 64;  // worth a thread
-    detail::for_each_on_host(blocks, few_blocks, [&](Index block) {
-      auto const to = elements.begin() + cut[static_cast<std::size_t>(block)];
-      if (stays(block))
-        std::ranges::transform(all_of(block), to, now->numbers());
-      else
-        std::ranges::copy(all_of(block), to);
-    });
+    for (auto const& own : ordered.cells[type])
+      cut.push_back(cut.back() + static_cast<Index>(own->cells.size()));
+    for (std::size_t b = 0; before != nullptr && b < blocks; ++b)
+      ordered.blocks[type].stays.push_back(stays(b) ? 1 : 0);
   }
   return ordered;
 }

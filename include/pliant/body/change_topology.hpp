@@ -21,9 +21,9 @@ template <class Parts, class Table>
 void put_points_to_rest(Parts& parts, Table& table, std::vector<Tag> tags,
                         std::vector<bool> const& which) {
   if constexpr (Table::Laws::internal_variable_count > 0) {
+    auto const& user = table.user_elements();
     for (std::size_t e = 0; e < tags.size(); ++e)
-      if (which[static_cast<std::size_t>(table.user_element[e])])
-        tags[e] = static_cast<Tag>(Table::groups);
+      if (which[static_cast<std::size_t>(user[e])]) tags[e] = static_cast<Tag>(Table::groups);
     auto const before = upload(parts.backend, tags);
     table.elements.regroup();
     parts.backend.template visit<Table::groups>(

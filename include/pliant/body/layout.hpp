@@ -93,9 +93,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
   OrderBefore<sizeof...(Es), dim> order(Transfer<dim> const& transfer,
                                         std::span<char const> changed) const {
-    OrderBefore<sizeof...(Es), dim> kept{{}, {}, transfer, changed};
-    std::apply([&](auto const&... table) { kept.elements = {table.user_element...}; }, tables);
-    std::ranges::copy(first_of_block, kept.first.begin());
+    OrderBefore<sizeof...(Es), dim> kept{{}, transfer, changed};
+    std::apply([&](auto const&... table) { kept.cells = {table.numbers.blocks()...}; }, tables);
     return kept;
   }
   /// The user's numbers of nodes, in the backend's memory.
@@ -152,7 +151,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
             std::tuple<Group<Fs>...> const& groups, Change const* change,
             FindOwnMasses const& find_own_masses) {
     HostThreads const threads(backend, topology);
-    auto [numbering, blocks, changed] = detail::numbered(topology, first_order.get(), change);
+    auto [numbering, ordered, changed] = detail::numbered(topology, first_order.get(), change);
+    auto& blocks = ordered.blocks;
     first_nodes = std::move(numbering.first_nodes);
     if (!first_order) {
       first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
@@ -164,8 +164,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
     if (change != nullptr) follow_nodes(backend, *change, blocks, changed);
     Index scratch = 0;
-    [&, &numbering = numbering, &blocks = blocks]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, blocks[I], change, topology, material, groups, scratch),
+    [&, &numbering = numbering, &ordered = ordered]<std::size_t... I>(std::index_sequence<I...>) {
+      (make_table<I>(backend, numbering, ordered, change, topology, material, groups, scratch),
        ...);
     }(std::index_sequence_for<Es...>());
     for (std::size_t type = 0; type < first_of_block.size(); ++type)
@@ -205,20 +205,26 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
 
   template <std::size_t I>
-  void make_table(B const& backend, Numbering<Es...>& numbering, ElementBlocks const& blocks,
-                  Change const* change, Topology<Mesh<Es...>> const& topology,
-                  Elastic const& material, std::tuple<Group<Fs>...> const& groups, Index& scratch) {
+  void make_table(B const& backend, Numbering<Es...>& numbering,
+                  OrderedElements<sizeof...(Es)>& ordered, Change const* change,
+                  Topology<Mesh<Es...>> const& topology, Elastic const& material,
+                  std::tuple<Group<Fs>...> const& groups, Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
     constexpr bool by_blocks = PlansByBlocks<decltype(table.elements), B>;
+    auto const& blocks = ordered.blocks[I];
     auto rows = std::move(std::get<I>(numbering.tables));
-    if (rows.empty()) rows = numbering.template rows_of<I>(topology, blocks, !by_blocks);
-    table.user_element = std::move(numbering.user_element[I]);
+    if (ordered.cells[I].empty()) {
+      table.numbers = ElementNumbers(std::move(numbering.user_element[I]));
+    } else {
+      rows = numbering.template rows_of<I>(topology, ordered.cells[I], blocks, !by_blocks);
+      table.numbers = ElementNumbers(std::move(ordered.cells[I]), blocks.first, topology.cells[I]);
+    }
     auto const make_elements = [&](auto const&... planned) {
       table.elements = {backend,
                         std::move(rows),
                         TableType::groups,
-                        std::vector<Tag>(table.user_element.size(), 0),
+                        std::vector<Tag>(table.numbers.size(), 0),
                         nodes,
                         node_order<typename TableType::element>,
                         planned...};

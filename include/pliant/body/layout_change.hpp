@@ -83,11 +83,11 @@ class KeptNodes {
   std::vector<Index> old_numbers_;
 };
 
-/// The numbering of a topology, the blocks that its elements are in, and, where there was a change, what it means for these.
+/// The numbering of a topology, its elements in their order, and, where there was a change, what it means for their blocks.
 template <Element... Es>
 struct Numbered {
   Numbering<Es...> numbering;
-  std::array<ElementBlocks, sizeof...(Es)> blocks;
+  OrderedElements<sizeof...(Es)> ordered;
   ChangedBlocks changed;
 };
 /// `first`: the order of the body's first mesh; null: this is it. `change`: null where there was none.
@@ -95,7 +95,7 @@ template <class L, Element... Es>
 Numbered<Es...> numbered(Topology<Mesh<Es...>> const& topology, CellOrder const* first,
                          LayoutChange<L, Mesh<Es...>> const* change) {
   if (first == nullptr || !topology.tree)
-    return {Numbering<Es...>(topology.mesh()), first_blocks(topology.mesh()), {}};
+    return {Numbering<Es...>(topology.mesh()), {{}, first_blocks(topology.mesh())}, {}};
   OrderedElements<sizeof...(Es)> ordered;
   ChangedBlocks changed;
   if (change != nullptr) {
@@ -106,8 +106,8 @@ Numbered<Es...> numbered(Topology<Mesh<Es...>> const& topology, CellOrder const*
     ordered = elements_in_order(topology, *first);
   }
   KeptNodes<L, Mesh<Es...>> const kept(change, changed);
-  Numbering<Es...> numbering(topology, std::move(ordered.elements), ordered.blocks, kept);
-  return {std::move(numbering), std::move(ordered.blocks), std::move(changed)};
+  Numbering<Es...> numbering(topology, ordered.cells, kept);
+  return {std::move(numbering), std::move(ordered), std::move(changed)};
 }
 
 /// Where the nodes of blocks are now: by the block, the first number before, and from there on numbers that follow each

@@ -90,8 +90,9 @@ std::vector<int> switch_counts(TheBody const& body) {
       counts.resize(static_cast<std::size_t>(table.count()), 0);
       if (!elements.statistics.open) return;
       auto const internal = download<std::int32_t>(elements.statistics.switches);
+      auto const& user = table.user_elements();
       for (std::size_t e = 0; e < internal.size(); ++e)
-        counts[static_cast<std::size_t>(table.user_element[e])] = internal[e];
+        counts[static_cast<std::size_t>(user[e])] = internal[e];
     }
   });
   return counts;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/backend/element_blocks.hpp>
+#include <pliant/body/element_numbers.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/hilbert.hpp>
@@ -36,7 +37,7 @@ struct Numbering {
   std::vector<Index> user_node;      // by the internal number
   /// Internal elements of internal nodes; empty where elements are in blocks: see rows_of.
   std::tuple<std::vector<Connectivity<Es>>...> tables;
-  std::array<std::vector<Index>, types> user_element;  // by the internal number
+  std::array<std::vector<Index>, types> user_element;  // by the internal number; empty as tables
   FirstNodes<types> first_nodes;                       // empty where elements are in no blocks
 
   explicit Numbering(Mesh<Es...> const& mesh) : Numbering(mesh, along_curve(mesh)) {}
@@ -51,24 +52,25 @@ struct Numbering {
     }(std::index_sequence_for<Es...>());
     number_others();
   }
-  /// The same of a topology's elements in blocks: per type, where each begins. Nodes that blocks `keep` keep their order: see
+  /// The same of a topology's elements in blocks: per type, the cells of each. Nodes that blocks `keep` keep their order: see
   /// KeptNodes.
   template <class Kept>
-  Numbering(Topology<Mesh<Es...>> const& topology, std::array<std::vector<Index>, types> order,
-            std::array<ElementBlocks, types> const& blocks, Kept const& kept)
+  Numbering(Topology<Mesh<Es...>> const& topology,
+            std::array<ElementNumbers::Blocks, types> const& blocks, Kept const& kept)
       : internal_node(static_cast<std::size_t>(topology.nodes()), -1),
-        user_node(static_cast<std::size_t>(topology.nodes())),
-        user_element(std::move(order)) {
+        user_node(static_cast<std::size_t>(topology.nodes())) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (number_by_blocks<I, Es>(topology, blocks[I].first, kept), ...);
+      (number_by_blocks<I, Es>(topology, blocks[I], kept), ...);
       (take_kept<I>(kept), ...);
     }(std::index_sequence_for<Es...>());
     number_others();
   }
 
-  /// The table of a type, whose elements are in blocks: all elements, or those of blocks that do not stay, one after another.
+  /// The table of a type, whose elements are in blocks of these cells: all elements, or those of blocks that do not stay, one
+  /// after another.
   template <std::size_t I>
   std::vector<Connectivity<TypeAt<I>>> rows_of(Topology<Mesh<Es...>> const& topology,
+                                               ElementNumbers::Blocks const& cells,
                                                ElementBlocks const& blocks, bool all) const {
     auto const& looked_up = std::get<I>(looked_up_);
     std::vector<Index> first{0};  // row, by block
@@ -87,8 +89,7 @@ struct Numbering {
       for (std::size_t k = 0; k < count; ++k) {
         auto& row = rows[begin + k];
         row = known >= 0 ? looked_up.rows[static_cast<std::size_t>(known) + k]
-                         : topology.template nodes_of<TypeAt<I>>(
-                               user_element[I][static_cast<std::size_t>(blocks.first[b]) + k]);
+                         : topology.template nodes_of_cell<TypeAt<I>>(cells[b]->cells[k]);
         for (Index& node : row) node = internal_node[static_cast<std::size_t>(node)];
       }
     });
@@ -129,11 +130,11 @@ struct Numbering {
   }
   /// Numbers the nodes of blocks that keep none, and tells where those of each block begin.
   template <std::size_t I, Element E, class Kept>
-  void number_by_blocks(Topology<Mesh<Es...>> const& topology, std::vector<Index> const& first,
+  void number_by_blocks(Topology<Mesh<Es...>> const& topology, ElementNumbers::Blocks const& blocks,
                         Kept const& kept) {
     auto has_kept = kept.has();
     auto& looked_up = std::get<I>(looked_up_);
-    for (std::size_t b = 0; b + 1 < first.size(); ++b) {
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
       first_nodes[I].push_back(next_);
       if (kept.keeps(b)) {
         looked_up.first.push_back(-1);
@@ -148,10 +149,8 @@ struct Numbering {
         continue;
       }
       looked_up.first.push_back(static_cast<Index>(looked_up.rows.size()));
-      for (auto i = static_cast<std::size_t>(first[b]); i < static_cast<std::size_t>(first[b + 1]);
-           ++i)
-        for (Index const node :
-             looked_up.rows.emplace_back(topology.template nodes_of<E>(user_element[I][i])))
+      for (Index const c : blocks[b]->cells)
+        for (Index const node : looked_up.rows.emplace_back(topology.template nodes_of_cell<E>(c)))
           if (internal_node[static_cast<std::size_t>(node)] < 0 && !has_kept(node))
             take(node, next_++);
     }

@@ -90,6 +90,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
     auto const& elements = parts.state.topology->mesh().template elements<E>();
+    auto const& user = table.user_elements();
     Index const before = made.first_of_type.back();
     for (Index p = 0; p < table.elements.patch_count(); ++p) {
       Index const first = p * table.elements.patch_size();
@@ -97,8 +98,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
       // f(first node of an element, node)
       auto const for_each_node = [&](auto const& f) {
         for (Index e = first; e < last; ++e) {
-          auto const& own =
-              elements[static_cast<std::size_t>(table.user_element[static_cast<std::size_t>(e)])];
+          auto const& own = elements[static_cast<std::size_t>(user[static_cast<std::size_t>(e)])];
           Index const joined = layout.internal_of(own[0]);
           for (Index node : own) {
             f(joined, layout.internal_of(node));

@@ -58,8 +58,8 @@ class ElementsAtNodes {
     auto const& table = parts_.layout.template table<E>();
     auto found = parts_.backend.select(
         table.count(), HasMarkedNode<E::nodes>{table.elements.rows_of_nodes(), marks_.data()});
-    for (Index& e : found) e = table.user_element[static_cast<std::size_t>(e)];
-    return each_once(std::move(found), table.user_element.size());
+    for (Index& e : found) e = table.numbers[e];
+    return each_once(std::move(found), table.numbers.size());
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -45,6 +46,11 @@ struct ChangedCells {
   std::vector<Index> split;      // by their new numbers
   std::size_t raised = 0;
 
+  /// Cells before this one keep their numbers.
+  Index first_renumbered() const {
+    return coarsening.renumbered.cells.empty() ? std::numeric_limits<Index>::max()
+                                               : coarsening.renumbered.first_cell;
+  }
   /// The new number of a cell.
   Index renumbered(Index c) const {
     auto const& cells = coarsening.renumbered.cells;

@@ -13,6 +13,7 @@
 #include <pliant/formulation/mass.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/cell_changes.hpp>
+#include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -35,7 +36,7 @@ namespace detail {
 /// The elements of a type after a change.
 template <int Dim>
 struct ChangedElements {
-  std::vector<Index> cells;  // of the tree, ascending
+  CellSet cells;
   std::vector<typename Transfer<Dim>::Origin> origins;
 };
 
@@ -48,9 +49,13 @@ class ElementChanges {
   using Member = typename Transfer<dim>::Member;
 
  public:
-  ElementChanges(std::vector<std::vector<Index>> const& old_cells, Hierarchy<dim> const& before,
+  ElementChanges(std::vector<CellSet> const& old_cells, Hierarchy<dim> const& before,
                  std::vector<Index> const& merged, ChangedCells<dim> const& changed)
-      : old_cells_(old_cells), before_(before), after_(*changed.tree), changed_(changed) {
+      : old_cells_(old_cells),
+        leaving_cells_(old_cells.size()),
+        before_(before),
+        after_(*changed.tree),
+        changed_(changed) {
     for_each_type_of<M>([&]<Element E>(E, std::size_t) {
       types_.emplace_back(kind_of<typename E::cell>, nodes_on_cell<E>);
     });
@@ -70,14 +75,13 @@ class ElementChanges {
     auto const arriving = arriving_at<E>();
     auto const leaving = leaving_from(type);
     ChangedElements<dim> list;
-    list.cells.reserve(old_cells.size() + arriving.size());
     list.origins.reserve(leaving.size() + 2 * arriving.size() + 1);
     // Numbers of cells stay in order, and those of new ones follow.
-    Index next = 0;  // of the old elements
+    Index next = 0, count = 0;  // of the old elements, and how many there are so far
     auto const add_those_before = [&](Index end) {
       if (next == end) return;
       list.origins.push_back({.element = next, .child = Origin::same, .count = end - next});
-      list.cells.insert(list.cells.end(), old_cells.begin() + next, old_cells.begin() + end);
+      count += end - next;
       next = end;
     };
     auto left = leaving.begin();
@@ -88,14 +92,17 @@ class ElementChanges {
       }
       add_those_before(std::max(next, end));
     };
+    std::vector<Index> new_cells;
+    new_cells.reserve(arriving.size());
     for (auto const& own : arriving) {
-      add_until(
-          static_cast<Index>(std::ranges::lower_bound(old_cells, own.old) - old_cells.begin()));
-      list.origins.push_back(origin_of(type, own.child, own.family, list.cells.size()));
-      list.cells.push_back(own.cell);
+      add_until(old_cells.rank(own.old));
+      list.origins.push_back(origin_of(type, own.child, own.family, count++));
+      new_cells.push_back(own.cell);
     }
     add_until(static_cast<Index>(old_cells.size()));
-    renumber(list);
+    list.cells = old_cells.changed(
+        leaving_cells_[type], changed_.first_renumbered(),
+        [&](Index c) { return changed_.renumbered(c); }, new_cells);
     return list;
   }
 
@@ -118,11 +125,8 @@ class ElementChanges {
     auto const& own = before_.cell(cell);
     auto const type = static_cast<std::size_t>(
         std::ranges::find(types_, std::pair(own.kind, own.has)) - types_.begin());
-    auto const& cells = old_cells_[type];
-    auto next = at(last_.element) + 1;  // most cells that are asked for follow each other
-    if (last_.type != type || next >= cells.size() || cells[next] != cell)
-      next = static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin());
-    return last_ = {type, static_cast<Index>(next)};
+    leaving_cells_[type].push_back(cell);
+    return {type, old_cells_[type].rank(cell)};
   }
   Family& add_family(TreeCell const& whole) {
     auto& family = families_.emplace_back();
@@ -151,17 +155,6 @@ class ElementChanges {
     family.pattern = &cell.divided();
     family.before = {old_element(old_number(c))};
     family.after.resize(at(family.pattern->children));
-  }
-  /// Gives cells that stay their new numbers.
-  void renumber(ChangedElements<dim>& list) const {
-    if (changed_.coarsening.renumbered.cells.empty()) return;
-    Index const first_moved = changed_.coarsening.renumbered.first_cell;
-    std::size_t e = 0;
-    for (auto const& origin : list.origins) {
-      auto const end = e + at(origin.count);
-      if (origin.child != Origin::same || list.cells[end - 1] < first_moved) e = end;
-      for (; e < end; ++e) list.cells[e] = changed_.renumbered(list.cells[e]);
-    }
   }
   /// The old elements of a type that go or are divided, ascending.
   std::vector<Index> leaving_from(std::size_t type) const {
@@ -205,21 +198,21 @@ class ElementChanges {
     return list;
   }
   /// Of the element with a number in the list of its type. Makes it a member of its family.
-  Origin origin_of(std::size_t type, int child, std::size_t number, std::size_t element) {
+  Origin origin_of(std::size_t type, int child, std::size_t number, Index element) {
     auto& family = families_[number];
-    family.after[child < 0 ? 0 : at(child)] = {type, static_cast<Index>(element)};
+    family.after[child < 0 ? 0 : at(child)] = {type, element};
     auto const& from = family.before[0];
     return {from.element, child, static_cast<Index>(number),
             from.type == type ? Index{-1} : static_cast<Index>(from.type)};
   }
 
-  std::vector<std::vector<Index>> const& old_cells_;
+  std::vector<CellSet> const& old_cells_;
+  std::vector<std::vector<Index>> leaving_cells_;  // by type, by their old numbers
   Hierarchy<dim> const &before_, &after_;
   ChangedCells<dim> const& changed_;
   std::vector<std::pair<CellKind, CellNodes>> types_;
   std::vector<Family> families_;    // merged cells, converted ones, refined ones, split ones
   std::vector<Arriving> arriving_;  // merged and converted cells
-  Member last_{};                   // that old_element found
   std::size_t first_divided_ = 0;   // of the families
   std::vector<Index> old_numbers_;  // of cells; empty until one is asked for that changed
 };

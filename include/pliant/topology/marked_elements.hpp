@@ -39,22 +39,23 @@ namespace detail {
 template <class M>
 struct RefinementTree {
   std::shared_ptr<Hierarchy<M::dim> const> tree;
-  std::shared_ptr<std::vector<std::vector<Index>> const> cells;
+  std::shared_ptr<std::vector<CellSet> const> cells;
 };
 template <class M>
 RefinementTree<M> tree_of(std::shared_ptr<Topology<M> const> const& topology) {
-  using Cells = std::shared_ptr<std::vector<std::vector<Index>> const>;
+  using Cells = std::shared_ptr<std::vector<CellSet> const>;
   if (topology->tree) return {topology->tree, Cells(topology, &topology->cells)};
   auto const& mesh = topology->mesh();
   if (!mesh.slaves.empty())
     throw Error("refine: the mesh came with ", mesh.slaves.size(),
                 " hanging nodes, of which it is not known what was refined; give the coarse mesh, "
                 "and refine the body");
-  auto cells = std::make_shared<std::vector<std::vector<Index>>>();
+  auto cells = std::make_shared<std::vector<CellSet>>();
   Index next = 0;
   for (std::size_t count : element_counts(mesh)) {
-    auto& own = cells->emplace_back(count);
-    for (Index& c : own) c = next++;
+    Index const first = next;
+    next += static_cast<Index>(count);
+    cells->push_back(CellSet::range(first, next));
   }
   return {std::make_shared<Hierarchy<M::dim>>(mesh), std::move(cells)};
 }

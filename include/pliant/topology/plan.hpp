@@ -76,7 +76,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
       .merged = std::move(changed.coarsening.facets),
   };
   detail::ElementChanges<M> element_changes(*old.cells, *old.tree, changes.families, changed);
-  std::vector<std::vector<Index>> cells;
+  std::vector<CellSet> cells;
   detail::for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     auto changed_elements = element_changes.template of<E>(type);
     parts.origins.push_back(std::move(changed_elements.origins));

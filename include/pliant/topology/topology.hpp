@@ -11,6 +11,7 @@
 
 #include <pliant/constraint/interpolation.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
@@ -25,15 +26,14 @@ class Topology {
 
   Interpolation interpolation;                 ///< its hanging nodes
   std::shared_ptr<Hierarchy<dim> const> tree;  ///< null before the first refinement
-  std::vector<std::vector<Index>>
-      cells;  ///< per type: the cells of the tree that its elements are, ascending
+  std::vector<CellSet> cells;  ///< per type: the cells of the tree that its elements are
   std::vector<std::vector<double>> element_values;  ///< per type: (elements, values) that laws read
 
   Topology() = default;
   /// Of a mesh that nothing was done to.
   explicit Topology(M mesh) : interpolation(compose(mesh.slaves)), stored_(std::move(mesh)) {}
   /// Of the cells of a tree, per type.
-  Topology(std::shared_ptr<Hierarchy<dim> const> of, std::vector<std::vector<Index>> cells_of_types)
+  Topology(std::shared_ptr<Hierarchy<dim> const> of, std::vector<CellSet> cells_of_types)
       : interpolation(of->slaves()), tree(std::move(of)), cells(std::move(cells_of_types)) {}
 
   /// The elements that act. Of a tree, it takes a look at all of them, once.
@@ -70,8 +70,12 @@ class Topology {
   [[nodiscard]] Connectivity<E> nodes_of(Index element) const {
     auto const e = static_cast<std::size_t>(element);
     if (!tree) return stored_.template elements<E>()[e];
+    return nodes_of_cell<E>(cells[detail::type_in<E, M>][e]);
+  }
+  /// The nodes of the element that a cell of the tree is.
+  template <Element E>
+  [[nodiscard]] Connectivity<E> nodes_of_cell(Index c) const {
     Connectivity<E> nodes;
-    Index const c = cells[detail::type_in<E, M>][e];
     if constexpr (nodes_on_cell<E> == CellNodes::corners) {
       auto const& cell = tree->cell(c);
       std::copy_n(cell.nodes.begin(), E::nodes, nodes.begin());
@@ -113,9 +117,13 @@ class Topology {
     detail::for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
       auto& elements = mesh.template elements<E>();
       elements.resize(cells[type].size());
-      detail::for_each_on_host(
-          static_cast<Index>(elements.size()), detail::few_elements(E::nodes),
-          [&](Index e) { elements[static_cast<std::size_t>(e)] = nodes_of<E>(e); });
+      detail::HostParts const parts(static_cast<Index>(elements.size()),
+                                    detail::few_elements(E::nodes));
+      parts([&](Index from, Index to, int) {
+        auto cell = cells[type].from(static_cast<std::size_t>(from));
+        for (auto e = static_cast<std::size_t>(from); e < static_cast<std::size_t>(to); ++e)
+          elements[e] = nodes_of_cell<E>(*cell++);
+      });
     });
     mesh.boundaries = stored_.boundaries;
     mesh.slaves = interpolation.slaves();

@@ -85,6 +85,8 @@ class Transfer {
         old[static_cast<std::size_t>(p_.renumbered[i])] = static_cast<Index>(i);
     return old;
   }
+  /// Whether parts of the mesh went, so that others may have other numbers.
+  bool renumbers() const { return !p_.renumbered.empty(); }
   std::vector<NewNode> const& new_nodes() const { return p_.new_nodes; }
   /// Nodes that go, by old numbers, as weighted sums over nodes that stay.
   std::vector<NewNode> const& gone() const { return p_.gone; }

@@ -78,8 +78,8 @@ struct CornersOfBody {
       using E = typename std::remove_cvref_t<decltype(table)>::element;
       auto const& mesh = parts.state.topology->mesh().template elements<E>();
       std::vector<Connectivity<E>> elements;
-      elements.reserve(table.user_element.size());
-      for (Index user : table.user_element) {
+      elements.reserve(table.user_elements().size());
+      for (Index user : table.user_elements()) {
         elements.push_back(mesh[at(user)]);
         for (Index& i : elements.back()) i = parts.layout.internal_of(i);
       }

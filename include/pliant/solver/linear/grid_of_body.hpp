@@ -63,7 +63,7 @@ GridOfBody<Parts::dim> grid_of_body(Parts const& parts, GridFor finer) {
   parts.for_each_type([&](auto const& table, auto const&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
     auto const& elements = mesh.template elements<E>();
-    for (Index user : table.user_element) {
+    for (Index user : table.user_elements()) {
       auto const& element = elements[static_cast<std::size_t>(user)];
       Point<dim> middle{};
       for (std::size_t a = 0; a < E::cell::corners; ++a)
