@@ -72,7 +72,7 @@ void undo(TheBody& body) {
 }
 
 TEST_CASE("a mesh of mixed degrees passes the patch test", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     Random random(5);
     change(body, random);
@@ -89,7 +89,7 @@ TEST_CASE("a mesh of mixed degrees passes the patch test", "[topology]") {
 }
 
 TEST_CASE("displacements of mixed degrees are continuous", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     for (unsigned seed : {3u, 4u}) {
       auto body = P::body(backend);
       Random random(seed);
@@ -100,7 +100,7 @@ TEST_CASE("displacements of mixed degrees are continuous", "[topology]") {
 }
 
 TEST_CASE("raised elements are of their degree where all around them are", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     auto const report = raise(body, {{0}, {}});
     CHECK(report.raised == 1);
@@ -136,7 +136,7 @@ TEST_CASE("raised elements are of their degree where all around them are", "[top
 
 TEST_CASE("fields, momentum and energy are kept when degrees change, and the mesh comes back",
           "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     check_what_is_kept(
         body, [](auto& own, Random& random) { change(own, random); }, [](auto& own) { undo(own); });
@@ -144,7 +144,7 @@ TEST_CASE("fields, momentum and energy are kept when degrees change, and the mes
 }
 
 TEST_CASE("raised elements go to the group of their law", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     body.template assign<typename P::LowSoft>({1});
     raise(body, {{0, 1, 2}, {}});
@@ -160,7 +160,7 @@ TEST_CASE("raised elements go to the group of their law", "[topology]") {
 }
 
 TEST_CASE("conditions, pressures and loads go along with degrees", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     constexpr int dim = P::dim;
     auto body = P::body(backend);
     auto const mesh = body.mesh();
@@ -199,7 +199,7 @@ TEST_CASE("conditions, pressures and loads go along with degrees", "[topology]")
 }
 
 TEST_CASE("quadratic meshes are lowered, and their nodes keep their numbers", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using Low = Formulation<Hex8, Gauss<2>, NeoHookean>;
     using High = Formulation<Hex27, Gauss<3>, NeoHookean>;
     auto const mesh = mesh::with_types<Hex8, Hex27>(distorted_mesh<Hex27>(3));
@@ -225,7 +225,7 @@ TEST_CASE("quadratic meshes are lowered, and their nodes keep their numbers", "[
 }
 
 TEST_CASE("a body of mixed degrees steps, saves and resumes", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     check_resuming([&] { return P::body(backend); },
                    [](auto& own, Random& random) { change(own, random); },
                    [](auto& own) { undo(own); });
@@ -233,7 +233,7 @@ TEST_CASE("a body of mixed degrees steps, saves and resumes", "[topology]") {
 }
 
 TEST_CASE("rules raise, refine, lower and merge by criteria", "[topology]") {
-  on_pairs<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_pairs<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     auto const mesh = body.mesh();
     using Low = typename P::Low;
@@ -361,7 +361,7 @@ TEST_CASE("raised elements take their values and what their points keep along", 
 }
 
 TEST_CASE("degrees that cannot change are refused", "[topology][errors]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     using P = Pair<Tri3, 1, Tri6, 2>;
     auto body = P::body(backend);
     raise(body, {{0}, {}});

@@ -101,7 +101,7 @@ void to_one_law(TheBody& body) {
 }
 
 TEST_CASE("a quadrilateral is split into triangles, and a hexahedron into pyramids", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     auto const before = body.mesh();
     std::vector<std::vector<Index>> marked(P::dim == 2 ? 2 : 3);
@@ -142,7 +142,7 @@ TEST_CASE("a quadrilateral is split into triangles, and a hexahedron into pyrami
 }
 
 TEST_CASE("two triangles meet at the shorter diagonal", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Mesh<Quad4, Tri3> mesh;
     mesh.nodes = {{0, 0}, {1, 0}, {1.5, 1}, {0.5, 1}, {2, 0}, {2, 1}, {3, 0}, {2.9, 0.9}};
     mesh.elements<Quad4>() = {{0, 1, 2, 3}, {1, 4, 5, 2}, {4, 6, 7, 5}};
@@ -166,7 +166,7 @@ TEST_CASE("two triangles meet at the shorter diagonal", "[topology]") {
 }
 
 TEST_CASE("a pyramid is refined into pyramids and tetrahedra", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = Solid::body(backend);
     split(body, {{0}, {}, {}});
     auto const split_mesh = body.mesh();
@@ -197,7 +197,7 @@ TEST_CASE("a pyramid is refined into pyramids and tetrahedra", "[topology]") {
 }
 
 TEST_CASE("two pyramids that share a base are split into tetrahedra, both or none", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     Mesh<Hex8, Pyramid5, Tet4> mesh = mesh::with_types<Hex8, Pyramid5, Tet4>(
         mesh::box<Hex8>({.size = {2, 1, 1}, .cells = {2, 1, 1}}));
     for (auto& x : mesh.nodes)
@@ -282,7 +282,7 @@ TEST_CASE("two pyramids that share a base are split into tetrahedra, both or non
 }
 
 TEST_CASE("a mesh of split elements passes the patch test", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     Random random(5);
     change<P>(body, random);
@@ -297,7 +297,7 @@ TEST_CASE("a mesh of split elements passes the patch test", "[topology]") {
 }
 
 TEST_CASE("displacements of split elements are continuous", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     Random random(3);
     change<P>(body, random);
@@ -307,7 +307,7 @@ TEST_CASE("displacements of split elements are continuous", "[topology]") {
 
 TEST_CASE("fields, momentum and energy are kept when shapes change, and the mesh comes back",
           "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     check_what_is_kept(
         body, [](auto& own, Random& random) { change<P>(own, random); },
@@ -316,7 +316,7 @@ TEST_CASE("fields, momentum and energy are kept when shapes change, and the mesh
 }
 
 TEST_CASE("parts go to the group of their law, and the whole to that of most parts", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     using Whole = typename P::Whole::element;
     using Part = typename P::Part::element;
@@ -338,7 +338,7 @@ TEST_CASE("parts go to the group of their law, and the whole to that of most par
 }
 
 TEST_CASE("conditions, pressures and loads go along with shapes", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     auto const mesh = body.mesh();
     body.clamp(mesh.boundary("left"));
@@ -369,7 +369,7 @@ TEST_CASE("conditions, pressures and loads go along with shapes", "[topology]") 
 }
 
 TEST_CASE("a body of split elements steps, saves and resumes", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     check_resuming([&] { return P::body(backend); },
                    [](auto& own, Random& random) { change<P>(own, random); },
                    [](auto& own) { undo<P>(own); });
@@ -389,7 +389,7 @@ TEST_CASE("forces on a mesh of split elements are the same on all backends", "[t
 }
 
 TEST_CASE("rules split, refine and merge by criteria", "[topology]") {
-  on_cases<DoubleBackends>([]<class B, class P>(B const& backend, P) {
+  on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     auto const mesh = body.mesh();
     using Whole = typename P::Whole;
@@ -436,7 +436,7 @@ TEST_CASE("rules split, refine and merge by criteria", "[topology]") {
 
 TEST_CASE("what is refined is not split, and parts that would be refined are not merged",
           "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto const change_at_once = [](auto& body, MarkedElements const& marked) {
       auto const plan = plan_change(body.parts(), marked);
       REQUIRE(plan);
@@ -577,7 +577,7 @@ TEST_CASE("points take what the nearest ones keep when shapes change", "[topolog
 }
 
 TEST_CASE("shapes that cannot change are refused", "[topology][errors]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<MainAlone>([]<class B>(B const& backend) {
     auto body = Plane::body(backend);
     split(body, {{}, {0}});
     auto const nodes = body.mesh().nodes;
