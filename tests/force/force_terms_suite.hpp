@@ -218,7 +218,7 @@ TEST_CASE("the elements of a term on the host add up to what its backend says", 
     auto const check = [&](AnyForceTerm<B, 2> const& term) {
       Asked<decltype(body), AnyForceTerm<B, 2>> const asked{body, term};
       auto const user = [&](Index internal) {
-        return static_cast<std::size_t>(parts.layout.user_node[static_cast<std::size_t>(internal)]);
+        return static_cast<std::size_t>(parts.layout.user_of(internal));
       };
       double energy = 0;
       FieldOf<2> force(n), rows(n), diagonal[2] = {force, force};
@@ -309,9 +309,7 @@ TEST_CASE("a physics sees nodes where the mesh has them", "[force]") {
     double energy = 0;
     body.parts().terms.at(0)->for_each_element(
         [&](Index i) {
-          auto x =
-              body.mesh()
-                  .nodes[static_cast<std::size_t>(layout.user_node[static_cast<std::size_t>(i)])];
+          auto x = body.mesh().nodes[static_cast<std::size_t>(layout.user_of(i))];
           for (std::size_t k = 0; k < 2; ++k) x[k] -= layout.middle[k];
           return x;
         },

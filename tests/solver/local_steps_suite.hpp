@@ -61,7 +61,7 @@ double growth_of_macro_step(TheBody& body, LocalSteps& step) {
   for (std::size_t i = 0; i < layout.mass_list.size(); ++i)
     for (std::size_t k = 0; k < 2; ++k)
       if (layout.mass_list[i] > 0 &&
-          !(held[static_cast<std::size_t>(layout.internal_node[i])] >> k & 1))
+          !(held[static_cast<std::size_t>(layout.internal_of(static_cast<Index>(i)))] >> k & 1))
         free.emplace_back(i, k);
   auto const n = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd p(n, n);

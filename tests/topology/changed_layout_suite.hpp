@@ -15,11 +15,20 @@ void check_layout(TheBody& body) {
   auto const& own = parts.layout;
   using T = typename TheBody::scalar;
   typename TheBody::layout_type const anew(parts.backend, *parts.state.topology, parts.material,
-                                           parts.groups, &own);
+                                           parts.groups, &own, own.node_rows);
   CHECK(own.own_masses == anew.own_masses);
   CHECK(own.mass_list == anew.mass_list);
-  CHECK(own.internal_node == anew.internal_node);
-  CHECK(own.user_node == anew.user_node);
+  CHECK(own.rows == own.node_rows.count());
+  auto const mass = download<T>(own.mass);
+  Index nodes = 0;
+  for (Index row = 0; row < own.rows; ++row)
+    if (Index const node = own.user_of(row); node >= 0) {
+      CHECK(own.internal_of(node) == row);
+      ++nodes;
+    } else {
+      CHECK(mass[static_cast<std::size_t>(row)] == 0);
+    }
+  CHECK(nodes == own.nodes());
   CHECK(download<T>(own.mass) == download<T>(anew.mass));
   CHECK(download<T>(own.rest) == download<T>(anew.rest));
   parts.for_each_type([&](auto const& table, auto const&) {
@@ -80,24 +89,6 @@ TEST_CASE("a layout that was changed is what a new one would be", "[topology]") 
   });
 }
 
-/// What TouchedElements asks for, by a look at all elements.
-template <class M>
-struct FoundByLooking {
-  M const& mesh;
-  std::vector<Index> const& nodes;
-  template <Element E>
-  std::vector<Index> of() const {
-    std::vector<Index> found;
-    auto const& elements = mesh.template elements<E>();
-    for (std::size_t e = 0; e < elements.size(); ++e)
-      if (std::ranges::any_of(elements[e], [&](Index node) {
-            return std::ranges::find(nodes, node) != nodes.end();
-          }))
-        found.push_back(static_cast<Index>(e));
-    return found;
-  }
-};
-
 /// By the new number of each element the old one of those that stay, -1 for others.
 template <class M>
 std::vector<Index> old_elements(TopologyChange<M> const& change) {
@@ -114,6 +105,64 @@ std::vector<Index> numbers(OrderedElements<1> const& ordered, Topology<M> const&
   return ElementNumbers(ordered.cells[0], ordered.blocks[0].first, topology.cells[0]).all();
 }
 
+TEST_CASE("nodes keep their rows while they are there", "[topology]") {
+  on_each_backend<DoubleBackends>([&]<class B>(B const& backend) {
+    Body body{backend, mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {10, 10, 10}}), soft,
+              Group<Formulation<Tet4, Gauss<1>, SaintVenantKirchhoff>>{}};
+    using Own = typename decltype(body)::mesh_type;
+    auto const initial = body.parts().layout.rows;
+    NodeRows rows = body.parts().layout.node_rows;
+    Index most_nodes = 0, most_rows = 0;
+    int kept = 0, moved = 0, gone = 0;
+    std::optional<Transfer<3>> transfer;
+    body.on_change([&](TopologyChange<Own> const& made) { transfer.emplace(made.transfer); });
+    auto const compare = [&] {
+      auto const& now = body.parts().layout.node_rows;
+      for (Index old = 0; transfer && old < transfer->old_nodes(); ++old) {
+        Index const node = transfer->renumbered(old);
+        if (node < 0) {
+          ++gone;
+          continue;
+        }
+        bool const same = now.of_node[static_cast<std::size_t>(node)] ==
+                          rows.of_node[static_cast<std::size_t>(old)];
+        ++(same ? kept : moved);
+      }
+      transfer.reset();
+      rows = now;
+      most_nodes = std::max(most_nodes, body.nodes());
+      most_rows = std::max(most_rows, body.parts().layout.rows);
+    };
+    Random random(11);
+    for (int i = 0; i < 30; ++i) {
+      std::vector<std::vector<Index>> marked(1);
+      auto const levels = refinement_levels<Tet4>(body);
+      for (std::size_t e = 0; e < levels.size(); ++e)
+        if (i % 3 == 2 ? levels[e] > 0 : levels[e] < 2 && random.below(200) == 0)
+          marked[0].push_back(static_cast<Index>(e));
+      if (i % 3 == 2)
+        coarsen(body, marked);
+      else
+        refine(body, marked);
+      compare();
+    }
+    CHECK(kept > 1000);
+    CHECK(moved == 0);
+    CHECK(gone > 100);
+    // What is reserved is what was needed at once, in pages; in the end all of it is given back.
+    CHECK(most_rows < most_nodes + 8 * NodeRows::page);
+    for (int i = 0; i < 3; ++i) {
+      std::vector<std::vector<Index>> all(1);
+      auto const levels = refinement_levels<Tet4>(body);
+      for (std::size_t e = 0; e < levels.size(); ++e)
+        if (levels[e] > 0) all[0].push_back(static_cast<Index>(e));
+      coarsen(body, all);
+      compare();
+    }
+    CHECK(body.parts().layout.rows < initial + NodeRows::page);
+  });
+}
+
 TEST_CASE("blocks that are said to stay have the elements that they had", "[topology]") {
   using Own = Mesh<Tet4>;
   Body body{Reference<double>{}, mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {12, 12, 12}}), soft,
@@ -123,12 +172,9 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
   body.on_change([&](TopologyChange<Own> const& made) {
     if (!made.before.tree) return;
     auto const before = elements_in_order(made.before, first);
-    detail::TouchedElements<Own> const touched(
-        made.before, made.after, made.transfer, [&](std::vector<Index> const& nodes) {
-          return FoundByLooking<Own>{made.before.mesh(), nodes};
-        });
-    auto const changed = changed_blocks(made.after, first, made.transfer, touched);
-    OrderBefore<1, 3> const known{{before.cells[0]}, made.transfer, changed.elements};
+    auto const changed =
+        changed_blocks(first, places_of_families(made.after, first, made.transfer));
+    OrderBefore<1, 3> const known{{before.cells[0]}, made.transfer, changed};
     auto const after = elements_in_order(made.after, first, &known);
     auto const& [now, then] = std::pair(after.blocks[0], before.blocks[0]);
     auto const old = old_elements(made), new_numbers = numbers(after, made.after),
@@ -166,18 +212,18 @@ TEST_CASE("a table takes blocks that stay from the one before it", "[topology]")
   ElementBlocks blocks{.first = {0, 2, 5, 5, 6}, .stays = {1, 0, 1, 0}};
   blocks.first_before = {1, 3, 4, 4, 7};
   std::vector<Index> const before{9, 9, 0, 1, 1, 2, 5, 5, 6, 6, 7, 7, 8, 8};
-  std::vector<Index> const rows{70, 71, 72, 73, 74, 75, 76, 77}, now{10, 12, 11};
+  std::vector<Index> const rows{70, 71, 72, 73, 74, 75, 76, 77};
   auto const sources = detail::sources_of(blocks);
   std::vector<Index> table(3 * 6, -1),
       again = table;  // rows of three, the last of which is padding
   std::vector<Index> padded;
   for (std::size_t e = 0; e < before.size() / 2; ++e)
     padded.insert(padded.end(), {before[2 * e], before[2 * e + 1], -1});
-  detail::CarryConnectivity<2, 3> carry{
-      blocks.first.data(), sources.data(), 4, padded.data(), rows.data(), now.data(), table.data()};
+  detail::CarryConnectivity<2, 3> carry{blocks.first.data(), sources.data(), 4,
+                                        padded.data(),       rows.data(),    table.data()};
   for (Index e = 0; e < 6; ++e) carry(e);
   CHECK(table ==
-        std::vector<Index>{10, 12, -1, 12, 11, -1, 70, 71, -1, 72, 73, -1, 74, 75, -1, 76, 77, -1});
+        std::vector<Index>{0, 1, -1, 1, 2, -1, 70, 71, -1, 72, 73, -1, 74, 75, -1, 76, 77, -1});
   carry.to = again.data();
   for (Index block = 0; block < 4; ++block)
     for (Index e = blocks.first[static_cast<std::size_t>(block)];

@@ -86,7 +86,7 @@ std::array<double, sizeof...(Fs)> measure_costs(TheBody const& body) {
   auto const measure = [&](int group) {
     typename TheBody::backend_type::template Elements<E::nodes> const elements(
         backend, connectivity, Table::groups,
-        std::vector<Tag>(connectivity.size(), static_cast<Tag>(group)), parts.layout.nodes,
+        std::vector<Tag>(connectivity.size(), static_cast<Tag>(group)), parts.layout.rows,
         node_order<E>);
     double least = std::numeric_limits<double>::infinity(), sum = 0;
     for (int run = 0; run < 5 || (sum < 0.02 && run < 1000); ++run) {

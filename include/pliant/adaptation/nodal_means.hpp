@@ -140,7 +140,7 @@ void find_value_from_means(Parts const& parts, Table const& table, C const& crit
   using Laws = typename Table::Laws;
   using Blocks = MeanBlocks<C, typename Table::template formulation<Group>>;
   auto const& backend = parts.backend;
-  auto const rows = parts.layout.nodes + table.elements.scratch_nodes();
+  auto const rows = parts.layout.rows + table.elements.scratch_nodes();
   auto const stride = static_cast<std::ptrdiff_t>(node_stride) * rows;
   T* const sums = workspace.means.data();
   auto const field = [&](int block) {
@@ -155,7 +155,7 @@ void find_value_from_means(Parts const& parts, Table const& table, C const& crit
      ...);
     auto const& interpolation = parts.layout.interpolation;
     (interpolation.apply_transpose(backend, field(B)), ...);
-    backend.for_each(parts.layout.nodes, DivideByWeight<T, Blocks::values>{sums, stride});
+    backend.for_each(parts.layout.rows, DivideByWeight<T, Blocks::values>{sums, stride});
     (interpolation.apply(backend, field(B)), ...);
     backend.template visit<Table::groups>(
         table.elements,
@@ -177,7 +177,7 @@ void find_values_from_means(Parts const& parts, Table const& table, TheRules con
     Workspace::reserve(
         parts.backend, workspace.found,
         static_cast<std::size_t>(Places::count) * static_cast<std::size_t>(table.count()));
-    auto const rows = static_cast<std::size_t>(parts.layout.nodes + table.elements.scratch_nodes());
+    auto const rows = static_cast<std::size_t>(parts.layout.rows + table.elements.scratch_nodes());
     rules.for_each_taker([&]<int Group, int Slot, class C>(GroupNumber<Group>, GroupNumber<Slot>,
                                                            C const& criterion) {
       constexpr int blocks = MeanBlocks<C, typename Table::template formulation<Group>>::count;

@@ -100,7 +100,7 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
   });
   parts.layout.interpolation.add_transpose(backend, change);
   auto marked = zeros<std::uint8_t>(backend, rows.patch_of_piece.size());
-  backend.for_each(parts.layout.nodes,
+  backend.for_each(parts.layout.rows,
                    MarkRelaxing<T, Parts::dim>{{changes.data()},
                                                parts.layout.mass.data(),
                                                static_cast<T>(rule.below),

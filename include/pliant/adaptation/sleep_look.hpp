@@ -14,8 +14,7 @@ namespace detail {
 /// least: it goes a node a step where steps are as long as they may be, and a patch is as wide as its share of the nodes.
 template <class Parts>
 int rings_reached(Parts const& parts, std::int64_t steps) {
-  double const nodes_of_patch =
-      static_cast<double>(parts.layout.nodes) / parts.patch_nodes->count();
+  double const nodes_of_patch = static_cast<double>(parts.layout.rows) / parts.patch_nodes->count();
   double const width = std::pow(nodes_of_patch, 1.0 / Parts::dim);
   constexpr double most = 250;  // that marks can number
   return static_cast<int>(std::lround(std::clamp(static_cast<double>(steps) / width, 1.0, most)));
@@ -157,11 +156,11 @@ Asleep asleep(TheBody& body) {
   found.patches = found.of_patches - parts.awake->awake;
   evaluate_all_forces(parts);
   found.residual = parts.backend.maximum(
-      parts.layout.nodes, detail::HiddenForce<T, TheBody::dim>{{parts.layout.f.data()},
-                                                               parts.layout.mass.data(),
-                                                               parts.layout.held.data(),
-                                                               parts.awake->nodes.data(),
-                                                               external_forces(parts)});
+      parts.layout.rows, detail::HiddenForce<T, TheBody::dim>{{parts.layout.f.data()},
+                                                              parts.layout.mass.data(),
+                                                              parts.layout.held.data(),
+                                                              parts.awake->nodes.data(),
+                                                              external_forces(parts)});
   return found;
 }
 

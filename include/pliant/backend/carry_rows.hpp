@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/field.hpp>
 
 namespace pliant::detail {
@@ -16,59 +18,55 @@ struct TakeRows {
   Index const* places;
   PLIANT_HOST_DEVICE void operator()(Index i) const { to.set(i, from.at(places[i])); }
 };
-/// to[places[i]] = from[i], except where that is negative.
+/// to[places[i]] = from[i].
 template <class T, int Dim>
 struct PutRows {
   NodeField<T const, Dim> from;
   NodeField<T, Dim> to;
   Index const* places;
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    if (Index const place = places[i]; place >= 0) to.set(place, from.at(i));
-  }
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to.set(places[i], from.at(i)); }
 };
 
-/// A field of `nodes` nodes, in a backend's memory: rows of `from` at the places `now`, and value(i, k) at places[i].
-template <int Dim, class B, class Array, class Places, class Value>
-auto carried_field(B const& backend, Index nodes, Array const& from, Places const& now,
-                   std::vector<Index> const& places, Value const& value) {
+/// A field of `rows` rows, in a backend's memory: those of `from`, but value(i, k) in the row places[i], and 0 in the rows
+/// `freed` and in those that `from` has not.
+template <int Dim, class B, class Array, class Value>
+auto carried_field(B const& backend, Index rows, Array const& from, std::vector<Index> const& freed,
+                   std::vector<Index> places, Value const& value) {
   using Scalar = typename B::scalar;
   auto field = zeros<Scalar>(
-      backend, static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(nodes));
-  auto const rows = node_field<Dim>(field);
-  backend.for_each(static_cast<Index>(now.size()),
-                   PutRows<Scalar, Dim>{node_field<Dim>(from), rows, now.data()});
-  std::vector<Scalar> values(node_stride * places.size());
+      backend, static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(rows));
+  copy_values(backend, from.data(), field.data(), std::min(field.size(), from.size()));
+  std::vector<Scalar> values(node_stride * (places.size() + freed.size()));
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t k = 0; k < std::size_t{Dim}; ++k)
       values[node_stride * i + k] = static_cast<Scalar>(value(i, k));
+  places.insert(places.end(), freed.begin(), freed.end());
   auto const own = upload(backend, values);
   auto const at = upload(backend, places);
   backend.for_each(static_cast<Index>(places.size()),
-                   PutRows<Scalar, Dim>{node_field<Dim>(own), rows, at.data()});
+                   PutRows<Scalar, Dim>{node_field<Dim>(own), node_field<Dim>(field), at.data()});
   return field;
 }
 
-/// to[places[i]] = from[i], except where that is negative.
+/// to[places[i]] = from[i].
 template <class T>
 struct PutValues {
   T const* from;
   T* to;
   Index const* places;
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    if (Index const place = places[i]; place >= 0) to[place] = from[i];
-  }
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[places[i]] = from[i]; }
 };
 /// The same as carried_field of one value per node: value(i) at places[i].
-template <class B, class Array, class Places, class Value>
-auto carried_values(B const& backend, Index nodes, Array const& from, Places const& now,
-                    std::vector<Index> const& places, Value const& value) {
+template <class B, class Array, class Value>
+auto carried_values(B const& backend, Index rows, Array const& from,
+                    std::vector<Index> const& freed, std::vector<Index> places,
+                    Value const& value) {
   using Scalar = typename B::scalar;
-  auto values = zeros<Scalar>(backend, static_cast<std::size_t>(nodes));
-  backend.for_each(static_cast<Index>(now.size()),
-                   PutValues<Scalar>{from.data(), values.data(), now.data()});
-  std::vector<Scalar> some;
-  some.reserve(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) some.push_back(value(i));
+  auto values = zeros<Scalar>(backend, static_cast<std::size_t>(rows));
+  copy_values(backend, from.data(), values.data(), std::min(values.size(), from.size()));
+  std::vector<Scalar> some(places.size() + freed.size(), Scalar(0));
+  for (std::size_t i = 0; i < places.size(); ++i) some[i] = value(i);
+  places.insert(places.end(), freed.begin(), freed.end());
   auto const own = upload(backend, some);
   auto const at = upload(backend, places);
   backend.for_each(static_cast<Index>(places.size()),

@@ -14,12 +14,10 @@ namespace pliant {
 /// others, and keep what it planned for blocks that stay.
 struct ElementBlocks {
   std::vector<Index> first;  ///< (blocks + 1), elements; empty: cut as suits the backend
-  /// (blocks): not zero where the block of this number in the table before a change had the same elements in the same
-  /// order, whatever they and their nodes are numbered now. Empty: none.
+  /// (blocks): not zero where the block of this number in the table before a change had the same elements of the same nodes in
+  /// the same order, whatever the elements are numbered now. Empty: none.
   std::vector<char> stays{};
   std::vector<Index> first_before{};  ///< (blocks + 1), elements of that table; where blocks stay
-  /// What has become of the nodes of that table, by their number in it; in the backend's memory, where blocks stay.
-  Index const* node_now = nullptr;
 
   bool some_stay() const { return !stays.empty(); }
 };
@@ -44,7 +42,6 @@ struct CarryConnectivity {
   Index const *first, *sources;
   Index blocks;
   Index const *before, *rows;  // rows: of Nodes, of blocks that do not stay
-  Index const* node_now;
   Index* to;
 
   /// An element of a block.
@@ -56,7 +53,7 @@ struct CarryConnectivity {
       for (int a = 0; a < Nodes; ++a) row[a] = own[a];
     } else {
       Index const* const own = before + static_cast<std::ptrdiff_t>(Width) * (source + within);
-      for (int a = 0; a < Nodes; ++a) row[a] = node_now[own[a]];
+      for (int a = 0; a < Nodes; ++a) row[a] = own[a];
     }
   }
   /// An element, whose block is searched.

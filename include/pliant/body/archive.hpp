@@ -109,11 +109,26 @@ void check_sizes(State const& state, Layout const& layout) {
     (check_type(std::get<I>(layout.tables), std::get<I>(state.elements)), ...);
   }(std::make_index_sequence<std::tuple_size_v<decltype(layout.tables)>>());
   auto const check_nodes = [&](auto const& nodes) {
-    for (Index node : nodes) demand(node >= 0 && node < layout.nodes);
+    for (Index node : nodes) demand(node >= 0 && node < layout.nodes());
   };
   for (auto const& condition : state.prescribed->conditions) check_nodes(condition.nodes);
   for (auto const& pressure : state.prescribed->pressures)
     for (auto const& facet : pressure.facets) check_nodes(facet);
+}
+
+/// Throws Error where rows are not those of so many nodes.
+inline void check_rows(NodeRows const& rows, Index nodes) {
+  bool fits = rows.of_node.size() == static_cast<std::size_t>(nodes) &&
+              rows.region.size() <= rows.node.size();
+  std::size_t taken = 0;
+  for (Index const node : rows.node) taken += node >= 0;
+  fits = fits && taken == rows.of_node.size();
+  for (std::size_t i = 0; fits && i < rows.of_node.size(); ++i) {
+    Index const row = rows.of_node[i];
+    fits = row >= 0 && row < rows.count() &&
+           rows.node[static_cast<std::size_t>(row)] == static_cast<Index>(i);
+  }
+  if (!fits) throw Error("body.load: the rows of the state are not those of its nodes");
 }
 
 /// Reads so many bytes, or as many as there are: memory is asked for as they come.
@@ -174,6 +189,7 @@ void save_state(Stream& stream, Parts const& parts) {
   detail::ByteWriter const write(content);
   write.put(detail::signature_of(parts));
   State::for_each_member(detail::WriteMember<M>{write, parts.first}, parts.state);
+  write.put(parts.layout.node_rows);
   write.put(parts.watched_energy != nullptr);
   write.put(parts.has_checkpoint);
   if (parts.has_checkpoint)
@@ -204,14 +220,17 @@ void load_state(Stream& stream, Parts& parts) {
   State state;
   std::optional<State> checkpoint;
   bool watched = false, has_checkpoint = false;
+  NodeRows node_rows;
   State::for_each_member(detail::ReadMember<B, M>{read, parts.first}, state);
+  read.get(node_rows);
   read.get(watched);
   read.get(has_checkpoint);
   if (has_checkpoint)
     State::for_each_member(detail::ReadMember<B, M>{read, state.topology}, checkpoint.emplace());
   read.finish();
+  detail::check_rows(node_rows, state.topology->nodes());
   typename Parts::layout_type layout(parts.backend, *state.topology, parts.material, parts.groups,
-                                     &parts.layout);
+                                     &parts.layout, std::move(node_rows));
   auto const complete = [&](State& s) {
     detail::check_sizes(s, layout);
     s.prescribed = detail::with_motions<dim>(*s.prescribed, parts.motions);

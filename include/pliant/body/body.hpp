@@ -46,7 +46,7 @@ class Body {
   B const& backend() const { return parts_->backend; }
   Elastic const& material() const { return parts_->material; }
   M const& mesh() const { return parts_->state.topology->mesh(); }
-  Index nodes() const { return parts_->layout.nodes; }
+  Index nodes() const { return parts_->layout.nodes(); }
   state_type const& state() const { return parts_->state; }
   double time() const { return parts_->state.time; }  // s
   std::int64_t steps() const { return parts_->state.steps; }

@@ -91,8 +91,8 @@ class CarriedNodes {
   /// Throws Error where a value of a field is not finite.
   void check(char const* what, Array const& field) const {
     auto const rows = node_field<dim>(field);
-    if (is_finite(parts_.backend.maximum(parts_.layout.nodes, RowSize<T, dim>{rows}))) return;
-    check_field(what, parts_.layout.in_user_order(field), parts_.layout.nodes);
+    if (is_finite(parts_.backend.maximum(parts_.layout.rows, RowSize<T, dim>{rows}))) return;
+    check_field(what, parts_.layout.in_user_order(field), parts_.layout.nodes());
   }
 
   /// The values before the change that it looks at.
@@ -118,14 +118,13 @@ class CarriedNodes {
     return values;
   }
 
-  /// A field in the order of the layout after the change, whose node_now is there, with other values at the nodes that the
-  /// change looks at.
+  /// A field in the rows of the layout after the change, with other values at the nodes that the change looks at.
   Array onto(typename Parts::layout_type const& next, Array const& field,
              Values const& values) const {
     std::vector<Index> places;
     places.reserve(after_.nodes.size());
     for (Index const node : after_.nodes) places.push_back(next.internal_of(node));
-    return carried_field<dim>(parts_.backend, next.nodes, field, next.node_now, places,
+    return carried_field<dim>(parts_.backend, next.rows, field, next.freed_rows, places,
                               [&](std::size_t i, std::size_t k) { return values.values[i][k]; });
   }
 

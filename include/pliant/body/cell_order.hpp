@@ -10,8 +10,8 @@
 
 #include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/element_numbers.hpp>
+#include <pliant/body/node_rows.hpp>
 #include <pliant/body/numbering.hpp>
-#include <pliant/body/touched_elements.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -77,29 +77,26 @@ std::array<ElementBlocks, sizeof...(Es)> first_blocks(Mesh<Es...> const& mesh) {
   return blocks;
 }
 
-/// What a change means for the blocks: other elements stand in one than before it, or a node of its elements has others
-/// around it.
-struct ChangedBlocks {
-  std::vector<char> elements, nodes;
-};
-
-template <Element... Es>
-ChangedBlocks changed_blocks(Topology<Mesh<Es...>> const& after, CellOrder const& first,
-                             Transfer<Mesh<Es...>::dim> const& transfer,
-                             detail::TouchedElements<Mesh<Es...>> const& touched) {
-  ChangedBlocks changed;
-  changed.elements.resize(static_cast<std::size_t>(first.blocks()), 0);
-  auto const block_of = [&](std::size_t type, Index element) {
-    Index c = after.cells[type][static_cast<std::size_t>(element)];
+/// The place in the first mesh's order of the cell that each family of a change is a part of.
+template <class M>
+std::vector<Index> places_of_families(Topology<M> const& after, CellOrder const& first,
+                                      Transfer<M::dim> const& transfer) {
+  std::vector<Index> places;
+  places.reserve(transfer.families().size());
+  for (auto const& family : transfer.families()) {
+    auto const& member = family.after.front();
+    Index c = after.cells[member.type][static_cast<std::size_t>(member.element)];
     while (after.tree->cell(c).parent >= 0) c = after.tree->cell(c).parent;
-    return static_cast<std::size_t>(first.places[static_cast<std::size_t>(c)] / cells_per_block);
-  };
-  for (auto const& family : transfer.families())
-    changed.elements[block_of(family.after.front().type, family.after.front().element)] = 1;
-  changed.nodes = changed.elements;
-  for (std::size_t type = 0; type < after.cells.size(); ++type)
-    for (auto const& element : touched.of_type(type).staying)
-      changed.nodes[block_of(type, element.after)] = 1;
+    places.push_back(first.places[static_cast<std::size_t>(c)]);
+  }
+  return places;
+}
+/// By the block, whether a family is in it: other elements stand there than before the change.
+inline std::vector<char> changed_blocks(CellOrder const& first,
+                                        std::vector<Index> const& places_of_families) {
+  std::vector<char> changed(static_cast<std::size_t>(first.blocks()), 0);
+  for (Index const place : places_of_families)
+    changed[static_cast<std::size_t>(place / cells_per_block)] = 1;
   return changed;
 }
 
@@ -170,6 +167,30 @@ OrderedElements<sizeof...(Es)> elements_in_order(
       ordered.blocks[type].stays.push_back(stays(b) ? 1 : 0);
   }
   return ordered;
+}
+
+/// The nodes, by their rows, of a type's elements: of all blocks, or of those that do not stay, one after another.
+template <Element E, class M>
+std::vector<Connectivity<E>> rows_of_blocks(Topology<M> const& topology,
+                                            ElementNumbers::Blocks const& cells,
+                                            ElementBlocks const& blocks, bool all,
+                                            NodeRows const& node_rows) {
+  std::vector<Index> first{0};  // row, by block
+  for (std::size_t b = 0; b < cells.size(); ++b)
+    first.push_back(first.back() + (all || !blocks.some_stay() || blocks.stays[b] == 0
+                                        ? static_cast<Index>(cells[b]->cells.size())
+                                        : 0));
+  std::vector<Connectivity<E>> rows(static_cast<std::size_t>(first.back()));
+  constexpr Index few_blocks = 32;  // worth a thread
+  detail::for_each_on_host(static_cast<Index>(cells.size()), few_blocks, [&](Index block) {
+    auto const b = static_cast<std::size_t>(block);
+    auto row = rows.begin() + first[b];
+    for (std::size_t k = 0; row != rows.begin() + first[b + 1]; ++k) {
+      *row = topology.template nodes_of_cell<E>(cells[b]->cells[k]);
+      for (Index& node : *row++) node = node_rows.of_node[static_cast<std::size_t>(node)];
+    }
+  });
+  return rows;
 }
 
 }  // namespace pliant

@@ -192,7 +192,7 @@ ChangedTopology<Parts> change_topology(
   state.record.born = state.steps;
   state.u = nodes.onto(next.layout, parts.state.u, u);
   state.v = nodes.onto(next.layout, parts.state.v, v);
-  next.layout.node_now = {};
+  next.layout.freed_rows = {};
   next.layout.interpolation.apply(next.backend, next.u());
   next.layout.interpolation.apply(next.backend, next.v());
   if (!loads.empty()) {

@@ -42,9 +42,9 @@ template <class Parts>
 typename Parts::Field from_user(Parts& parts, typename Parts::T const* values, int stride,
                                 typename Parts::template Array<typename Parts::T>& to) {
   typename Parts::Field const field{to.data()};
-  parts.backend.for_each(parts.layout.nodes, FromUser<typename Parts::T, Parts::dim>{
-                                                 field, values, stride,
-                                                 parts.layout.user_nodes_on(parts.backend).data()});
+  parts.backend.for_each(parts.layout.rows, FromUser<typename Parts::T, Parts::dim>{
+                                                field, values, stride,
+                                                parts.layout.user_nodes_on(parts.backend).data()});
   parts.layout.interpolation.apply(parts.backend, field);
   return field;
 }
@@ -53,7 +53,7 @@ template <class Parts>
 void add_to_user(Parts& parts, typename Parts::Field field, typename Parts::T* to, int stride) {
   parts.layout.interpolation.clear(parts.backend, field);
   parts.backend.for_each(
-      parts.layout.nodes,
+      parts.layout.rows,
       AddToUser<typename Parts::T, Parts::dim>{
           {field.data}, to, stride, parts.layout.user_nodes_on(parts.backend).data()});
 }
@@ -100,9 +100,9 @@ double energy_of(Parts& parts, typename Parts::T const* u, int stride) {
 
 template <class Parts>
 void add_lumped_mass(Parts const& parts, typename Parts::T* m) {
-  parts.backend.for_each(parts.layout.nodes, AddMass<typename Parts::T>{
-                                                 parts.layout.mass.data(), m,
-                                                 parts.layout.user_nodes_on(parts.backend).data()});
+  parts.backend.for_each(parts.layout.rows, AddMass<typename Parts::T>{
+                                                parts.layout.mass.data(), m,
+                                                parts.layout.user_nodes_on(parts.backend).data()});
 }
 
 template <class Parts>

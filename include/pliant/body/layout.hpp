@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <tuple>
 #include <vector>
 
 #include <pliant/backend/carry_rows.hpp>
@@ -49,27 +51,27 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   std::shared_ptr<CellOrder const> first_order;
-  SharedList<double> own_masses;                // kg, in the user's order, slaves' with them
-  SharedList<double> mass_list;                 // the same, slaves' handed on
-  double mass_in_all = 0;                       // kg, of the first mesh
-  std::vector<Index> internal_node, user_node;  // by the user's and by the internal number
-  Index nodes = 0;
+  SharedList<double> own_masses;  // kg, in the user's order, slaves' with them
+  SharedList<double> mass_list;   // the same, slaves' handed on
+  double mass_in_all = 0;         // kg, of the first mesh
+  NodeRows node_rows;
+  Index rows = 0;             // of fields of nodes: free ones are among them
   Point<dim> middle{};        // m, of the box around the first mesh: `rest` is relative to it
-  Array<T> rest, f;           // (nodes, 4); f with scratch rows behind
-  Array<T> mass;              // (nodes)
-  Array<DirectionMask> held;  // (nodes)
-  Array<T> load;  // (nodes, 4): loads with those of slaves handed on; empty where not needed
+  Array<T> rest, f;           // (rows, 4); f with scratch rows behind
+  Array<T> mass;              // (rows)
+  Array<DirectionMask> held;  // (rows)
+  Array<T> load;  // (rows, 4): loads with those of slaves handed on; empty where not needed
   std::tuple<Table<Es>...> tables;
   std::array<std::vector<Index>, sizeof...(Es)> first_of_block;  // elements, by the type
-  FirstNodes<sizeof...(Es)> first_nodes;  // of the same blocks; empty for the first mesh
   InterpolationOn<B> interpolation;
-  /// While fields go over from a layout before a change: what has become of its nodes, by the internal number there; −1:
-  /// gone.
-  Array<Index> node_now;
+  std::vector<Index> freed_rows;  // that were a node's before the last change
 
-  /// `other`: a layout of the same body, of another topology; null: this is the first one.
+  /// `other`: a layout of the same body, of another topology; null: this is the first one. `known_rows`: of the nodes of a
+  /// topology with a tree.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-         std::tuple<Group<Fs>...> const& groups, Layout const* other = nullptr) {
+         std::tuple<Group<Fs>...> const& groups, Layout const* other = nullptr,
+         NodeRows known_rows = {})
+      : node_rows(std::move(known_rows)) {
     if (other != nullptr) {
       first_order = other->first_order;
       middle = other->middle;
@@ -91,18 +93,17 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     });
   }
 
-  OrderBefore<sizeof...(Es), dim> order(Transfer<dim> const& transfer,
-                                        std::span<char const> changed) const {
-    OrderBefore<sizeof...(Es), dim> kept{{}, transfer, changed};
-    std::apply([&](auto const&... table) { kept.cells = {table.numbers.blocks()...}; }, tables);
-    return kept;
-  }
-  /// The user's numbers of nodes, in the backend's memory.
+  /// How many nodes the mesh has.
+  Index nodes() const { return static_cast<Index>(node_rows.of_node.size()); }
+  /// The user's numbers of nodes by the row, in the backend's memory; −1: the row is free.
   Array<Index> const& user_nodes_on(B const& backend) const {
-    if (user_node_array_.size() == 0) user_node_array_ = upload(backend, user_node);
+    if (user_node_array_.size() == 0) user_node_array_ = upload(backend, node_rows.node);
     return user_node_array_;
   }
-  Index internal_of(Index user) const { return internal_node[static_cast<std::size_t>(user)]; }
+  /// The row of a node by the user's number.
+  Index internal_of(Index user) const { return node_rows.of_node[static_cast<std::size_t>(user)]; }
+  /// The inverse.
+  Index user_of(Index row) const { return node_rows.node[static_cast<std::size_t>(row)]; }
 
   template <class E>
   Table<E>& table() {
@@ -120,11 +121,11 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// The inverse of `padded`.
   std::vector<Point<dim>> in_user_order(Array<T> const& array) const {
     auto const& field = on_host<T>(array);
-    std::vector<Point<dim>> values(static_cast<std::size_t>(nodes));
+    std::vector<Point<dim>> values(static_cast<std::size_t>(nodes()));
     for (std::size_t i = 0; i < values.size(); ++i)
       for (std::size_t k = 0; k < dim; ++k)
         values[i][k] = static_cast<double>(
-            field[node_stride * static_cast<std::size_t>(internal_node[i]) + k]);
+            field[node_stride * static_cast<std::size_t>(node_rows.of_node[i]) + k]);
     return values;
   }
 
@@ -135,11 +136,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// The same of value(node, k).
   template <std::invocable<std::size_t, std::size_t> Value>
   std::vector<T> padded(Value const& value) const {
-    std::vector<T> field(static_cast<std::size_t>(node_stride) * internal_node.size(), T(0));
-    detail::for_each_on_host(nodes, few_nodes, [&](Index node) {
+    std::vector<T> field(static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(rows),
+                         T(0));
+    detail::for_each_on_host(nodes(), few_nodes, [&](Index node) {
       auto const i = static_cast<std::size_t>(node);
       for (std::size_t k = 0; k < dim; ++k)
-        field[node_stride * static_cast<std::size_t>(internal_node[i]) + k] =
+        field[node_stride * static_cast<std::size_t>(node_rows.of_node[i]) + k] =
             static_cast<T>(value(i, k));
     });
     return field;
@@ -151,30 +153,36 @@ struct Layout<B, Mesh<Es...>, Fs...> {
             std::tuple<Group<Fs>...> const& groups, Change const* change,
             FindOwnMasses const& find_own_masses) {
     HostThreads const threads(backend, topology);
-    auto [numbering, ordered, changed] = detail::numbered(topology, first_order.get(), change);
-    auto& blocks = ordered.blocks;
-    first_nodes = std::move(numbering.first_nodes);
+    OrderedElements<sizeof...(Es)> ordered;
+    std::optional<Numbering<Es...>> numbering;  // of a first mesh
+    if (!first_order || !topology.tree) {
+      numbering.emplace(topology.mesh());
+      ordered.blocks = first_blocks(topology.mesh());
+      node_rows = {numbering->internal_node, std::move(numbering->user_node), {}};
+    } else if (change == nullptr) {
+      ordered = elements_in_order(topology, *first_order);
+    } else {
+      ordered = order_after(topology, *change);
+    }
     if (!first_order) {
-      first_order = std::make_shared<CellOrder const>(pliant::first_order(numbering));
+      first_order = std::make_shared<CellOrder const>(pliant::first_order(*numbering));
       middle = detail::extent(topology).middle;
     }
-    internal_node = numbering.internal_node;
-    user_node = std::move(numbering.user_node);
-    nodes = static_cast<Index>(user_node.size());
+    rows = node_rows.count();
 
-    if (change != nullptr) follow_nodes(backend, *change, blocks, changed);
     Index scratch = 0;
-    [&, &numbering = numbering, &ordered = ordered]<std::size_t... I>(std::index_sequence<I...>) {
-      (make_table<I>(backend, numbering, ordered, change, topology, material, groups, scratch),
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (make_table<I>(backend, numbering ? &*numbering : nullptr, ordered, change, topology,
+                     material, groups, scratch),
        ...);
     }(std::index_sequence_for<Es...>());
     for (std::size_t type = 0; type < first_of_block.size(); ++type)
-      first_of_block[type] = std::move(blocks[type].first);
+      first_of_block[type] = std::move(ordered.blocks[type].first);
 
     make_rest(backend, topology, change);
     f = zeros<T>(backend, rest.size() + static_cast<std::size_t>(node_stride) *
                                             static_cast<std::size_t>(scratch));
-    held = zeros<DirectionMask>(backend, static_cast<std::size_t>(nodes));
+    held = zeros<DirectionMask>(backend, static_cast<std::size_t>(rows));
 
     std::vector<Slave> internal = topology.interpolation.slaves();
     for (auto& slave : internal) {
@@ -191,41 +199,47 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     make_mass(backend, material.density, change);
   }
 
-  /// Finds node_now, and tells blocks that stay where their elements were.
-  void follow_nodes(B const& backend, Change const& change,
-                    std::array<ElementBlocks, sizeof...(Es)>& blocks,
-                    ChangedBlocks const& changed) {
-    node_now = detail::nodes_now(backend, change, detail::KeptNodes(&change, changed), first_nodes,
-                                 [&](Index user) { return internal_of(user); });
-    for (std::size_t type = 0; type < blocks.size(); ++type) {
-      if (!blocks[type].some_stay()) continue;
-      blocks[type].first_before = change.before.first_of_block[type];
-      blocks[type].node_now = std::as_const(node_now).data();
-    }
+  /// Gives nodes their rows and elements their order, most of both as before.
+  OrderedElements<sizeof...(Es)> order_after(Topology<Mesh<Es...>> const& topology,
+                                             Change const& change) {
+    auto const places = places_of_families(topology, *first_order, change.transfer);
+    std::tie(node_rows, freed_rows) = detail::rows_after(change.before.node_rows, change.transfer,
+                                                         change.touched.families_after(), places);
+    auto const changed = changed_blocks(*first_order, places);
+    OrderBefore<sizeof...(Es), dim> before{{}, change.transfer, changed};
+    std::apply([&](auto const&... table) { before.cells = {table.numbers.blocks()...}; },
+               change.before.tables);
+    auto ordered = elements_in_order(topology, *first_order, &before);
+    for (std::size_t type = 0; type < sizeof...(Es); ++type)
+      ordered.blocks[type].first_before = change.before.first_of_block[type];
+    return ordered;
   }
 
+  /// `numbering`: of a first mesh, or null.
   template <std::size_t I>
-  void make_table(B const& backend, Numbering<Es...>& numbering,
+  void make_table(B const& backend, Numbering<Es...>* numbering,
                   OrderedElements<sizeof...(Es)>& ordered, Change const* change,
                   Topology<Mesh<Es...>> const& topology, Elastic const& material,
                   std::tuple<Group<Fs>...> const& groups, Index& scratch) {
     auto& table = std::get<I>(tables);
     using TableType = std::remove_reference_t<decltype(table)>;
+    using E = typename TableType::element;
     constexpr bool by_blocks = PlansByBlocks<decltype(table.elements), B>;
     auto const& blocks = ordered.blocks[I];
-    auto rows = std::move(std::get<I>(numbering.tables));
-    if (ordered.cells[I].empty()) {
-      table.numbers = ElementNumbers(std::move(numbering.user_element[I]));
+    std::vector<Connectivity<E>> connectivity;
+    if (numbering != nullptr) {
+      connectivity = std::move(std::get<I>(numbering->tables));
+      table.numbers = ElementNumbers(std::move(numbering->user_element[I]));
     } else {
-      rows = numbering.template rows_of<I>(topology, ordered.cells[I], blocks, !by_blocks);
+      connectivity = rows_of_blocks<E>(topology, ordered.cells[I], blocks, !by_blocks, node_rows);
       table.numbers = ElementNumbers(std::move(ordered.cells[I]), blocks.first, topology.cells[I]);
     }
     auto const make_elements = [&](auto const&... planned) {
       table.elements = {backend,
-                        std::move(rows),
+                        std::move(connectivity),
                         TableType::groups,
                         std::vector<Tag>(table.numbers.size(), 0),
-                        nodes,
+                        rows,
                         node_order<typename TableType::element>,
                         planned...};
     };
@@ -267,7 +281,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     auto const& made = change.transfer.new_nodes();
     std::vector<Index> places;
     for (NewNode const& n : made) places.push_back(internal_of(n.node));
-    rest = detail::carried_field<dim>(backend, nodes, change.before.rest, node_now, places,
+    rest = detail::carried_field<dim>(backend, rows, change.before.rest, freed_rows, places,
                                       [&](std::size_t i, std::size_t k) {
                                         return place(static_cast<std::size_t>(made[i].node), k);
                                       });
@@ -287,12 +301,12 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     if (change != nullptr) {
       std::vector<Index> places;
       for (Index const node : change->looked_at) places.push_back(internal_of(node));
-      mass = detail::carried_values(backend, nodes, change->before.mass, node_now, places,
+      mass = detail::carried_values(backend, rows, change->before.mass, freed_rows, places,
                                     [&](std::size_t i) { return checked(change->looked_at[i]); });
       return;
     }
-    std::vector<T> masses(mass_list.size());
-    detail::for_each_on_host(nodes, few_nodes, [&](Index user) {
+    std::vector<T> masses(static_cast<std::size_t>(rows));
+    detail::for_each_on_host(nodes(), few_nodes, [&](Index user) {
       masses[static_cast<std::size_t>(internal_of(user))] = checked(user);
     });
     mass = upload(backend, masses);

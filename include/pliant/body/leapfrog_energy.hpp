@@ -36,7 +36,7 @@ struct AddValue {
 
 template <class Parts>
 double acceleration_term_of(Parts& parts, typename Parts::ConstField f) {
-  return parts.backend.sum(parts.layout.nodes,
+  return parts.backend.sum(parts.layout.rows,
                            AccelerationTerm<typename Parts::T, Parts::dim>{
                                f, parts.layout.mass.data(), parts.still(), external_forces(parts)});
 }

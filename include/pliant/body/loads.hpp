@@ -81,7 +81,7 @@ void make_loads(Parts& parts) {
 template <class Parts>
 double potential_energy_of(Parts& parts) {
   return parts.backend.sum(
-      parts.layout.nodes,
+      parts.layout.rows,
       PotentialEnergy<typename Parts::T, Parts::dim>{
           std::as_const(parts).u(), parts.layout.mass.data(), external_forces(parts)});
 }
@@ -90,7 +90,7 @@ double potential_energy_of(Parts& parts) {
 template <class Parts>
 std::vector<Point<Parts::dim>> nodal_loads_of(Parts const& parts) {
   if (parts.state.load.size() > 0) return parts.layout.in_user_order(parts.state.load);
-  return std::vector<Point<Parts::dim>>(static_cast<std::size_t>(parts.layout.nodes));
+  return std::vector<Point<Parts::dim>>(static_cast<std::size_t>(parts.layout.nodes()));
 }
 /// The same, of a body; empty where none was set.
 template <DeformableBody TheBody>

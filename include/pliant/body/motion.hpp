@@ -189,8 +189,8 @@ struct FromUser {
   int stride;
   Index const* user_node;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Vector<T, Dim> row;
-    for (int k = 0; k < Dim; ++k)
+    auto row = Vector<T, Dim>::zero();
+    for (int k = 0; k < Dim && user_node[i] >= 0; ++k)
       row[k] = from[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k];
     to.set(i, row);
   }
@@ -204,7 +204,7 @@ struct AddToUser {
   Index const* user_node;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
     auto const row = from.at(i);
-    for (int k = 0; k < Dim; ++k)
+    for (int k = 0; k < Dim && user_node[i] >= 0; ++k)
       to[static_cast<std::ptrdiff_t>(stride) * user_node[i] + k] += row[k];
   }
 };
@@ -215,7 +215,9 @@ struct AddMass {
   T const* mass;
   T* to;
   Index const* user_node;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { to[user_node[i]] += mass[i]; }
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (user_node[i] >= 0) to[user_node[i]] += mass[i];
+  }
 };
 
 }  // namespace pliant

@@ -7,20 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/backend/element_blocks.hpp>
-#include <pliant/body/element_numbers.hpp>
 #include <pliant/element/linear.hpp>
 #include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/hilbert.hpp>
 #include <pliant/mesh/mesh.hpp>
-#include <pliant/topology/topology.hpp>
 
 namespace pliant {
-
-/// Per element type, the first internal node that a block of its elements has and no block before it, and the end of the
-/// last one's.
-template <std::size_t Types>
-using FirstNodes = std::array<std::vector<Index>, Types>;
 
 /// The order in which a body keeps nodes and elements, invisible to the user: nodes lie along a Hilbert
 /// curve, elements follow that node of theirs which comes first on it, and nodes are numbered as these elements
@@ -31,14 +23,11 @@ using FirstNodes = std::array<std::vector<Index>, Types>;
 template <Element... Es>
 struct Numbering {
   static constexpr std::size_t types = sizeof...(Es);
-  template <std::size_t I>
-  using TypeAt = std::tuple_element_t<I, std::tuple<Es...>>;
   std::vector<Index> internal_node;  // by the user's number
   std::vector<Index> user_node;      // by the internal number
-  /// Internal elements of internal nodes; empty where elements are in blocks: see rows_of.
+  /// Internal elements of internal nodes.
   std::tuple<std::vector<Connectivity<Es>>...> tables;
-  std::array<std::vector<Index>, types> user_element;  // by the internal number; empty as tables
-  FirstNodes<types> first_nodes;                       // empty where elements are in no blocks
+  std::array<std::vector<Index>, types> user_element;  // by the internal number
 
   explicit Numbering(Mesh<Es...> const& mesh) : Numbering(mesh, along_curve(mesh)) {}
   /// Of elements in a given order: per type the user's numbers.
@@ -51,49 +40,6 @@ struct Numbering {
       (number_nodes(std::get<I>(tables)), ...);
     }(std::index_sequence_for<Es...>());
     number_others();
-  }
-  /// The same of a topology's elements in blocks: per type, the cells of each. Nodes that blocks `keep` keep their order: see
-  /// KeptNodes.
-  template <class Kept>
-  Numbering(Topology<Mesh<Es...>> const& topology,
-            std::array<ElementNumbers::Blocks, types> const& blocks, Kept const& kept)
-      : internal_node(static_cast<std::size_t>(topology.nodes()), -1),
-        user_node(static_cast<std::size_t>(topology.nodes())) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (number_by_blocks<I, Es>(topology, blocks[I], kept), ...);
-      (take_kept<I>(kept), ...);
-    }(std::index_sequence_for<Es...>());
-    number_others();
-  }
-
-  /// The table of a type, whose elements are in blocks of these cells: all elements, or those of blocks that do not stay, one
-  /// after another.
-  template <std::size_t I>
-  std::vector<Connectivity<TypeAt<I>>> rows_of(Topology<Mesh<Es...>> const& topology,
-                                               ElementNumbers::Blocks const& cells,
-                                               ElementBlocks const& blocks, bool all) const {
-    auto const& looked_up = std::get<I>(looked_up_);
-    std::vector<Index> first{0};  // row, by block
-    auto const is_wanted = [&](std::size_t b) {
-      return all || !blocks.some_stay() || blocks.stays[b] == 0;
-    };
-    for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b)
-      first.push_back(first.back() + (is_wanted(b) ? blocks.first[b + 1] - blocks.first[b] : 0));
-    std::vector<Connectivity<TypeAt<I>>> rows(static_cast<std::size_t>(first.back()));
-    constexpr Index few_blocks = 32;  // worth a thread
-    detail::for_each_on_host(static_cast<Index>(first.size()) - 1, few_blocks, [&](Index block) {
-      auto const b = static_cast<std::size_t>(block);
-      auto const begin = static_cast<std::size_t>(first[b]),
-                 count = static_cast<std::size_t>(first[b + 1]) - begin;
-      Index const known = looked_up.first.empty() ? -1 : looked_up.first[b];
-      for (std::size_t k = 0; k < count; ++k) {
-        auto& row = rows[begin + k];
-        row = known >= 0 ? looked_up.rows[static_cast<std::size_t>(known) + k]
-                         : topology.template nodes_of_cell<TypeAt<I>>(cells[b]->cells[k]);
-        for (Index& node : row) node = internal_node[static_cast<std::size_t>(node)];
-      }
-    });
-    return rows;
   }
 
  private:
@@ -127,45 +73,6 @@ struct Numbering {
   void number_others() {
     for (std::size_t i = 0; next_ < static_cast<Index>(internal_node.size()); ++i)
       if (internal_node[i] < 0) take(static_cast<Index>(i), next_++);
-  }
-  /// Numbers the nodes of blocks that keep none, and tells where those of each block begin.
-  template <std::size_t I, Element E, class Kept>
-  void number_by_blocks(Topology<Mesh<Es...>> const& topology, ElementNumbers::Blocks const& blocks,
-                        Kept const& kept) {
-    auto has_kept = kept.has();
-    auto& looked_up = std::get<I>(looked_up_);
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      first_nodes[I].push_back(next_);
-      if (kept.keeps(b)) {
-        looked_up.first.push_back(-1);
-        next_ += kept.count(I, b);
-        continue;
-      }
-      if (kept.keeps_some(b)) {
-        looked_up.first.push_back(-1);
-        kept.for_each(I, b, [&](Index user) {
-          if (internal_node[static_cast<std::size_t>(user)] < 0) take(user, next_++);
-        });
-        continue;
-      }
-      looked_up.first.push_back(static_cast<Index>(looked_up.rows.size()));
-      for (Index const c : blocks[b]->cells)
-        for (Index const node : looked_up.rows.emplace_back(topology.template nodes_of_cell<E>(c)))
-          if (internal_node[static_cast<std::size_t>(node)] < 0 && !has_kept(node))
-            take(node, next_++);
-    }
-    first_nodes[I].push_back(next_);
-  }
-  template <std::size_t I, class Kept>
-  void take_kept(Kept const& kept) {
-    constexpr Index few_blocks = 64;  // worth a thread
-    detail::for_each_on_host(static_cast<Index>(first_nodes[I].size()) - 1, few_blocks,
-                             [&](Index block) {
-                               auto const b = static_cast<std::size_t>(block);
-                               Index next = first_nodes[I][b];
-                               if (kept.keeps(b))
-                                 kept.for_each(I, b, [&](Index user) { take(user, next++); });
-                             });
   }
   template <std::size_t I, Element E>
   void fill_table(Mesh<Es...> const& mesh) {
@@ -284,14 +191,6 @@ struct Numbering {
     });
   }
 
-  /// Elements of blocks, by the user's numbers of nodes, and by the block the first of them; −1: of a block that keeps its
-  /// nodes.
-  template <Element E>
-  struct LookedUp {
-    std::vector<Index> first;
-    std::vector<Connectivity<E>> rows;
-  };
-  std::tuple<LookedUp<Es>...> looked_up_;
   Index next_ = 0;  // internal number
 };
 

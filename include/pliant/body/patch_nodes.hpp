@@ -130,7 +130,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
     made.first_of_type.push_back(before + table.elements.patch_count());
   });
   first_other.push_back(made.pieces_count());
-  auto const by_node = group_by_key(nodes_of_pairs, layout.nodes);
+  auto const by_node = group_by_key(nodes_of_pairs, layout.rows);
   made.first_of_node = by_node.first;
   for (Index pair : by_node.order)
     made.pieces_of_node.push_back(pieces_of_pairs[static_cast<std::size_t>(pair)]);

@@ -86,7 +86,7 @@ void set_damping(Parts& parts, double per_mass) {
 
 template <class Parts>
 void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
-  detail::check_field<typename Parts::T>("body.set_loads", forces, parts.layout.nodes);
+  detail::check_field<typename Parts::T>("body.set_loads", forces, parts.layout.nodes());
   if (parts.awake) {  // nodes that are pulled otherwise wake
     auto const before = nodal_loads_of(parts);
     auto const same = [](double a, double b) {
@@ -107,9 +107,9 @@ void set_loads(Parts& parts, std::vector<Point<Parts::dim>> const& forces) {
 template <class Parts>
 void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
   using T = typename Parts::T;
-  if (node < 0 || node >= parts.layout.nodes)
+  if (node < 0 || node >= parts.layout.nodes())
     throw Error("body.set_load: there is no node ", node, "; nodes are numbered 0 to ",
-                parts.layout.nodes - 1);
+                parts.layout.nodes() - 1);
   for (double x : force)
     if (!std::isfinite(static_cast<T>(x)))
       throw Error("body.set_load: the force at node ", node,
@@ -163,7 +163,7 @@ void roll_back_motion(Parts& parts) {
 
 template <class Parts>
 void set_displacements(Parts& parts, std::vector<Point<Parts::dim>> const& u) {
-  detail::check_field<typename Parts::T>("body.set_displacements", u, parts.layout.nodes);
+  detail::check_field<typename Parts::T>("body.set_displacements", u, parts.layout.nodes());
   change_by_hand(parts, [&] {
     parts.state.u.upload(parts.layout.padded(u));
     parts.layout.interpolation.apply(parts.backend, parts.u());
@@ -172,7 +172,7 @@ void set_displacements(Parts& parts, std::vector<Point<Parts::dim>> const& u) {
 
 template <class Parts>
 void set_velocities(Parts& parts, std::vector<Point<Parts::dim>> const& v) {
-  detail::check_field<typename Parts::T>("body.set_velocities", v, parts.layout.nodes);
+  detail::check_field<typename Parts::T>("body.set_velocities", v, parts.layout.nodes());
   change_by_hand(parts, [&] {
     parts.state.v.upload(parts.layout.padded(v));
     stop_held(parts);
@@ -182,7 +182,7 @@ void set_velocities(Parts& parts, std::vector<Point<Parts::dim>> const& v) {
 namespace detail {
 template <class Parts>
 auto made_term(Parts const& parts, typename Parts::MakeTerm const& make) {
-  auto term = make(parts.backend, parts.layout.internal_node);
+  auto term = make(parts.backend, parts.layout.node_rows.of_node);
   if (!term) throw Error("body.add: there is no force term; make one whenever it is asked for");
   return term;
 }

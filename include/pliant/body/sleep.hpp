@@ -81,7 +81,7 @@ bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>
 template <class Parts>
 bool list_runs(Parts& parts, std::vector<std::uint8_t> const& asleep) {
   auto& rows = *parts.patch_nodes;
-  Index const most = (parts.layout.nodes + nodes_of_run - 1) / nodes_of_run;
+  Index const most = (parts.layout.rows + nodes_of_run - 1) / nodes_of_run;
   std::vector<bool> awake(static_cast<std::size_t>(most));
   for (std::size_t p = 0; p < asleep.size(); ++p)
     if (!asleep[p])
@@ -108,7 +108,7 @@ void bring_up_to_rest(Parts& parts, std::span<std::int32_t const> rest) {
   auto const& backend = parts.backend;
   if (!parts.patch_nodes) parts.patch_nodes.emplace(make_patch_nodes(parts));
   auto const& patch_nodes = *parts.patch_nodes;
-  auto const nodes = static_cast<std::size_t>(parts.layout.nodes);
+  auto const nodes = static_cast<std::size_t>(parts.layout.rows);
   if (!slept) {
     auto& awake = parts.awake.emplace();
     awake.asleep = zeros<std::uint8_t>(backend, rest.size());
@@ -123,7 +123,7 @@ void bring_up_to_rest(Parts& parts, std::span<std::int32_t const> rest) {
   awake.asleep.upload(asleep);
   awake.awake = static_cast<Index>(std::ranges::count(asleep, 0));
   backend.for_each(
-      parts.layout.nodes,
+      parts.layout.rows,
       WatchNodes{patch_nodes.first.data(), patch_nodes.pieces.data(), patch_nodes.patch.data(),
                  awake.asleep.data(), parts.layout.held.data(), awake.nodes.data(),
                  awake.still.data(), all_directions<Parts::dim>});
@@ -184,7 +184,7 @@ void change_rest(Parts& parts, std::span<std::int32_t const> rest) {
   parts.state.rest.upload(rest);
   detail::bring_up_to_rest(parts, rest);
   if (parts.awake) {
-    parts.backend.for_each(parts.layout.nodes, StopHeld<T, Parts::dim>{parts.v(), parts.still()});
+    parts.backend.for_each(parts.layout.rows, StopHeld<T, Parts::dim>{parts.v(), parts.still()});
     parts.layout.interpolation.apply(parts.backend, parts.v());
   }
   auto const after = energies();

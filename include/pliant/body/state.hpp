@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <tuple>
 
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/body/adaptation_record.hpp>
 #include <pliant/body/group.hpp>
 #include <pliant/body/group_statistics.hpp>
@@ -134,22 +134,6 @@ struct State<B, Mesh<Es...>, Fs...> {
 };
 
 namespace detail {
-template <class U>
-struct CopyValue {
-  U const* from;
-  U* to;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
-};
-
-/// Copies values in pieces that an Index can number.
-template <class B, class U>
-void copy_values(B const& backend, U const* from, U* to, std::size_t count) {
-  constexpr std::size_t most = std::numeric_limits<Index>::max();
-  for (std::size_t first = 0; first < count; first += most)
-    backend.for_each(static_cast<Index>(std::min(most, count - first)),
-                     CopyValue<U>{from + first, to + first});
-}
-
 /// Makes a member what another is: arrays where they lie, so that recorded loops stay right.
 template <class B>
 struct CopyMember {

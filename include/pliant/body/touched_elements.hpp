@@ -43,7 +43,7 @@ class ElementsAtNodes {
   /// `nodes`: by the user's numbers.
   ElementsAtNodes(Parts const& parts, std::vector<Index> const& nodes)
       : parts_(parts),
-        marks_(zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(parts.layout.nodes))) {
+        marks_(zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(parts.layout.rows))) {
     std::vector<Index> internal;
     internal.reserve(nodes.size());
     for (Index const node : nodes) internal.push_back(parts.layout.internal_of(node));

@@ -36,7 +36,7 @@ double energy_of_some(Parts const& parts, std::vector<std::vector<Index> const*>
         for (Index& node : row) node = parts.layout.internal_of(node);
       for (Index const e : list) own.push_back(tags[static_cast<std::size_t>(e)]);
       add(typename Parts::backend_type::template Elements<E::nodes>(
-          parts.backend, std::move(nodes), Table::groups, own, parts.layout.nodes));
+          parts.backend, std::move(nodes), Table::groups, own, parts.layout.rows));
     }
   });
   for_each_added_term(parts, [&](auto const& term) {

@@ -30,14 +30,14 @@ bool passes_over_sleepers(Parts const& parts) {
 template <class Parts, class F>
 void add_sum_over_moving_nodes(Parts const& parts, F const& f, double* to) {
   if (passes_over_sleepers(parts))
-    parts.backend.add_sum(parts.layout.nodes, AtAwakeNodes<F>{parts.awake->nodes.data(), f}, to);
+    parts.backend.add_sum(parts.layout.rows, AtAwakeNodes<F>{parts.awake->nodes.data(), f}, to);
   else
-    parts.backend.add_sum(parts.layout.nodes, f, to);
+    parts.backend.add_sum(parts.layout.rows, f, to);
 }
 /// f(i) for all nodes, or for those that may move.
 template <class Parts, class F>
 void for_each_moving_node(Parts const& parts, F const& f) {
-  Index const nodes = parts.layout.nodes;
+  Index const nodes = parts.layout.rows;
   if (!passes_over_sleepers(parts)) return parts.backend.for_each(nodes, f);
   auto const& runs = parts.patch_nodes->awake_runs;
   parts.backend.for_each((static_cast<Index>(runs.size()) - 1) * nodes_of_run,
@@ -108,7 +108,7 @@ void advance(Parts& parts, double lag, double kick, double drift) {
   auto const book_hidden = [&](double time) {
     if (hidden_work && time > 0)
       parts.backend.add_sum(
-          layout.nodes,
+          layout.rows,
           WorkRate<T, dim>{{parts.without_energy.data()}, std::as_const(parts).v(), time},
           parts.state.work.data() + static_cast<int>(Work::pressures));
   };
@@ -138,7 +138,7 @@ void synchronize_velocities(Parts& parts) {
 template <class Parts>
 double kinetic_energy_of(Parts& parts) {
   synchronize_velocities(parts);
-  return parts.backend.sum(parts.layout.nodes,
+  return parts.backend.sum(parts.layout.rows,
                            KineticEnergy<typename Parts::T, Parts::dim>{std::as_const(parts).v(),
                                                                         parts.layout.mass.data()});
 }

@@ -13,7 +13,7 @@ namespace detail {
 /// v = 0 in some directions of each node.
 template <class Parts>
 void stop(Parts& parts, DirectionMask const* directions) {
-  parts.backend.for_each(parts.layout.nodes,
+  parts.backend.for_each(parts.layout.rows,
                          StopHeld<typename Parts::T, Parts::dim>{parts.v(), directions});
   parts.layout.interpolation.apply(parts.backend, parts.v());
 }
@@ -68,7 +68,7 @@ typename Parts::template Array<typename Parts::T> const& place_before_drives(Par
     driven.copy(parts.backend, parts.u(), node_field<Parts::dim>(same));
   bool const moved =
       parts.backend.maximum(
-          parts.layout.nodes,
+          parts.layout.rows,
           detail::DiffersAt<T, Parts::dim>{parts.u(), node_field<Parts::dim>(std::as_const(same)),
                                            parts.layout.mass.data()}) > 0;
   return moved ? u : before;
@@ -89,7 +89,7 @@ void keep_place_before_drives(Parts& parts) {
 template <class Parts>
 std::vector<DirectionMask> held_directions(Parts const& parts,
                                            std::span<Condition<Parts::dim> const> conditions) {
-  std::vector<DirectionMask> held(static_cast<std::size_t>(parts.layout.nodes), 0);
+  std::vector<DirectionMask> held(static_cast<std::size_t>(parts.layout.rows), 0);
   for (auto const& condition : conditions)
     for (Index node : condition.nodes)
       held[static_cast<std::size_t>(parts.layout.internal_of(node))] |= condition.directions;
@@ -152,7 +152,7 @@ namespace detail {
 /// Throws Error where a condition names nodes that it cannot hold or drive.
 template <class Parts>
 void check_condition(Parts const& parts, Condition<Parts::dim> const& condition) {
-  Index const count = parts.layout.nodes;
+  Index const count = parts.layout.nodes();
   if (condition.nodes.empty())
     throw Error("body: a condition names no node; give the facets or nodes that it is to act on");
   if (condition.directions == 0 || condition.directions > all_directions<Parts::dim>)

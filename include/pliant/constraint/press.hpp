@@ -16,7 +16,7 @@ void upload_pressures(Parts& parts) {
     for (auto& facet : internal)
       for (Index& node : facet) node = parts.layout.internal_of(node);
     add_pressure_terms<typename Parts::mesh_type>(parts.backend, internal, pressure.pascals,
-                                                  parts.layout.nodes, parts.pressures);
+                                                  parts.layout.rows, parts.pressures);
   }
 }
 
@@ -42,9 +42,9 @@ Handle press(Parts& parts, std::vector<Facet<Parts::dim>> const& facets, double 
                 std::isfinite(pascals) ? " in single precision" : "");
   for (auto const& facet : facets)
     for (Index node : facet)
-      if (node < 0 || node >= parts.layout.nodes)
+      if (node < 0 || node >= parts.layout.nodes())
         throw Error("body.press: a facet names node ", node, ", but nodes are numbered 0 to ",
-                    parts.layout.nodes - 1);
+                    parts.layout.nodes() - 1);
   auto prescribed = *parts.state.prescribed;
   auto const keys = detail::sorted_keys(facets);
   auto same = std::ranges::find_if(prescribed.pressures, [&](auto const& pressure) {

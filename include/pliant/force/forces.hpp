@@ -39,7 +39,7 @@ double energy_at(Parts const& parts, typename Parts::ConstField u) {
 /// Sets the rows of all nodes to zero.
 template <class Parts>
 void clear_rows(Parts const& parts, typename Parts::Field field) {
-  parts.backend.for_each(parts.layout.nodes, Clear<typename Parts::T>{field.data});
+  parts.backend.for_each(parts.layout.rows, Clear<typename Parts::T>{field.data});
 }
 
 /// Forces of the present displacements are no longer right.
@@ -84,7 +84,7 @@ void make_room_for_forces(Parts& parts) {
   Index scratch = 0;
   for_each_force_term(parts,
                       [&](auto const& term) { scratch = std::max(scratch, term.scratch_nodes()); });
-  std::size_t const rows = static_cast<std::size_t>(parts.layout.nodes + scratch);
+  std::size_t const rows = static_cast<std::size_t>(parts.layout.rows + scratch);
   if (parts.layout.f.size() < node_stride * rows)
     parts.layout.f = zeros<typename Parts::T>(parts.backend, node_stride * rows);
   else

@@ -153,9 +153,7 @@ void add_terms(Parts const& parts, Eigen::VectorXd const& u, double pressure_sha
   constexpr int dim = Parts::dim;
   auto const& mesh = parts.state.topology->mesh();
   auto const middle = middle_of(mesh);
-  auto const user = [&](Index node) {
-    return parts.layout.user_node[static_cast<std::size_t>(node)];
-  };
+  auto const user = [&](Index node) { return parts.layout.user_of(node); };
   auto const rest = [&](Index node) {
     Point<dim> place = mesh.nodes[static_cast<std::size_t>(user(node))];
     for (std::size_t k = 0; k < dim; ++k) place[k] -= middle[k];
@@ -196,7 +194,7 @@ void assemble_into(AssembledBlocks<Parts::dim>& sum, Parts const& parts, Eigen::
                    Assemble what, double dt, double pressure_share,
                    ElementTangents tangents = ElementTangents::exact) {
   HostTasks const tasks(parts.backend);
-  auto const nodes = static_cast<Index>(parts.layout.user_node.size());
+  auto const nodes = parts.layout.nodes();
   if (what != Assemble::energy_and_force && sum.stiffness.rows() == 0)
     sum.stiffness = stiffness_blocks(parts, {});
   std::vector<std::vector<Index>> besides;

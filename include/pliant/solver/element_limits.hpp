@@ -77,7 +77,7 @@ double bound_elements(Parts& parts, MassShares shares) {
     if (by_rows) parts.elements().add_row_sums(backend, at, rows);
     parts.layout.interpolation.hand_on_magnitudes(backend, rows);
     backend.for_each(
-        parts.layout.nodes,
+        parts.layout.rows,
         RowsToQuotient<T, dim>{{{rows.data}, parts.layout.mass.data(), parts.layout.held.data()},
                                quotient,
                                magnitude});

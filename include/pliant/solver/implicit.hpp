@@ -200,7 +200,7 @@ class Implicit {
       auto& own = balance_.arrays();
       auto const beyond = balance_.field(own.trial);
       double const share = solver_.rule().error_share;
-      detail::set_sum(parts_.backend, parts_.layout.nodes, beyond,
+      detail::set_sum(parts_.backend, parts_.layout.rows, beyond,
                       balance_.scaled(share, balance_.field(own.increment)),
                       balance_.scaled(-share * h, parts_.v()),
                       balance_.scaled(Scheme::order > 1 ? -share * h * h / 2 : 0,
@@ -209,7 +209,7 @@ class Implicit {
       return beyond;
     }
     double largest(Field field) const {
-      return parts_.backend.maximum(parts_.layout.nodes, detail::LargestAt<T, dim>{{field.data}});
+      return parts_.backend.maximum(parts_.layout.rows, detail::LargestAt<T, dim>{{field.data}});
     }
     /// The largest error of a displacement, m.
     double step_error(double h) { return largest(find_step_error(h)); }
@@ -222,7 +222,7 @@ class Implicit {
         if (!solver_.solve(1e-4, h)) kept.error = std::numeric_limits<double>::infinity();
       } else {
         auto const nothing = balance_.field(balance_.arrays().solution);
-        detail::set_sum(parts_.backend, parts_.layout.nodes, nothing, balance_.scaled(0, nothing));
+        detail::set_sum(parts_.backend, parts_.layout.rows, nothing, balance_.scaled(0, nothing));
       }
       double const off = errors_.go_on(solver_.rule(), Scheme::looks_back, find_step_error(h));
       // Twice, as errors of steps are of velocities too, and twice for what the first order leaves out.
@@ -248,7 +248,7 @@ class Implicit {
       auto& state = parts_.state;
       auto& kept = state.implicit;
       auto const& backend = parts_.backend;
-      Index const n = parts_.layout.nodes;
+      Index const n = parts_.layout.rows;
       auto const d = balance_.field(own.increment), speed = balance_.field(own.speed),
                  a = balance_.field(own.acceleration);
       balance_.set_end(speed, solver_.rule().velocity);

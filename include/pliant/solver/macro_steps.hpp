@@ -114,7 +114,7 @@ void act(Parts& parts, double macro_step, int lowest, Halves halves) {
   auto const book_hidden = [&](bool acts) {
     if (hidden && acts)
       backend.add_sum(
-          parts.layout.nodes,
+          parts.layout.rows,
           WorkRate<T, dim>{
               {parts.without_energy.data()}, v, std::ldexp(macro_step, -schedule.term_level) / 2},
           work + static_cast<int>(Work::pressures));
@@ -143,8 +143,8 @@ double half_kick_energy(Parts& parts, double macro_step) {
   forget_forces(parts);
   detail::accumulate_impulses(parts, 0);
   double const sum = parts.backend.sum(
-      parts.layout.nodes, detail::HalfKickEnergy<T, Parts::dim>{
-                              detail::moving_nodes(parts, macro_step), {parts.layout.f.data()}});
+      parts.layout.rows, detail::HalfKickEnergy<T, Parts::dim>{
+                             detail::moving_nodes(parts, macro_step), {parts.layout.f.data()}});
   clear_rows(parts, parts.f());
   return sum;
 }

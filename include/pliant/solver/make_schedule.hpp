@@ -14,10 +14,11 @@ auto nodes_of_terms(Parts const& parts) {
   typename Parts::template Array<StepLevel> none;
   if (parts.pressures.empty() && parts.terms.empty()) return none;
   auto const at_rest = [](Index) { return Point<dim>{}; };
-  std::vector<Point<dim>> places(static_cast<std::size_t>(parts.layout.nodes));
+  std::vector<Point<dim>> places(static_cast<std::size_t>(parts.layout.rows));
   auto const& mesh = parts.state.topology->mesh();
-  for (std::size_t i = 0; i < places.size(); ++i)
-    places[static_cast<std::size_t>(parts.layout.internal_node[i])] = mesh.nodes[i];
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    places[static_cast<std::size_t>(parts.layout.internal_of(static_cast<Index>(i)))] =
+        mesh.nodes[i];
   std::vector<StepLevel> touched(places.size(), 0);
   for_each_added_term(parts, [&](auto const& term) {
     term.for_each_element([&](Index i) { return places[static_cast<std::size_t>(i)]; }, at_rest,
@@ -108,8 +109,8 @@ void make_schedule(Parts& parts) {
     detail::spread_to_nodes(parts, field);
     if (ring == 0 && at_terms)
       schedule.term_level = static_cast<int>(
-          backend.maximum(parts.layout.nodes, detail::TouchedLevel<T>{field, at_terms}));
-    backend.for_each(parts.layout.nodes,
+          backend.maximum(parts.layout.rows, detail::TouchedLevel<T>{field, at_terms}));
+    backend.for_each(parts.layout.rows,
                      detail::SumsToLevels<T>{field, at_terms, schedule.term_level});
     interpolation.raise_masters(backend, field);
     interpolation.raise_slaves(backend, field);
@@ -148,11 +149,11 @@ void make_schedule(Parts& parts) {
   schedule.evaluations = elements > 0 ? work / (elements * std::exp2(schedule.finest)) : 1;
 
   detail::spread_to_nodes(parts, field);
-  backend.for_each(parts.layout.nodes,
+  backend.for_each(parts.layout.rows,
                    detail::SumsToLevels<T>{field, at_terms, schedule.term_level});
   interpolation.raise_masters(backend, field);
-  auto rates = zeros<StepLevel>(backend, static_cast<std::size_t>(parts.layout.nodes));
-  backend.for_each(parts.layout.nodes, detail::TakeLevel<T>{field, rates.data()});
+  auto rates = zeros<StepLevel>(backend, static_cast<std::size_t>(parts.layout.rows));
+  backend.for_each(parts.layout.rows, detail::TakeLevel<T>{field, rates.data()});
   detail::sort_nodes(backend, download<StepLevel>(rates), schedule);
   parts.for_each_type([&](auto& table, auto&) {
     constexpr bool at_once = detail::takes_levels_at_once<B, std::remove_cvref_t<decltype(table)>>;

@@ -40,7 +40,7 @@ void add_mass_product(Parts const& parts, MassMatrix kind, double factor,
   using T = typename Parts::T;
   if (kind == MassMatrix::lumped) {
     parts.backend.for_each(
-        parts.layout.nodes,
+        parts.layout.rows,
         AddLumped<T, Parts::dim>{out, x, parts.layout.mass.data(), static_cast<T>(factor)});
     return;
   }

@@ -99,7 +99,7 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
   NodeField<T, dim> const rows{parts.row_sums.data()};
   clear_rows(parts, rows);
   auto const largest_row = [&] {
-    return backend.maximum(parts.layout.nodes,
+    return backend.maximum(parts.layout.rows,
                            detail::RowOverMass<T, dim>{
                                {parts.row_sums.data()},
                                parts.layout.mass.data(),

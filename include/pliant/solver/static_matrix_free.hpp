@@ -27,7 +27,7 @@ class MatrixFreeStatics {
         options_(options),
         balance_(parts, options.gravity, 0),
         preconditioning_(options.preconditioner),
-        nodes_(parts.layout.nodes),
+        nodes_(parts.layout.rows),
         u_(array()),
         start_(array()),
         external_(array()),

@@ -159,11 +159,10 @@ class CudaElements {
                sources = uploaded(backend, detail::sources_of(blocks)),
                rows = uploaded(backend, all_of(connectivity));
     connectivity_ = backend.template array<Index>(static_cast<std::size_t>(count_) * View::width);
-    backend.for_each(
-        count_,
-        detail::CarryConnectivity<Nodes, View::width>{
-            first.data(), sources.data(), static_cast<Index>(blocks.stays.size()),
-            before.connectivity_.data(), rows.data(), blocks.node_now, connectivity_.data()});
+    backend.for_each(count_,
+                     detail::CarryConnectivity<Nodes, View::width>{
+                         first.data(), sources.data(), static_cast<Index>(blocks.stays.size()),
+                         before.connectivity_.data(), rows.data(), connectivity_.data()});
   }
 
   template <class P>

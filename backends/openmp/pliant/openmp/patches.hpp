@@ -98,7 +98,6 @@ class Patches {
         static_cast<Index>(sources.size()),
         first_node(before.nodes_),
         first_node(given_.data()),
-        blocks.node_now,
         carried_.size() == 0 ? nullptr : carried_.data()->data()};
     constexpr Index few_blocks = 32;  // worth a thread
     for_each_on_host(carry.blocks, few_blocks, [&](Index block) {

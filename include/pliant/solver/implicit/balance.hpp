@@ -82,7 +82,7 @@ class Balance {
       : parts_(parts),
         mass_(mass),
         stiffness_damping_(stiffness_damping),
-        nodes_(parts.layout.nodes) {
+        nodes_(parts.layout.rows) {
     if (!parts.solver)
       parts.solver.emplace(parts.backend, parts.layout.rest.size(), parts.layout.f.size(), dim);
     else if (parts.solver->force.size() != parts.layout.f.size())

@@ -23,7 +23,7 @@ class CarriedErrors {
         balance_(balance),
         mass_(mass),
         stiffness_damping_(stiffness_damping),
-        nodes_(parts.layout.nodes) {}
+        nodes_(parts.layout.rows) {}
 
   /// Errors are none where a motion begins; `looks_back`: whether the scheme does.
   void begin(bool looks_back) {

@@ -86,7 +86,7 @@ class StepSolver {
     auto& own = balance_.arrays();
     auto const matrix = balance_.matrix(rule_);
     auto const r = balance_.field(own.residual), kept = balance_.field(own.trial);
-    set_sum(parts_.backend, parts_.layout.nodes, kept, balance_.scaled(1, r));
+    set_sum(parts_.backend, parts_.layout.rows, kept, balance_.scaled(1, r));
     if (assembled_) {
       try {
         assembled_->solve(own, matrix, rule_.force_weight * h, tolerance);
@@ -106,7 +106,7 @@ class StepSolver {
         return false;
       }
     }
-    start_work_ = parts_.backend.sum(parts_.layout.nodes,
+    start_work_ = parts_.backend.sum(parts_.layout.rows,
                                      DotAt<T, dim>{{own.solution.data()}, {own.trial.data()}});
     return true;
   }
@@ -136,8 +136,8 @@ class StepSolver {
     auto& own = balance_.arrays();
     Size now = begin_iteration(h, searching);
     double const eps = 45 * double{std::numeric_limits<T>::epsilon()};
-    double const size = norm_of(parts_.backend, parts_.layout.nodes, parts_.u()) +
-                        h * norm_of(parts_.backend, parts_.layout.nodes, parts_.v());
+    double const size = norm_of(parts_.backend, parts_.layout.rows, parts_.u()) +
+                        h * norm_of(parts_.backend, parts_.layout.rows, parts_.v());
     constexpr double nothing = 1e6 * double{std::numeric_limits<T>::min()};  // N: without digits
     double forcing = 1e-3;
     bool settled = false;
@@ -198,7 +198,7 @@ class StepSolver {
   Size go(bool searching) {
     auto& own = balance_.arrays();
     auto const d = balance_.field(own.increment), along = balance_.field(own.solution);
-    Index const n = parts_.layout.nodes;
+    Index const n = parts_.layout.rows;
     auto const work = [&] {
       return parts_.backend.sum(n, DotAt<T, dim>{{along.data}, {own.residual.data()}});
     };
@@ -221,7 +221,7 @@ class StepSolver {
   void guess(double h, bool along) {
     auto& own = balance_.arrays();
     auto const d = balance_.field(own.increment), place = balance_.field(own.place);
-    Index const n = parts_.layout.nodes;
+    Index const n = parts_.layout.rows;
     bool const bends = along && Scheme::order > 1;
     set_sum(parts_.backend, n, d, balance_.scaled(along ? h : 0, parts_.v()),
             balance_.scaled(bends ? h * h / 2 : 0, balance_.field(parts_.state.implicit.a)));
@@ -235,7 +235,7 @@ class StepSolver {
   void look_for_folds(double h) {
     auto& own = balance_.arrays();
     auto const end = balance_.field(own.trial);
-    set_sum(parts_.backend, parts_.layout.nodes, end, balance_.scaled(1, parts_.u()),
+    set_sum(parts_.backend, parts_.layout.rows, end, balance_.scaled(1, parts_.u()),
             balance_.scaled(1, balance_.field(own.increment)));
     least_ = least_jacobian_on(parts_, {end.data}, true);
     if (least_.value > 0 || options_.accept_folded) return;

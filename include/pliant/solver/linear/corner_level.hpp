@@ -144,7 +144,7 @@ class CornerLevel {
       for_each_added_term(parts, [&](auto const& term) {
         term.add_diagonal(parts.backend, parts.at(a.place), k, work);
       });
-    parts.backend.for_each(parts.layout.nodes,
+    parts.backend.for_each(parts.layout.rows,
                            SetNodalColumn<T, dim>{field(arrays.direction),
                                                   {work.data},
                                                   share_.data(),

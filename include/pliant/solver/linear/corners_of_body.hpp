@@ -30,7 +30,7 @@ struct CornersOfBody {
 
   template <class Parts>
   explicit CornersOfBody(Parts const& parts) {
-    auto const nodes = static_cast<std::size_t>(parts.layout.nodes);
+    auto const nodes = static_cast<std::size_t>(parts.layout.rows);
     std::vector<Index> corner(nodes, -1);  // by node
     share.assign(nodes, 0);
     for_each_type(parts, [&]<Element E>(E, std::vector<Connectivity<E>> const& elements) {

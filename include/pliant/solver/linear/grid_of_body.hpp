@@ -78,7 +78,7 @@ GridOfBody<Parts::dim> grid_of_body(Parts const& parts, GridFor finer) {
   });
   grid.number(occupied);
 
-  body.boxes_of_nodes.assign(mesh.nodes.size(), -1);
+  body.boxes_of_nodes.assign(static_cast<std::size_t>(parts.layout.rows), -1);
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     if (!has_element[i]) continue;
     Index box = grid.find_box(grid.place_of(relative(mesh.nodes[i])));

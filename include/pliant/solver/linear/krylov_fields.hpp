@@ -20,7 +20,7 @@ class KrylovFields {
       : parts_(&parts),
         arrays_(&arrays),
         a(matrix),
-        n(parts.layout.nodes),
+        n(parts.layout.rows),
         s{arrays.scalars.data()},
         x(node_field<dim>(arrays.solution)),
         r(node_field<dim>(arrays.residual)),

@@ -69,8 +69,8 @@ class Multigrid final : public KeptBySolver {
     if (!grids_.empty()) {
       grids_.clear_finest_matrix(parts.backend);
       auto const mask = field(arrays.conditioned);
-      parts.backend.for_each(parts.layout.nodes, SetMask<T, dim>{mask, parts.layout.mass.data(),
-                                                                 parts.layout.held.data()});
+      parts.backend.for_each(parts.layout.rows, SetMask<T, dim>{mask, parts.layout.mass.data(),
+                                                                parts.layout.held.data()});
       parts.layout.interpolation.apply(parts.backend, mask);
       if constexpr (can_be_quadratic)
         if (corners_) corners_->prepare(parts, arrays, a, mask, grids_, homes_);
@@ -106,7 +106,7 @@ class Multigrid final : public KeptBySolver {
  private:
   static NodeField<T, dim> field(Array<T> const& array) { return {const_cast<T*>(array.data())}; }
   SmootherFields<T, dim> fine_fields(Parts const& parts, Arrays const& arrays) const {
-    SmootherFields<T, dim> f{parts.layout.nodes, field(arrays.residual), field(arrays.conditioned),
+    SmootherFields<T, dim> f{parts.layout.rows,  field(arrays.residual), field(arrays.conditioned),
                              field(step_),       field(arrays.image),    {},
                              per_largest_.data()};
     for (int k = 0; k < dim; ++k)
@@ -177,7 +177,7 @@ class Multigrid final : public KeptBySolver {
           term.add_diagonal(parts.backend, parts.at(a.place), k, work);
         });
         parts.layout.interpolation.hand_on_magnitudes(parts.backend, work);
-        set_sum(parts.backend, parts.layout.nodes, column, Scaled<T, dim>{1, {work.data}});
+        set_sum(parts.backend, parts.layout.rows, column, Scaled<T, dim>{1, {work.data}});
       }
     }
     parts.backend.for_each(add.grid.nodes, add);

@@ -63,7 +63,7 @@ struct KeepUnknowns {
 };
 template <class Parts>
 void keep_unknowns(Parts const& parts, typename Parts::Field field) {
-  parts.backend.for_each(parts.layout.nodes,
+  parts.backend.for_each(parts.layout.rows,
                          KeepUnknowns<typename Parts::T, Parts::dim>{
                              field, parts.layout.mass.data(), parts.layout.held.data()});
 }
@@ -81,8 +81,8 @@ struct CountUnknowns {
 template <class Parts>
 Index count_unknowns(Parts const& parts) {
   return static_cast<Index>(parts.backend.sum(
-      parts.layout.nodes, CountUnknowns<typename Parts::T, Parts::dim>{parts.layout.mass.data(),
-                                                                       parts.layout.held.data()}));
+      parts.layout.rows, CountUnknowns<typename Parts::T, Parts::dim>{parts.layout.mass.data(),
+                                                                      parts.layout.held.data()}));
 }
 
 }  // namespace pliant::detail

@@ -41,7 +41,7 @@ class Preconditioning {
   bool should_turn_to_multigrid(Parts const& parts, int iterations, double share,
                                 double tolerance) const {
     if (wanted_ != Preconditioner::automatic || !is_nodal() || iterations < look_behind ||
-        Parts::dim * parts.layout.nodes < fewest_unknowns)
+        Parts::dim * parts.layout.rows < fewest_unknowns)
       return false;
     double const rate = share < 1 ? std::log(share) / iterations : 0;
     return share > tolerance && std::log(tolerance / share) < worth * rate;

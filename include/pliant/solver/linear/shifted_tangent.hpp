@@ -112,7 +112,7 @@ class ShiftedTangent {
                                 parts.layout.held.data(),
                                 static_cast<T>(stiffness + damping),
                                 static_cast<T>(inertia)};
-    Index const n = parts.layout.nodes;
+    Index const n = parts.layout.rows;
     for (int k = 0; k < dim; ++k) {
       invert.columns[k] = column(parts, blocks, k);
       clear_rows(parts, work);
@@ -127,7 +127,7 @@ class ShiftedTangent {
   }
   /// Column k of all blocks.
   static Field column(Parts const& parts, T* blocks, int k) {
-    return {blocks + static_cast<std::ptrdiff_t>(k) * node_stride * parts.layout.nodes};
+    return {blocks + static_cast<std::ptrdiff_t>(k) * node_stride * parts.layout.rows};
   }
 };
 
