@@ -14,6 +14,13 @@ inline std::vector<Index> first_elements(std::size_t count) {
   return marked;
 }
 
+/// Elements all over a mesh: each of so many.
+inline std::vector<Index> each_of(std::size_t elements, Index distance) {
+  std::vector<Index> marked;
+  for (Index e = 0; e < static_cast<Index>(elements); e += distance) marked.push_back(e);
+  return marked;
+}
+
 /// A tenth of a mesh that nobody has refined, whose refinement tree is made too.
 template <class E, class B>
 void time_refinement(benchmark::State& state, B const& backend, int cells) {
@@ -27,13 +34,12 @@ void time_refinement(benchmark::State& state, B const& backend, int cells) {
   report_elements(state, body);
 }
 
-/// So many elements of a mesh in which one was refined before, or what that made of them back to what they were.
+/// Some elements of a mesh in which one was refined before, or what that made of them back to what they were.
 template <class E, class B>
-void time_change(benchmark::State& state, B const& backend, int cells, std::size_t count,
-                 bool back) {
+void time_change(benchmark::State& state, B const& backend, int cells,
+                 std::vector<Index> const& marked, bool back) {
   auto body = shaken_body<Usual<E, SaintVenantKirchhoff>>(backend, cells);
   report_elements(state, body);
-  auto const marked = first_elements(count);
   auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
   auto const children = [&] {
     std::vector<Index> found;
@@ -61,21 +67,26 @@ inline void add_refinements() {
       add<Usual<E, SaintVenantKirchhoff>, T>(
           "refine", name, cells,
           [backend, cells](benchmark::State& state) { time_refinement<E>(state, backend, cells); });
-      auto const change = [&](char const* what, std::size_t count, bool back) {
-        add<Usual<E, SaintVenantKirchhoff>, T>(what, name, cells, [=](benchmark::State& state) {
-          time_change<E>(state, backend, cells, count, back);
-        });
+      auto const change = [&](std::string const& what, std::vector<Index> const& marked) {
+        for (bool const back : {false, true})
+          add<Usual<E, SaintVenantKirchhoff>, T>(
+              (back ? "coarsen " : "refine ") + what, name, cells, [=](benchmark::State& state) {
+                time_change<E>(state, backend, cells, marked, back);
+              });
       };
-      change("refine two", 2, false);
-      change("refine again", element_count<E>(cells) / 10, false);
-      change("coarsen two", 2, true);
-      change("coarsen", element_count<E>(cells) / 10, true);
+      std::size_t const count = element_count<E>(cells);
+      change("two", first_elements(2));
+      change("a tenth", first_elements(count / 10));
+      if (elements < 1e6) return;
+      change("a ten thousandth", first_elements(count / 10000));
+      change("a hundredth", first_elements(count / 100));
+      change("each hundredth", each_of(count, 100));
     };
     one(Tri3{}, 2e4);
     one(Quad4{}, 2e4);
     one(Tet4{}, 2e4);
     one(Hex8{}, 2e4);
-    if (name == "Cuda") one(Tet4{}, 1e6);
+    one(Tet4{}, 1e6);
   });
 }
 

@@ -140,7 +140,7 @@ OrderedElements<sizeof...(Es)> elements_in_order(
   };
   OrderedElements<types> ordered;
   for (auto& cells : ordered.cells) cells.resize(blocks);
-  constexpr Index few_blocks = 8;  // worth a thread
+  constexpr Index few_blocks = 64;  // worth a thread
   detail::for_each_on_host(first.blocks(), few_blocks, [&](Index block) {
     auto const b = static_cast<std::size_t>(block);
     if (is_known(b)) {
