@@ -36,13 +36,13 @@ enum class Made { well, null, by_throwing };
 /// Springs which are made as `made` says at that moment.
 template <class B>
 auto springs(Made const& made) {
-  return [&made](B const& b, std::vector<Index> const& internal) {
+  return [&made](B const& b, NodeRows const& rows) {
     if (made == Made::by_throwing) throw std::runtime_error("no springs");
     std::unique_ptr<AnyForceTerm<B, 2>> term;
     if (made == Made::well)
       term = std::make_unique<ConnectedTerm<B, Spring>>(
-          b, std::vector<std::array<Index, 2>>{{internal[0], internal[8]}}, Spring<double>{20},
-          static_cast<Index>(internal.size()));
+          b, std::vector<std::array<Index, 2>>{{rows.of_node[0], rows.of_node[8]}},
+          Spring<double>{20}, rows.count());
     return term;
   };
 }

@@ -49,7 +49,7 @@ TEST_CASE("fans of a mesh that changed are those of a table made anew", "[openmp
       refine(body, {marked});
     auto const& parts = body.parts();
     Layout const anew(parts.backend, *parts.state.topology, parts.material, parts.groups,
-                      &parts.layout);
+                      &parts.layout, parts.layout.node_rows);
     CHECK(in_fans(parts.layout) == in_fans(anew));
     std::vector<int> times(body.mesh().elements<Tet4>().size());
     for (auto const& own : in_fans(parts.layout)) {

@@ -106,17 +106,15 @@ class Body {
                   "each set has as many nodes as the physics");
     check_sets(sets);
     add([sets = std::move(sets), physics, origin = parts_->layout.middle](
-            B const& b,
-            std::vector<Index> const& internal) -> std::unique_ptr<AnyForceTerm<B, dim>> {
+            B const& b, NodeRows const& rows) -> std::unique_ptr<AnyForceTerm<B, dim>> {
       auto own = sets;
       for (auto& set : own)
-        for (Index& node : set) node = internal[static_cast<std::size_t>(node)];
-      return std::make_unique<ConnectedTerm<B, Physics>>(
-          b, std::move(own), physics, static_cast<Index>(internal.size()), origin);
+        for (Index& node : set) node = rows.of_node[static_cast<std::size_t>(node)];
+      return std::make_unique<ConnectedTerm<B, Physics>>(b, std::move(own), physics, rows.count(),
+                                                         origin);
     });
   }
-  /// Any other: `make` is called again when the numbering of nodes changes; when it throws, that change is
-  /// not made.
+  /// Any other: `make`(backend, rows) is called again when the rows of nodes change; when it throws, that change is not made.
   void add(typename parts_type::MakeTerm make) { add_term(*parts_, std::move(make)); }
   /// m/s². Integrators and solvers say on which masses it acts.
   void set_gravity(Point<dim> const& g) { pliant::set_gravity(*parts_, g); }

@@ -75,9 +75,9 @@ struct Parts {
   /// Makes them; set once there is a pressure, so that other bodies do not compile it.
   void (*upload_pressures)(Parts&) = nullptr;
   Terms terms{};  // the user's own
-  /// Makes one, from the internal numbers of nodes by the user's.
-  using MakeTerm = std::function<std::unique_ptr<AnyForceTerm<B, dim>>(
-      B const&, std::vector<Index> const& internal)>;
+  /// Makes one, from the rows of fields that nodes have.
+  using MakeTerm =
+      std::function<std::unique_ptr<AnyForceTerm<B, dim>>(B const&, NodeRows const& rows)>;
   std::vector<MakeTerm> term_makers{};
   std::vector<DrivenNodes<B, dim>> driven{};
   std::map<std::string, Motion<dim>> motions{};  // all that were ever given, by name
