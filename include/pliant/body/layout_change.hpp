@@ -36,11 +36,13 @@ std::pair<NodeRows, std::vector<Index>> rows_after(NodeRows const& before,
   for (std::size_t f = 0; f < places_of_families.size(); ++f)
     order.emplace_back(places_of_families[f], f);
   std::ranges::sort(order);
-  for (auto const& [place, family] : order)
-    families_after.visit_all(family, [&](auto, auto const& nodes) {
+  for (auto const& own : order) {
+    Index const region = own.first / cells_per_region;
+    families_after.visit_all(own.second, [&](auto, auto const& nodes) {
       for (Index const node : nodes)
-        if (node >= transfer.staying_nodes()) rows.give(node, place / cells_per_region);
+        if (node >= transfer.staying_nodes()) rows.give(node, region);
     });
+  }
   for (NewNode const& made : transfer.new_nodes()) rows.give(made.node, 0);
   return std::move(rows).finish();
 }
