@@ -7,16 +7,13 @@
 #include <vector>
 
 #include <pliant/backend/carry_rows.hpp>
-#include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/cell_order.hpp>
 #include <pliant/body/element_table.hpp>
 #include <pliant/body/layout_change.hpp>
 #include <pliant/body/lumped_masses.hpp>
 #include <pliant/body/motion.hpp>
-#include <pliant/body/numbering.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/body/straight.hpp>
-#include <pliant/body/touched_elements.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
 
 namespace pliant {
@@ -162,7 +159,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     } else if (change == nullptr) {
       ordered = elements_in_order(topology, *first_order);
     } else {
-      ordered = order_after(topology, *change);
+      std::tie(ordered, node_rows, freed_rows) =
+          detail::order_after(topology, *first_order, *change);
     }
     if (!first_order) {
       first_order = std::make_shared<CellOrder const>(pliant::first_order(*numbering));
@@ -197,22 +195,6 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     if (mass_in_all == 0)
       for (double m : mass_list) mass_in_all += m;
     make_mass(backend, material.density, change);
-  }
-
-  /// Gives nodes their rows and elements their order, most of both as before.
-  OrderedElements<sizeof...(Es)> order_after(Topology<Mesh<Es...>> const& topology,
-                                             Change const& change) {
-    auto const places = places_of_families(topology, *first_order, change.transfer);
-    std::tie(node_rows, freed_rows) = detail::rows_after(change.before.node_rows, change.transfer,
-                                                         change.touched.families_after(), places);
-    auto const changed = changed_blocks(*first_order, places);
-    OrderBefore<sizeof...(Es), dim> before{{}, change.transfer, changed};
-    std::apply([&](auto const&... table) { before.cells = {table.numbers.blocks()...}; },
-               change.before.tables);
-    auto ordered = elements_in_order(topology, *first_order, &before);
-    for (std::size_t type = 0; type < sizeof...(Es); ++type)
-      ordered.blocks[type].first_before = change.before.first_of_block[type];
-    return ordered;
   }
 
   /// `numbering`: of a first mesh, or null.

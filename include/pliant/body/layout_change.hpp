@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,24 @@ std::pair<NodeRows, std::vector<Index>> rows_after(NodeRows const& before,
   }
   for (NewNode const& made : transfer.new_nodes()) rows.give(made.node, 0);
   return std::move(rows).finish();
+}
+
+/// The order of elements after a change, the rows of nodes, and rows that are free now: most of both as before.
+template <class L, Element... Es>
+std::tuple<OrderedElements<sizeof...(Es)>, NodeRows, std::vector<Index>> order_after(
+    Topology<Mesh<Es...>> const& topology, CellOrder const& first,
+    LayoutChange<L, Mesh<Es...>> const& change) {
+  auto const places = places_of_families(topology, first, change.transfer);
+  auto [rows, freed] =
+      rows_after(change.before.node_rows, change.transfer, change.touched.families_after(), places);
+  auto const changed = changed_blocks(first, places);
+  OrderBefore<sizeof...(Es), Mesh<Es...>::dim> before{{}, change.transfer, changed};
+  std::apply([&](auto const&... table) { before.cells = {table.numbers.blocks()...}; },
+             change.before.tables);
+  auto ordered = elements_in_order(topology, first, &before);
+  for (std::size_t type = 0; type < sizeof...(Es); ++type)
+    ordered.blocks[type].first_before = change.before.first_of_block[type];
+  return {std::move(ordered), std::move(rows), std::move(freed)};
 }
 
 }  // namespace pliant::detail
