@@ -372,9 +372,9 @@ TEST_CASE("a term of the user's own that begins to pull wakes what sleeps", "[ad
       Adaptation adapt = Adaptation{quick_sleep()}.every(1);  // a look that comes late matters here
       Index const last = nodes_of(body.mesh().boundary("right"))[0];
       for (auto* b : {&body, &plain}) {
-        b->add([last, pulls](B const& on, std::vector<Index> const& internal) {
-          return std::make_unique<LatePull<B>>(on, internal[static_cast<std::size_t>(last)],
-                                               static_cast<Index>(internal.size()), pulls);
+        b->add([last, pulls](B const& on, NodeRows const& rows) {
+          return std::make_unique<LatePull<B>>(on, rows.of_node[static_cast<std::size_t>(last)],
+                                               static_cast<Index>(rows.node.size()), pulls);
         });
         hit_left_end(*b);
       }
