@@ -82,6 +82,8 @@ class HostThreads {
     HostThreads const* const threads = current();
     return threads == nullptr || threads->in_loop_ ? 1 : threads->count_;
   }
+  /// Whether the caller is in such a loop, beside other threads.
+  static bool in_loop() { return current() != nullptr && current()->in_loop_; }
   /// task(k) for each k < count, in no order. Throws what the first of them throws.
   static void run(int count, FunctionRef<void(int)> task) {
     if (count > 1 && now() > 1) return current()->share(count, task);

@@ -2,173 +2,189 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <pliant/config.hpp>
+#include <pliant/topology/divided_sides.hpp>
+#include <pliant/topology/division_plan.hpp>
+#include <pliant/topology/element_nodes.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
 namespace pliant::detail {
 
-/// Divides the cells of a tree. Refers to its lists.
+/// Divides leaves of a tree as a plan says, on the threads of the host. Refers to both.
 class CellDivision {
  public:
-  explicit CellDivision(TreeLists& lists) : lists_(lists) {}
+  CellDivision(TreeLists& lists, DivisionPlan& plan) : lists_(lists), plan_(plan) {}
 
-  /// Divides a leaf, to be refined one that has no coarser neighbour, and appends the nodes that it makes: the points of
-  /// the pattern in their order, then those of the children's elements.
-  void operator()(Index c, Division division, std::vector<PlacedNode>& made) {
-    lists_.detach(c);
-    lists_.cells.edit(at(c)).division = division;
-    TreeCell const parent = lists_.cells[at(c)];
-    auto const& p = parent.divided();
-    std::array<Index, RefinementPattern::most_points> point{};
-    auto const make_node = [&](Index& node, std::array<double, 3> const& place) {
-      if (node >= 0) return;
-      node = lists_.nodes++;
-      made.push_back({node, c, parent.has, place});
-    };
-    std::copy_n(parent.nodes.begin(), at(p.corners), point.begin());
-    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
-      auto const k = at(p.corners) + e;
-      make_node(lists_.edges.edit(at(parent.edges[e])).middle, p.place[k]);
-      bisect(parent.edges[e]);
-      point[k] = lists_.edges[at(parent.edges[e])].middle;
+  /// Gives the nodes that it makes: of each leaf the points of its pattern, in their order; then those of the children's
+  /// elements.
+  std::vector<PlacedNode> divide() {
+    first_node_ = lists_.nodes;
+    plan_.make_room();
+    made_.resize(plan_.new_nodes());
+    plan_.for_each([&](Index r) { make_on_edges(r); });
+    plan_.for_each([&](Index r) { make_on_sides(r); });
+    plan_.for_each([&](Index r) { make_children(r); });
+    plan_.for_each([&](Index r) { count_uses(r); });
+    std::vector<Index> quadratic;  // children
+    for (Index r = 0; r < plan_.leaves(); ++r) {
+      auto const& parent = plan_.cell(r);
+      lists_.divided.push_back(plan_.leaf(r));
+      lists_.count_leaves(parent.has, plan_.own(r).cells - 1);
+      for (Index k = 0; parent.has != CellNodes::corners && k < plan_.own(r).cells; ++k)
+        quadratic.push_back(parent.first_child + k);
     }
-    for (std::size_t s = 0; p.halves && s < at(p.sides); ++s) {
-      if (p.side_centre[s] >= 0) {
-        auto& centre = lists_.sides.edit(at(parent.sides[s])).centre;
-        make_node(centre, p.place[at(p.side_centre[s])]);
-        point[at(p.side_centre[s])] = centre;
+    ElementNodes::make(
+        lists_, quadratic,
+        [&](Index k) {
+          auto const& child = lists_.cells[at(quadratic[at(k)])];
+          auto const& parent = lists_.cells[at(child.parent)];
+          CellPlacement place{.cell = child.parent, .had = parent.has};
+          auto const& points = parent.divided().child[at(quadratic[at(k)] - parent.first_child)];
+          for (std::size_t a = 0; a < child.corners(); ++a)
+            place.corners[a] = parent.divided().place[at(points[a])];
+          return place;
+        },
+        made_);
+    return std::move(made_);
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  template <class Bits>
+  static bool has(Bits bits, std::size_t k) {
+    return (bits >> k & 1) != 0;
+  }
+  /// How many bits are set below the k-th.
+  template <class Bits>
+  static Index rank(Bits bits, std::size_t k) {
+    return std::popcount(static_cast<unsigned>(bits) & ((1u << k) - 1));
+  }
+
+  void place(Index r, Index node, int point) {
+    made_[at(node - first_node_)] = {node, plan_.leaf(r), plan_.cell(r).has,
+                                     plan_.pattern(r).place[at(point)]};
+  }
+
+  /// Middles and halves of edges.
+  void make_on_edges(Index r) {
+    auto const& leaf = plan_.cell(r);
+    auto const& own = plan_.own(r);
+    for (std::size_t e = 0; e < at(plan_.pattern(r).edges); ++e) {
+      if (!has(own.middles, e) && !has(own.halves, e)) continue;
+      Index const number = leaf.edges[e];
+      auto& edge = lists_.edges.edit(at(number));
+      if (has(own.middles, e)) {
+        edge.middle = own.node + rank(own.middles, e);
+        place(r, edge.middle, plan_.pattern(r).corners + static_cast<int>(e));
       }
-      divide_side(parent.sides[s]);
+      if (!has(own.halves, e)) continue;
+      edge.first_half = own.edge + 2 * rank(own.halves, e);
+      auto &one = lists_.edges.edit(at(edge.first_half)),
+           &other = lists_.edges.edit(at(edge.first_half + 1));
+      one.nodes = {edge.nodes[0], edge.middle};
+      other.nodes = {edge.middle, edge.nodes[1]};
+      one.parent = other.parent = number;
+      one.level = other.level = edge.level + 1;
     }
-    if (p.halved_side >= 0) halve_side(parent.sides[at(p.halved_side)], point[at(p.child[0][0])]);
-    if (p.centre >= 0) {
-      make_node(lists_.cells.edit(at(c)).centre, p.place[at(p.centre)]);
-      point[at(p.centre)] = lists_.cells[at(c)].centre;
+  }
+  /// Centres and parts of sides, whose edges have all of theirs.
+  void make_on_sides(Index r) {
+    auto const& leaf = plan_.cell(r);
+    auto const& p = plan_.pattern(r);
+    auto const& own = plan_.own(r);
+    Index edge = own.edge + 2 * std::popcount(own.halves), part = own.side;
+    for (std::size_t s = 0; s < at(p.sides); ++s) {
+      if (has(own.centres, s)) {
+        auto& centre = lists_.sides.edit(at(leaf.sides[s])).centre;
+        centre = own.node + std::popcount(own.middles) + rank(own.centres, s);
+        place(r, centre, p.side_centre[s]);
+      }
+      if (!has(own.parts, s)) continue;
+      auto& side = lists_.sides.edit(at(leaf.sides[s]));
+      side.first_child = part;
+      side.first_inner_edge = edge;
+      if (p.halves)
+        divide_side(lists_, leaf.sides[s]);
+      else
+        halve_side(lists_, leaf.sides[s], leaf.nodes[at(p.child[0][0])]);
+      auto const [parts, between] = DivisionPlan::parts_of(p, s);
+      part += parts;
+      edge += between;
     }
+  }
+  /// The cell's own node and edges, and its children, between what is on its edges and sides.
+  void make_children(Index r) {
+    Index const c = plan_.leaf(r);
+    auto& parent = lists_.cells.edit(at(c));
+    auto const& p = plan_.pattern(r);
+    auto const& own = plan_.own(r);
+    parent.division = plan_.division(r);
+    parent.first_child = own.cell;
+    if (p.centre >= 0 && parent.centre < 0) {
+      parent.centre = own.node + own.nodes - 1;
+      place(r, parent.centre, p.centre);
+    }
+    auto const point = points(parent, p);
+    Index const inner_edge = own.edge + own.edges - p.inner_edges;
     int const level = parent.level + (p.halves ? 1 : 0);
-    auto const first_inner_edge = static_cast<Index>(lists_.edges.size());
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
-      lists_.edges.push_back(
-          {.nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
-           .cell = c,
-           .level = level});
+      lists_.edges.edit(at(inner_edge) + i) = {
+          .nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
+          .cell = c,
+          .level = level};
+    Index next_inner_side = own.side + own.sides - p.inner_sides;
     std::array<Index, RefinementPattern::most_inner_sides> inner_side;
     inner_side.fill(-1);
-
-    auto const first_child = static_cast<Index>(lists_.cells.size());
     for (std::size_t i = 0; i < at(p.children); ++i) {
+      Index const number = own.cell + static_cast<Index>(i);
       TreeCell child{.kind = p.child_kind[i],
                      .has = parent.has,
                      .mirrored = parent.mirrored != p.mirrored[i],
                      .level = level,
                      .parent = c};
-      auto const& own = child.pattern();
+      auto const& shape = child.pattern();
       for (std::size_t a = 0; a < child.corners(); ++a) child.nodes[a] = point[at(p.child[i][a])];
-      for (std::size_t e = 0; e < at(own.edges); ++e)
-        child.edges[e] = edge_of_child(parent, child, e, p.child_edge[i][e], first_inner_edge);
-      for (std::size_t s = 0; s < at(own.sides); ++s) {
-        auto const [home, number] = p.child_side[i][s];
+      for (std::size_t e = 0; e < at(shape.edges); ++e)
+        child.edges[e] = edge_of_child(parent, child, e, p.child_edge[i][e], inner_edge);
+      for (std::size_t s = 0; s < at(shape.sides); ++s) {
+        auto const [home, k] = p.child_side[i][s];
         if (home == RefinementPattern::Home::side) {
-          Index const whole = parent.sides[at(number)];
-          child.sides[s] = p.halves || number == p.halved_side
-                               ? part_of_side(whole, TreeLists::side_of(child, s))
+          Index const whole = parent.sides[at(k)];
+          child.sides[s] = DivisionPlan::is_divided(p, at(k))
+                               ? part_of_side(lists_, whole, TreeLists::side_of(child, s))
                                : whole;
+          lists_.sides.edit(at(child.sides[s])).cells[has(own.second, at(k)) ? 1 : 0] = number;
           continue;
         }
-        if (inner_side[at(number)] < 0) {
-          inner_side[at(number)] = static_cast<Index>(lists_.sides.size());
-          lists_.sides.push_back(TreeLists::side_of(child, s));
+        bool const is_new = inner_side[at(k)] < 0;
+        if (is_new) {
+          inner_side[at(k)] = next_inner_side++;
+          lists_.sides.edit(at(inner_side[at(k)])) = TreeLists::side_of(child, s);
         }
-        child.sides[s] = inner_side[at(number)];
+        child.sides[s] = inner_side[at(k)];
+        lists_.sides.edit(at(child.sides[s])).cells[is_new ? 0 : 1] = number;
       }
-      lists_.cells.push_back(child);
-    }
-    lists_.cells.edit(at(c)).first_child = first_child;
-    lists_.divided.push_back(c);
-    lists_.attach(c);
-    for (Index child = first_child; child < first_child + p.children; ++child) {
-      lists_.attach(child);
-      if (parent.has != CellNodes::corners) place_nodes(child, c, make_node);
+      lists_.cells.edit(at(number)) = child;
     }
   }
-
- private:
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-  void bisect(Index e) {
-    auto const edge = lists_.edges[at(e)];
-    if (edge.first_half >= 0) return;
-    lists_.edges.edit(at(e)).first_half = static_cast<Index>(lists_.edges.size());
-    TreeEdge half{.parent = e, .level = edge.level + 1};
-    half.nodes = {edge.nodes[0], edge.middle};
-    lists_.edges.push_back(half);
-    half.nodes = {edge.middle, edge.nodes[1]};
-    lists_.edges.push_back(half);
+  /// The nodes at the points of a leaf's pattern, as far as children have them for corners.
+  [[nodiscard]] std::array<Index, RefinementPattern::most_points> points(
+      TreeCell const& leaf, RefinementPattern const& p) const {
+    std::array<Index, RefinementPattern::most_points> point{};
+    std::copy_n(leaf.nodes.begin(), at(p.corners), point.begin());
+    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e)
+      point[at(p.corners) + e] = lists_.edges[at(leaf.edges[e])].middle;
+    for (std::size_t s = 0; p.halves && s < at(p.sides); ++s)
+      if (p.side_centre[s] >= 0)
+        point[at(p.side_centre[s])] = lists_.sides[at(leaf.sides[s])].centre;
+    if (p.centre >= 0) point[at(p.centre)] = leaf.centre;
+    return point;
   }
-  /// The half of a bisected edge that touches its end `node`.
-  [[nodiscard]] Index half_at(Index e, Index node) const {
-    auto const& edge = lists_.edges[at(e)];
-    return edge.nodes[0] == node ? edge.first_half : edge.first_half + 1;
-  }
-
-  /// Divides a side whose edges are bisected, and which has its centre, in four.
-  void divide_side(Index s) {
-    auto const side = lists_.sides[at(s)];
-    if (side.first_child >= 0) return;
-    auto const n = side.corners();
-    bool const quad = n == 4;
-    auto const inner = static_cast<Index>(lists_.edges.size());
-    lists_.sides.edit(at(s)).first_child = static_cast<Index>(lists_.sides.size());
-    lists_.sides.edit(at(s)).first_inner_edge = inner;
-    std::array<Index, 4> middle{};
-    for (std::size_t k = 0; k < n; ++k) middle[k] = lists_.edges[at(side.edges[k])].middle;
-    // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
-    for (std::size_t k = 0; k < n; ++k)
-      lists_.edges.push_back({.nodes = {middle[k], quad ? side.centre : middle[(k + n - 1) % n]},
-                              .side = s,
-                              .level = side.level + 1});
-    TreeSide child{.parent = s, .level = side.level + 1};
-    for (std::size_t k = 0; k < n; ++k) {
-      auto const last = (k + n - 1) % n;
-      Index const along = half_at(side.edges[k], side.nodes[k]),
-                  back = half_at(side.edges[last], side.nodes[k]),
-                  across = inner + static_cast<Index>(k);
-      if (quad) {
-        child.nodes = {side.nodes[k], middle[k], side.centre, middle[last]};
-        child.edges = {along, across, inner + static_cast<Index>(last), back};
-      } else {
-        child.nodes = {side.nodes[k], middle[k], middle[last], -1};
-        child.edges = {along, across, back, -1};
-      }
-      lists_.sides.push_back(child);
-    }
-    if (quad) return;
-    child.nodes = {middle[1], middle[2], middle[0], -1};
-    child.edges = {inner + 2, inner, inner + 1, -1};
-    lists_.sides.push_back(child);
-  }
-
-  /// Divides a side with four corners in two triangles, along the diagonal from one of them.
-  void halve_side(Index s, Index corner) {
-    auto const side = lists_.sides[at(s)];
-    if (side.first_child >= 0) return;
-    std::size_t const k = side.nodes[0] == corner || side.nodes[2] == corner ? 0 : 1;
-    auto const diagonal = static_cast<Index>(lists_.edges.size());
-    lists_.edges.push_back(
-        {.nodes = {side.nodes[k], side.nodes[k + 2]}, .side = s, .level = side.level});
-    lists_.sides.edit(at(s)).first_child = static_cast<Index>(lists_.sides.size());
-    lists_.sides.edit(at(s)).first_inner_edge = diagonal;
-    for (std::size_t a = k; a < k + 3; a += 2)
-      lists_.sides.push_back(
-          {.nodes = {side.nodes[a], side.nodes[(a + 1) % 4], side.nodes[(a + 2) % 4], -1},
-           .edges = {side.edges[a], side.edges[(a + 1) % 4], diagonal, -1},
-           .parent = s,
-           .level = side.level});
-  }
-
   [[nodiscard]] Index edge_of_child(TreeCell const& parent, TreeCell const& child, std::size_t e,
                                     RefinementPattern::Part part, Index first_inner_edge) const {
     if (part.home == RefinementPattern::Home::inside) return first_inner_edge + part.number;
@@ -178,53 +194,23 @@ class CellDivision {
       Index const whole = parent.edges[at(part.number)];
       if (!parent.divided().halves) return whole;
       auto const& ends = lists_.edges[at(whole)].nodes;
-      return half_at(whole, a == ends[0] || a == ends[1] ? a : b);
+      return half_at(lists_, whole, a == ends[0] || a == ends[1] ? a : b);
     }
-    auto const& side = lists_.sides[at(parent.sides[at(part.number)])];
-    Index inner = side.first_inner_edge;
-    auto const joins = [&](std::array<Index, 2> const& ends) {
-      return (ends[0] == a && ends[1] == b) || (ends[0] == b && ends[1] == a);
-    };
-    while (!joins(lists_.edges[at(inner)].nodes)) ++inner;
-    return inner;
-  }
-  /// The part of a divided side that has the corners of another.
-  [[nodiscard]] Index part_of_side(Index s, TreeSide const& wanted) const {
-    Index part = lists_.sides[at(s)].first_child;
-    auto const has_all = [&](std::array<Index, 4> const& nodes) {
-      return std::ranges::all_of(
-          wanted.nodes, [&](Index node) { return std::ranges::find(nodes, node) != nodes.end(); });
-    };
-    while (!has_all(lists_.sides[at(part)].nodes)) ++part;
-    return part;
+    return inner_edge_of_side(lists_, parent.sides[at(part.number)], {a, b});
   }
 
-  /// Gives the element on a new child the nodes between its corners.
-  template <class MakeNode>
-  void place_nodes(Index child, Index parent, MakeNode const& make_node) {
-    auto& cell = lists_.cells.edit(at(child));
-    auto const& p = cell.pattern();
-    auto const& divided = lists_.cells[at(parent)].divided();
-    auto const& corner = divided.child[at(child - lists_.cells[at(parent)].first_child)];
-    auto const mean = [&](auto const& corners, std::size_t count) {
-      std::array<double, 3> sum{};
-      for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t d = 0; d < 3; ++d)
-          sum[d] += divided.place[at(corner[at(corners[k])])][d] / static_cast<double>(count);
-      return sum;
-    };
-    for (std::size_t e = 0; e < at(p.edges); ++e)
-      make_node(lists_.edges.edit(at(cell.edges[e])).middle, mean(p.edge[e], 2));
-    if (cell.has != CellNodes::all) return;
-    for (std::size_t s = 0; s < at(p.sides); ++s)
-      if (p.side_centre[s] >= 0)
-        make_node(lists_.sides.edit(at(cell.sides[s])).centre, mean(p.side[s], 4));
-    if (p.centre < 0) return;
-    std::array<int, 8> const corners{0, 1, 2, 3, 4, 5, 6, 7};
-    make_node(cell.centre, mean(corners, at(p.corners)));
+  void count_uses(Index r) {
+    auto const& parent = plan_.cell(r);
+    lists_.count_leaf(parent, -1);
+    if (plan_.pattern(r).halves) lists_.count_refined(parent, 1);
+    for (Index k = 0; k < plan_.own(r).cells; ++k)
+      lists_.count_leaf(lists_.cells[at(parent.first_child + k)], 1);
   }
 
   TreeLists& lists_;
+  DivisionPlan& plan_;
+  Index first_node_ = 0;
+  std::vector<PlacedNode> made_;
 };
 
 }  // namespace pliant::detail

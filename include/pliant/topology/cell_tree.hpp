@@ -11,6 +11,7 @@
 #include <pliant/error.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/cell_division.hpp>
+#include <pliant/topology/cell_merging.hpp>
 #include <pliant/topology/cells_at_edges.hpp>
 #include <pliant/topology/number_table.hpp>
 #include <pliant/topology/tree_compaction.hpp>
@@ -60,12 +61,14 @@ class CellTree {
         throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", side.nodes[0], ", ",
                     side.nodes[1], " and ", side.nodes[2],
                     " with two others; give each side two cells at most");
+      known.cells[known.cells[0] < 0 ? 0 : 1] = c;
       cell.sides[s] = number;
       if (has == CellNodes::all && side.corners() == 4) known.centre = nodes[next++];
     }
     if (has == CellNodes::all && p.centre >= 0) cell.centre = nodes[next++];
     lists_.cells.push_back(cell);
-    lists_.attach(c);
+    lists_.count_leaf(cell, 1);
+    lists_.count_leaves(has, 1);
   }
   /// Ends the initial mesh: what only `add` needs is given up.
   void seal() {
@@ -108,10 +111,13 @@ class CellTree {
     return by.of(lists_, e);
   }
 
-  /// Divides a leaf, to be refined one that has no coarser neighbour, and appends the nodes that it makes: the points of
-  /// the pattern in their order, then those of the children's elements.
-  void divide(Index c, Division division, std::vector<PlacedNode>& made) {
-    detail::CellDivision{lists_}(c, division, made);
+  /// What it takes to divide leaves. The tree and the list have to live longer.
+  [[nodiscard]] detail::DivisionPlan plan_division(std::vector<CellSplit> const& leaves) {
+    return {lists_, leaves};
+  }
+  /// Divides them, and gives the nodes that it makes.
+  std::vector<PlacedNode> divide(detail::DivisionPlan& plan) {
+    return detail::CellDivision{lists_, plan}.divide();
   }
 
   /// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, that no neighbour
@@ -131,23 +137,20 @@ class CellTree {
 
   /// Gives leaves with corners only more nodes, and appends those that it makes.
   void raise(std::vector<CellConversion> const& conversions, std::vector<PlacedNode>& made) {
+    std::vector<Index> cells;
     for (auto const& to : conversions) {
       convert(to);
-      auto const& p = lists_.cells[at(to.cell)].pattern();
-      auto const make_node = [&](Index& node, std::array<double, 3> const& place) {
-        if (node >= 0) return;
-        node = lists_.nodes++;
-        made.push_back({node, to.cell, CellNodes::corners, place});
-      };
-      auto& cell = lists_.cells.edit(at(to.cell));
-      for (std::size_t e = 0; e < at(p.edges); ++e)
-        make_node(lists_.edges.edit(at(cell.edges[e])).middle, p.place[at(p.corners) + e]);
-      if (to.has != CellNodes::all) continue;
-      for (std::size_t s = 0; s < at(p.sides); ++s)
-        if (p.side_centre[s] >= 0)
-          make_node(lists_.sides.edit(at(cell.sides[s])).centre, p.place[at(p.side_centre[s])]);
-      if (p.centre >= 0) make_node(cell.centre, p.place[at(p.centre)]);
+      cells.push_back(to.cell);
     }
+    detail::ElementNodes::make(
+        lists_, cells,
+        [&](Index k) {
+          auto const& cell = lists_.cells[at(cells[at(k)])];
+          detail::CellPlacement place{.cell = cells[at(k)]};
+          std::copy_n(cell.pattern().place.begin(), cell.corners(), place.corners.begin());
+          return place;
+        },
+        made);
     forget_old_conversions();
   }
 
@@ -165,26 +168,14 @@ class CellTree {
   /// the nodes between their corners. Nodes, cells, edges and sides that nothing uses any more go, but for those
   /// of the initial mesh; the others move up.
   Renumbering merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
-    std::vector<bool> used(lists_.cells.size(), true);
-    for (Index const c : parents) {
-      auto& cell = lists_.cells.edit(at(c));
-      Index const first = cell.first_child;
-      for (Index child = first; child < first + cell.divided().children; ++child) {
-        lists_.detach(child);
-        used[at(child)] = false;
-      }
-      lists_.detach(c);
-      cell.first_child = -1;
-      cell.division = Division::refined;
-      lists_.attach(c);
-    }
+    detail::CellMerging{lists_}(parents);
     auto touched = parents;
     for (Index const c : lowered) {
       convert({c, CellNodes::corners});
       touched.push_back(c);
     }
     std::erase_if(lists_.divided, [&](Index c) { return is_leaf(c); });
-    auto renumbered = detail::TreeCompaction{lists_}(touched, used);
+    auto renumbered = detail::TreeCompaction{lists_}(touched);
     forget_old_conversions();
     return renumbered;
   }
@@ -213,9 +204,14 @@ class CellTree {
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
 
   void convert(CellConversion const& to) {
-    lists_.detach(to.cell);
-    lists_.cells.edit(at(to.cell)).has = to.has;
-    lists_.attach(to.cell);
+    auto& cell = lists_.cells.edit(at(to.cell));
+    auto const count = [&](int by) {
+      lists_.count_leaf(cell, by);
+      lists_.count_leaves(cell.has, by);
+    };
+    count(-1);
+    cell.has = to.has;
+    count(1);
     note_conversion(to.cell);
   }
   void note_conversion(Index c) {

@@ -104,11 +104,12 @@ class HangingNodes {
     std::vector<DividedSide> found;
     for (Index const s : sides) {
       auto const& side = tree_.sides()[at(s)];
-      if (side.cells[1] < 0 || tree_.is_leaf(side.cells[0]) == tree_.is_leaf(side.cells[1]))
+      if (side.cells[0] < 0 || side.cells[1] < 0 ||
+          tree_.is_leaf(side.cells[0]) == tree_.is_leaf(side.cells[1]))
         continue;
       auto has = tree_[side.cells[tree_.is_leaf(side.cells[0]) ? 0 : 1]].has;
       for (Index part = side.first_child; part < side.first_child + 4; ++part)
-        has = std::min(has, tree_[tree_.sides()[at(part)].cells[0]].has);
+        has = std::min(has, tree_[tree_.sides()[at(part)].any_cell()].has);
       found.push_back({&side, has});
     }
     return found;

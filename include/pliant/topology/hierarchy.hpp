@@ -12,6 +12,7 @@
 #include <pliant/math/each_once.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
+#include <pliant/topology/check_convex.hpp>
 #include <pliant/topology/hanging_nodes.hpp>
 #include <pliant/topology/nodes_between.hpp>
 #include <pliant/topology/refinable.hpp>
@@ -90,15 +91,12 @@ class Hierarchy {
 
     Refinement<Dim> done{
         .parents = TreeQueries(tree_).closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
-    auto const needed = TreeQueries(tree_).needed(done.parents);
-    check_room("refine", done.parents.size(), needed, limits);
+    std::vector<CellSplit> leaves;
+    leaves.reserve(done.parents.size());
+    for (Index const c : done.parents) leaves.push_back({c, Division::refined});
     auto const whole = TreeFacets(tree_).whole_sides_of(done.parents);
-    std::vector<PlacedNode> made;
-    made.reserve(needed.nodes);
-    for (Index const c : done.parents) tree_.divide(c, Division::refined, made);
-    done.new_nodes = add_points(made);
+    done.new_nodes = divide("refine", leaves, limits);
     done.facets = TreeFacets(tree_).divided(whole);
-    leaf_count_ += needed.cells - done.parents.size();
     return done;
   }
 
@@ -135,8 +133,7 @@ class Hierarchy {
     for (NewNode const& node : inside)
       if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
     for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
-    points_.keep(at(done.renumbered.first_node),
-                 [&](std::size_t i) { return done.renumbered.nodes[i] >= 0; });
+    keep_points(done.renumbered);
     return done;
   }
 
@@ -157,12 +154,7 @@ class Hierarchy {
   /// no edge or side is divided. Throws Error as refine.
   AddedNodes split(std::vector<CellSplit> const& splits, RefinementLimits const& limits = {}) {
     if (splits.empty()) return {};
-    auto const needed = TreeQueries(tree_).needed(splits);
-    check_room("split", splits.size(), needed, limits);
-    std::vector<PlacedNode> made;
-    for (auto const& [c, division] : splits) tree_.divide(c, division, made);
-    leaf_count_ += needed.cells - splits.size();
-    return {add_points(made)};
+    return {divide("split", splits, limits)};
   }
   /// The whole sides of leaves (in the plane, edges), as facets with the nodes that they have now.
   [[nodiscard]] std::vector<DividedFacet<Dim>> whole_facets(
@@ -226,51 +218,56 @@ class Hierarchy {
         if (n < 0 || n >= size(points_))
           throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
                       size(points_) - 1, "; mend its node numbers");
-      if constexpr (Dim == 2) check_convex<E>(c, nodes);
+      if constexpr (Dim == 2) detail::check_convex<E>(c, nodes, points_);
       tree_.add(kind_of<typename E::cell>, nodes_on_cell<E>, nodes);
     }
   }
-  template <Element E>
-  void check_convex(Index c, Connectivity<E> const& nodes) const {
-    constexpr std::size_t k = E::cell::corners;
-    for (std::size_t i = 0; i < k; ++i) {
-      auto const [x, y] = points_[at(nodes[i])];
-      auto const [next_x, next_y] = points_[at(nodes[(i + 1) % k])];
-      auto const [last_x, last_y] = points_[at(nodes[(i + k - 1) % k])];
-      double const a = next_x - x, b = next_y - y, p = last_x - x, q = last_y - y;
-      // A sine below 1e-12 is no angle but rounding. The comparison is false for NaN and infinity.
-      if (!(a * q - b * p > 1e-12 * std::hypot(a, b) * std::hypot(p, q)))
-        throw Error("Hierarchy: cell ", c, " is inverted, degenerate or not finite at its node ",
-                    nodes[i], " ", points_[at(nodes[i])],
-                    "; cells must be strictly convex and counter-clockwise");
-    }
-  }
-
-  /// Throws Error where it takes more than a limit to divide so many cells.
-  void check_room(char const* verb, std::size_t count,
-                  typename TreeQueries<Dim>::Needed const& needed,
-                  RefinementLimits const& limits) const {
+  /// Divides leaves, and gives the nodes that it takes. Throws Error where that is more than a limit.
+  std::vector<NewNode> divide(char const* verb, std::vector<CellSplit> const& leaves,
+                              RefinementLimits const& limits) {
+    auto plan = tree_.plan_division(leaves);
     auto const check = [&](char const* what, std::size_t in_all, std::size_t limit) {
       if (in_all > limit)
-        throw Error("Hierarchy: to ", verb, " ", count,
+        throw Error("Hierarchy: to ", verb, " ", leaves.size(),
                     " cells, coarser neighbours included, takes ", in_all, " ", what,
                     " in all, and the limit is ", limit, "; mark fewer cells or raise the limit");
     };
-    check("nodes", points_.size() + needed.nodes, std::min(limits.nodes, most_));
-    check("leaves", leaf_count_ + needed.cells - count, limits.leaves);
-    check("cells", cells().size() + needed.cells, most_);
-    check("edges", tree_.edges().size() + needed.edges, most_);
+    check("nodes", points_.size() + count_new_nodes(plan, leaves), std::min(limits.nodes, most_));
+    check("leaves", leaf_count_ + plan.new_cells() - leaves.size(), limits.leaves);
+    check("cells", cells().size() + plan.new_cells(), most_);
+    check("edges", tree_.edges().size() + plan.new_edges(), most_);
+    leaf_count_ += plan.new_cells() - leaves.size();
+    return add_points(tree_.divide(plan));
+  }
+  /// Those between the corners of children's elements with them.
+  std::size_t count_new_nodes(detail::DivisionPlan const& plan,
+                              std::vector<CellSplit> const& leaves) const {
+    if (std::ranges::all_of(leaves, [&](CellSplit const& leaf) {
+          return cell(leaf.cell).has == CellNodes::corners;
+        }))
+      return plan.new_nodes();
+    std::vector<Index> refined;
+    for (auto const& leaf : leaves) refined.push_back(leaf.cell);
+    return TreeQueries(tree_).count_new_nodes(refined);
   }
 
   /// Gives new nodes their points.
   std::vector<NewNode> add_points(std::vector<PlacedNode> const& made) {
-    std::vector<NewNode> nodes;
-    nodes.reserve(made.size());
-    for (PlacedNode const& node : made) {
-      nodes.push_back(interpolated(node));
-      points_.push_back(mean_of_parents(nodes.back()));
-    }
+    std::vector<NewNode> nodes(made.size());
+    auto const first = points_.size();
+    points_.extend(made.size());
+    detail::for_each_on_host(static_cast<Index>(made.size()), 1024, [&](Index k) {
+      nodes[at(k)] = interpolated(made[at(k)]);
+      points_.edit(first + at(k)) = mean_of_parents(nodes[at(k)]);
+    });
     return nodes;
+  }
+  void keep_points(Renumbering const& renumbered) {
+    std::vector<Index> kept;
+    for (Index i = renumbered.first_node; i < size(renumbered.nodes); ++i)
+      if (renumbered.nodes[at(i)] >= 0) kept.push_back(i);
+    points_.replace_from(at(renumbered.first_node), kept.size(),
+                         [&](std::size_t k) { return points_[at(kept[k])]; });
   }
   NewNode interpolated(PlacedNode const& node) const {
     auto const& parent = cell(node.cell);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
+
+#include <pliant/backend/host_threads.hpp>
 
 namespace pliant {
 
@@ -59,6 +62,62 @@ class SharedList {
     own(size_ / per_block)[size_ % per_block] = value;
     ++size_;
   }
+  /// Appends entries as V{} is.
+  void extend(std::size_t count) {
+    auto const first_new = blocks_.size();
+    if (size_ % per_block != 0) {
+      auto const used = static_cast<std::ptrdiff_t>(size_ % per_block);
+      std::fill(own(first_new - 1).begin() + used, own(first_new - 1).end(), V{});
+    }
+    size_ += count;
+    blocks_.resize((size_ + per_block - 1) / per_block);
+    for_each_block(first_new, [&](std::size_t b) { blocks_[b] = std::make_shared<Block>(); });
+  }
+  /// Which entries are to be edited, for `own`: several threads may add to it at once.
+  class Touched {
+   public:
+    explicit Touched(SharedList const& list) : blocks_(list.blocks_.size()) {}
+    void add(std::size_t i) { blocks_[i / per_block].store(true, std::memory_order_relaxed); }
+
+   private:
+    friend SharedList;
+    std::vector<std::atomic<bool>> blocks_;
+  };
+  /// Makes these entries one's own, whoever shared them: then several threads may edit them at once, each another one.
+  void own(Touched const& touched) {
+    for_each_block(0, [&](std::size_t b) {
+      if (touched.blocks_[b].load(std::memory_order_relaxed)) own(b);
+    });
+  }
+  /// edit(entry) for each of the numbers, which are different ones, on the threads of the host.
+  template <class Edit>
+  void edit_listed(std::vector<Index> const& numbers, Edit const& edit_one) {
+    auto const for_each = [&](auto const& f) {
+      detail::for_each_on_host(static_cast<Index>(numbers.size()), 1024, [&](Index k) {
+        f(static_cast<std::size_t>(numbers[static_cast<std::size_t>(k)]));
+      });
+    };
+    Touched touched(*this);
+    for_each([&](std::size_t i) { touched.add(i); });
+    own(touched);
+    for_each([&](std::size_t i) { edit_one(edit(i)); });
+  }
+  /// Puts `count` entries in the place of those from `first` on: make(k), which may read the list as it was.
+  template <class Make>
+  void replace_from(std::size_t first, std::size_t count, Make const& make) {
+    SharedList others;
+    auto const kept = first / per_block;
+    others.size_ = first + count;
+    others.blocks_.resize((others.size_ + per_block - 1) / per_block);
+    std::copy_n(blocks_.begin(), std::min(kept, others.blocks_.size()), others.blocks_.begin());
+    others.for_each_block(kept, [&](std::size_t b) {
+      auto block = std::make_shared<Block>();
+      for (std::size_t i = b * per_block; i < std::min((b + 1) * per_block, others.size_); ++i)
+        (*block)[i % per_block] = i < first ? (*this)[i] : make(i - first);
+      others.blocks_[b] = std::move(block);
+    });
+    *this = std::move(others);
+  }
   /// Takes the entries from this one on away.
   void shrink(std::size_t size) {
     size_ = size;
@@ -81,6 +140,12 @@ class SharedList {
   static constexpr std::size_t per_block = 256;
   using Block = std::array<V, per_block>;
 
+  /// Of blocks from this one on, on the threads of the host.
+  template <class F>
+  void for_each_block(std::size_t first, F const& f) const {
+    detail::for_each_on_host(static_cast<Index>(blocks_.size() - std::min(first, blocks_.size())),
+                             16, [&](Index b) { f(first + static_cast<std::size_t>(b)); });
+  }
   Block& own(std::size_t b) {
     if (blocks_[b].use_count() > 1) blocks_[b] = std::make_shared<Block>(*blocks_[b]);
     return *blocks_[b];

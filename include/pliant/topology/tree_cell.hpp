@@ -86,7 +86,7 @@ struct TreeEdge {
 struct TreeSide {
   std::array<Index, 4> nodes{-1, -1, -1, -1};
   std::array<Index, 4> edges{-1, -1, -1, -1};  ///< edge k begins at corner k
-  std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side
+  std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side, on either side
   Index centre = -1;                           ///< the node in its middle, or -1
   Index parent = -1;                           ///< the side of which it is a part
   Index first_child = -1;  ///< of four, or of two triangles between two pyramids that are split
@@ -95,6 +95,10 @@ struct TreeSide {
   int level = 0;
 
   [[nodiscard]] std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
+  /// One of its cells; −1 where it has none.
+  [[nodiscard]] Index any_cell() const { return cells[0] >= 0 ? cells[0] : cells[1]; }
+  /// Which of its cells one is. Parts of the side have that one's children at the same place.
+  [[nodiscard]] std::size_t place_of(Index cell) const { return cells[0] == cell ? 0 : 1; }
   /// Its outline as a plane cell.
   [[nodiscard]] RefinementPattern const& pattern() const {
     return pattern_of(corners() == 3 ? CellKind::triangle : CellKind::quadrilateral);

@@ -43,9 +43,9 @@ class TreeFacets {
   }
   /// Divided sides and their parts.
   [[nodiscard]] std::vector<DividedFacet<Dim>> divided(std::vector<Index> const& sides) const {
-    std::vector<DividedFacet<Dim>> facets;
-    facets.reserve(sides.size());
-    for (Index const s : sides) facets.push_back(divided(s));
+    std::vector<DividedFacet<Dim>> facets(sides.size());
+    detail::for_each_on_host(static_cast<Index>(sides.size()), 1024,
+                             [&](Index k) { facets[at(k)] = divided(sides[at(k)]); });
     return facets;
   }
 

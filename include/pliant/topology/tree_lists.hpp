@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -59,10 +60,21 @@ struct TreeLists {
     return list;
   }
 
-  /// Counts a cell at its edges and sides, as the leaf or divided cell that it is.
-  void attach(Index c) { count_uses(c, 1); }
-  /// Counts it no more: before it changes.
-  void detach(Index c) { count_uses(c, -1); }
+  /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
+  void count_leaf(TreeCell const& cell, int by) {
+    for_each_edge(cell, [&](TreeEdge& edge, auto const& add) {
+      add(edge.leaves, by);
+      if (cell.has == CellNodes::corners) add(edge.linear, by);
+    });
+  }
+  /// The same for a refined cell. Split ones count by their children.
+  void count_refined(TreeCell const& cell, int by) {
+    for_each_edge(cell, [&](TreeEdge& edge, auto const& add) { add(edge.refined, by); });
+  }
+  /// Counts so many leaves with these nodes in all.
+  void count_leaves(CellNodes has, Index by) {
+    (has == CellNodes::corners ? linear_leaves : quadratic_leaves) += by;
+  }
 
   /// Side s of a cell, as the cell sees it.
   static TreeSide side_of(TreeCell const& cell, std::size_t s) {
@@ -91,30 +103,18 @@ struct TreeLists {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  void count_uses(Index c, int by) {
-    auto const& cell = cells[at(c)];
-    if (cell.is_split()) {  // its children have its edges and sides, but for one that is divided
-      if (int const s = cell.divided().halved_side; s >= 0) count_use(cell.sides[at(s)], c, by);
-      return;
-    }
-    auto const& p = cell.pattern();
-    for (std::size_t e = 0; e < at(p.edges); ++e) {
-      auto& edge = edges.edit(at(cell.edges[e]));
-      (cell.first_child < 0 ? edge.leaves : edge.refined) += by;
-      if (cell.first_child < 0 && cell.has == CellNodes::corners) edge.linear += by;
-    }
-    if (cell.first_child < 0)
-      (cell.has == CellNodes::corners ? linear_leaves : quadratic_leaves) += by;
-    for (std::size_t s = 0; s < at(p.sides); ++s) count_use(cell.sides[s], c, by);
-  }
-  void count_use(Index side, Index c, int by) {
-    auto& known = sides.edit(at(side)).cells;
-    if (by > 0) {
-      known[known[0] < 0 ? 0 : 1] = c;
-    } else {
-      if (known[0] == c) known[0] = known[1];
-      known[1] = -1;
-    }
+  /// visit(edge, add): add(number, by) for a number of the edge, which several threads may count at once.
+  template <class Visit>
+  void for_each_edge(TreeCell const& cell, Visit const& visit) {
+    bool const shared = HostThreads::in_loop();
+    auto const add = [shared](int& number, int by) {
+      if (shared)
+        std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
+      else
+        number += by;
+    };
+    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
+      visit(edges.edit(at(cell.edges[e])), add);
   }
 };
 

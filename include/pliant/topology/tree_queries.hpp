@@ -126,32 +126,6 @@ class TreeQueries {
     return nodes + edges.size() + sides.size();
   }
 
-  /// What it takes to divide leaves: new nodes, new cells, and so many new edges at the most.
-  struct Needed {
-    std::size_t nodes = 0, cells = 0, edges = 0;
-  };
-  /// To refine all of them.
-  [[nodiscard]] Needed needed(std::vector<Index> const& leaves) const {
-    Needed sum{.nodes = count_new_nodes(leaves)};
-    for (Index const c : leaves) {
-      auto const& p = cells_[at(c)].pattern();
-      sum.cells += at(p.children);
-      sum.edges += at(2 * p.edges + 4 * p.sides + p.inner_edges);
-    }
-    return sum;
-  }
-  [[nodiscard]] Needed needed(std::vector<CellSplit> const& splits) const {
-    Needed sum;
-    for (auto const& [c, division] : splits) {
-      auto const& cell = cells_[at(c)];
-      auto const& p = pattern_of(cell.kind, division);
-      sum.nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
-      sum.cells += at(p.children);
-      sum.edges += at(p.inner_edges) + (p.halved_side >= 0 ? 1 : 0);
-    }
-    return sum;
-  }
-
   /// The cell on the other side of a pyramid's base; −1 where there is none.
   [[nodiscard]] Index across_base(Index pyramid) const {
     auto const& cells = sides_[at(cells_[at(pyramid)].sides[0])].cells;

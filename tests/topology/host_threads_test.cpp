@@ -1,0 +1,92 @@
+#include <pliant/mesh/box.hpp>
+#include <pliant/topology/hierarchy.hpp>
+
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+// Trees are divided, raised and merged by several threads at once, and are the same whatever their number.
+namespace pliant::test {
+
+namespace {
+
+template <class... Lists>
+std::vector<Index> listed(Lists const&... lists) {
+  std::vector<Index> numbers;
+  auto const visit = [&](auto const& self, auto const& value) -> void {
+    using V = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_floating_point_v<V>)
+      numbers.push_back(static_cast<Index>(1e6 * value));
+    else if constexpr (std::is_enum_v<V> || std::is_arithmetic_v<V>)
+      numbers.push_back(static_cast<Index>(value));
+    else if constexpr (requires { V::for_each_member([](auto const&...) {}, value); })
+      V::for_each_member([&](char const*, auto const& own) { self(self, own); }, value);
+    else
+      for (auto const& own : value) self(self, own);
+  };
+  (visit(visit, lists), ...);
+  return numbers;
+}
+
+/// Some of the leaves for which wanted(cell).
+template <class Wanted>
+std::vector<Index> some_leaves(Hierarchy<3> const& tree, std::size_t one_in, Random& random,
+                               Wanted const& wanted) {
+  auto leaves = tree.leaves();
+  std::erase_if(leaves,
+                [&](Index c) { return !wanted(tree.cell(c)) || random.below(one_in) != 0; });
+  return leaves;
+}
+
+/// Many random changes of a mesh of one element type; what came of each.
+template <Element E>
+std::vector<std::vector<Index>> changed(int threads_of_host) {
+  HostThreads const threads(threads_of_host);
+  Hierarchy<3> tree(mesh::box<E>({.size = {1, 1, 1}, .cells = {9, 9, 9}}));
+  Random random(7);
+  std::vector<std::vector<Index>> states;
+  auto const note = [&](auto const& new_nodes) {
+    auto& own = states.emplace_back(listed(tree.cells(), tree.tree().edges(), tree.tree().sides(),
+                                           tree.tree().divided(), tree.points()));
+    for (NewNode const& node : new_nodes) {
+      own.push_back(node.node);
+      for (auto const& [parent, weight] : node.parents) own.push_back(parent);
+    }
+  };
+  auto const any = [](TreeCell const&) { return true; };
+  auto const linear = [](TreeCell const& cell) { return cell.has == CellNodes::corners; };
+  for (int round = 0; round < 3; ++round) {
+    note(tree.refine(some_leaves(tree, 4, random, any)).new_nodes);
+    std::vector<CellConversion> raise;
+    for (Index const c : some_leaves(tree, 3, random, linear)) raise.push_back({c, CellNodes::all});
+    note(tree.raise(raise).new_nodes);
+    std::vector<CellSplit> splits;
+    if constexpr (std::same_as<typename E::cell, Hexahedron>)
+      for (Index const c : some_leaves(tree, 5, random, linear))
+        if (tree.cell(c).kind == CellKind::hexahedron)
+          splits.push_back({c, Division::six_pyramids});
+    note(tree.split(splits).new_nodes);
+    auto const leaves = some_leaves(tree, 1, random, any);
+    std::vector<Index> parents = tree.families(leaves);
+    std::erase_if(parents, [&](Index) { return random.below(3) == 0; });
+    auto lowered = some_leaves(tree, 5, random,
+                               [](TreeCell const& cell) { return cell.has == CellNodes::all; });
+    std::erase_if(
+        lowered, [&](Index c) { return std::ranges::binary_search(parents, tree.cell(c).parent); });
+    note(tree.merge(parents, lowered).gone);
+  }
+  return states;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("trees are the same whatever the number of threads", "[topology]", Tet4, Hex8,
+                   Hex27) {
+  auto const alone = changed<TestType>(1);
+  REQUIRE(alone.size() == 12);
+  for (int threads : {2, 5}) {
+    auto const together = changed<TestType>(threads);
+    for (std::size_t k = 0; k < alone.size(); ++k) CHECK(together[k] == alone[k]);
+  }
+}
+
+}  // namespace pliant::test
