@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/constraint/slave.hpp>
 #include <pliant/error.hpp>
 
@@ -70,7 +72,19 @@ class SlavePlaces {
 /// so for any circle of slaves) and where a node is a slave twice.
 [[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> slaves) {
   detail::SlavePlaces const places(slaves);
+  std::vector<char> is_composed(slaves.size());  // not to be looked at again
+  detail::for_each_on_host(static_cast<Index>(slaves.size()), 4096, [&](Index k) {
+    auto const i = static_cast<std::size_t>(k);
+    auto const& masters = slaves[i].masters;
+    auto const is_free = [&](auto const& own) {
+      return places.of(own.first) == detail::SlavePlaces::none;
+    };
+    is_composed[i] = std::ranges::is_sorted(masters, std::ranges::less_equal{},
+                                            &std::pair<Index, double>::first) &&
+                     std::ranges::all_of(masters, is_free);
+  });
   for (std::size_t i = 0; i < slaves.size(); ++i) {
+    if (is_composed[i]) continue;
     // Ascending, equal ones in the order in which they come, so that they are summed in a fixed order.
     std::vector<std::pair<Index, double>> composed;
     auto const add = [&](Index master, double weight) {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -51,31 +51,35 @@ class ElementChanges {
  public:
   ElementChanges(std::vector<CellSet> const& old_cells, Hierarchy<dim> const& before,
                  std::vector<Index> const& merged, ChangedCells<dim> const& changed)
-      : old_cells_(old_cells),
-        leaving_cells_(old_cells.size()),
-        before_(before),
-        after_(*changed.tree),
-        changed_(changed) {
+      : old_cells_(old_cells), before_(before), after_(*changed.tree), changed_(changed) {
     for_each_type_of<M>([&]<Element E>(E, std::size_t) {
       types_.emplace_back(kind_of<typename E::cell>, nodes_on_cell<E>);
     });
-    families_.reserve(merged.size() + changed.converted.size() + changed.refinement.parents.size() +
-                      changed.split.size());
-    for (Index const old : merged) add_merged(old);
-    for (Index const old : changed.converted) add_converted(old);
-    first_divided_ = families_.size();
-    for (Index const c : changed.refinement.parents) add_divided(c);
-    for (Index const c : changed.split) add_divided(c);
+    auto const& [parents, split] = std::tie(changed.refinement.parents, changed.split);
+    note_old_numbers(parents.empty() && split.empty());
+    first_converted_ = merged.size();
+    first_divided_ = first_converted_ + changed.converted.size();
+    first_split_ = first_divided_ + parents.size();
+    families_.resize(first_split_ + split.size());
+    HostParts const parts(static_cast<Index>(families_.size()), few);
+    leaving_.resize(at(parts.count()), std::vector<Leaving>(types_.size()));
+    parts([&](Index from, Index to, int part) {
+      for (auto f = at(from); f < at(to); ++f) make_family(f, merged, leaving_[at(part)]);
+    });
+    for (std::size_t k = 0; k < merged.size(); ++k) list_arriving(merged[k], Origin::merged, k);
+    for (std::size_t k = 0; k < changed.converted.size(); ++k)
+      list_arriving(changed.converted[k], Origin::converted, first_converted_ + k);
+    std::ranges::sort(arriving_, {}, &Arriving::cell);
   }
 
   /// Those of a type after the change.
   template <Element E>
   ChangedElements<dim> of(std::size_t type) {
     auto const& old_cells = old_cells_[type];
-    auto const arriving = arriving_at<E>();
     auto const leaving = leaving_from(type);
+    auto const children = children_of<E>();
     ChangedElements<dim> list;
-    list.origins.reserve(leaving.size() + 2 * arriving.size() + 1);
+    list.origins.reserve(leaving.elements.size() + 2 * arriving_.size() + at(children.back()) + 1);
     // Numbers of cells stay in order, and those of new ones follow.
     Index next = 0, count = 0;  // of the old elements, and how many there are so far
     auto const add_those_before = [&](Index end) {
@@ -84,25 +88,38 @@ class ElementChanges {
       count += end - next;
       next = end;
     };
-    auto left = leaving.begin();
+    auto left = leaving.elements.begin();
     auto const add_until = [&](Index end) {
-      for (; left != leaving.end() && *left < end; ++left) {
+      for (; left != leaving.elements.end() && *left < end; ++left) {
         add_those_before(*left);
         next = *left + 1;
       }
       add_those_before(std::max(next, end));
     };
     std::vector<Index> new_cells;
-    new_cells.reserve(arriving.size());
-    for (auto const& own : arriving) {
+    for (auto const& own : arriving_) {
+      if (!is_cell_of<E>(after_.cell(own.cell))) continue;
       add_until(old_cells.rank(own.old));
       list.origins.push_back(origin_of(type, own.child, own.family, count++));
       new_cells.push_back(own.cell);
     }
     add_until(static_cast<Index>(old_cells.size()));
+    auto const first_origin = list.origins.size(), first_cell = new_cells.size();
+    list.origins.resize(first_origin + at(children.back()));
+    new_cells.resize(first_cell + at(children.back()));
+    for_each_on_host(static_cast<Index>(children.size()) - 1, few, [&](Index k) {
+      auto const family = first_divided_ + at(k);
+      auto place = at(children[at(k)]);
+      for_each_child<E>(family, [&](Index cell, int child) {
+        new_cells[first_cell + place] = cell;
+        list.origins[first_origin + place] =
+            origin_of(type, child, family, count + static_cast<Index>(place));
+        ++place;
+      });
+    });
     list.cells = old_cells.changed(
-        leaving_cells_[type], changed_.first_renumbered(),
-        [&](Index c) { return changed_.renumbered(c); }, new_cells);
+        leaving.cells, changed_.first_renumbered(), [&](Index c) { return changed_.renumbered(c); },
+        new_cells);
     return list;
   }
 
@@ -115,88 +132,95 @@ class ElementChanges {
     Index cell;
     int child;
     std::size_t family;
-    Index old = std::numeric_limits<Index>::max();  // number of a cell that was there before
+    Index old;  // its number before
   };
+
+  /// Elements of a type that go or are divided, and their cells, by the old numbers.
+  struct Leaving {
+    std::vector<Index> elements, cells;
+  };
+  static constexpr Index few = 512;  // families, or divided cells, that are worth a thread
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   /// The element that a cell was before.
-  Member old_element(Index cell) {
+  Member old_element(Index cell, std::vector<Leaving>& leaving) const {
     auto const& own = before_.cell(cell);
     auto const type = static_cast<std::size_t>(
         std::ranges::find(types_, std::pair(own.kind, own.has)) - types_.begin());
-    leaving_cells_[type].push_back(cell);
-    return {type, old_cells_[type].rank(cell)};
+    Index const element = old_cells_[type].rank(cell);
+    leaving[type].cells.push_back(cell);
+    leaving[type].elements.push_back(element);
+    return {type, element};
   }
-  Family& add_family(TreeCell const& whole) {
-    auto& family = families_.emplace_back();
-    family.mirrored = whole.mirrored;
-    return family;
+  void make_family(std::size_t f, std::vector<Index> const& merged, std::vector<Leaving>& leaving) {
+    auto& family = families_[f];
+    if (f < first_converted_) {
+      auto const& cell = before_.cell(merged[f]);
+      family.pattern = &cell.divided();
+      family.mirrored = cell.mirrored;
+      family.before.reserve(at(family.pattern->children));
+      for (Index child = 0; child < family.pattern->children; ++child)
+        family.before.push_back(old_element(cell.first_child + child, leaving));
+      family.after.resize(1);
+    } else if (f < first_divided_) {
+      Index const old = changed_.converted[f - first_converted_];
+      family.mirrored = before_.cell(old).mirrored;
+      family.before = {old_element(old, leaving)};
+      family.after.resize(1);
+    } else {
+      auto const& cell = after_.cell(divided(f));
+      family.pattern = &cell.divided();
+      family.mirrored = cell.mirrored;
+      family.before = {old_element(old_number(divided(f)), leaving)};
+      family.after.resize(at(family.pattern->children));
+    }
   }
-  void add_merged(Index old) {
-    auto const& cell = before_.cell(old);
-    auto& family = add_family(cell);
-    family.pattern = &cell.divided();
-    family.before.reserve(at(family.pattern->children));
-    for (Index child = 0; child < family.pattern->children; ++child)
-      family.before.push_back(old_element(cell.first_child + child));
-    family.after.resize(1);
-    list_arriving(old, Origin::merged);
+  /// The cell that a family divides.
+  Index divided(std::size_t family) const {
+    return family < first_split_ ? changed_.refinement.parents[family - first_divided_]
+                                 : changed_.split[family - first_split_];
   }
-  void add_converted(Index old) {
-    auto& family = add_family(before_.cell(old));
-    family.before = {old_element(old)};
-    family.after.resize(1);
-    list_arriving(old, Origin::converted);
+  /// visit(cell, child) for those of a divided cell's children that are elements of a type.
+  template <Element E, class Visit>
+  void for_each_child(std::size_t family, Visit const& visit) const {
+    auto const& cell = after_.cell(divided(family));
+    for (Index child = 0; child < cell.divided().children; ++child)
+      if (is_cell_of<E>(after_.cell(cell.first_child + child)))
+        visit(cell.first_child + child, child);
   }
-  void add_divided(Index c) {
-    auto const& cell = after_.cell(c);
-    auto& family = add_family(cell);
-    family.pattern = &cell.divided();
-    family.before = {old_element(old_number(c))};
-    family.after.resize(at(family.pattern->children));
-  }
-  /// The old elements of a type that go or are divided, ascending.
-  std::vector<Index> leaving_from(std::size_t type) const {
-    std::vector<Index> leaving;
-    for (auto const& family : families_)
-      for (auto const& member : family.before)
-        if (member.type == type) leaving.push_back(member.element);
-    return each_once(std::move(leaving), old_cells_[type].size());
-  }
-  void list_arriving(Index old, int child) {
-    arriving_.push_back({changed_.renumbered(old), child, families_.size() - 1, old});
-  }
-  Index old_number(Index c) {
-    auto const& renumbered = changed_.coarsening.renumbered.cells;
-    if (renumbered.empty()) return c;
-    if (old_numbers_.empty())
-      for (Index old = 0; old < static_cast<Index>(renumbered.size()); ++old)
-        if (renumbered[at(old)] >= 0) old_numbers_.push_back(old);
-    return old_numbers_[at(c)];
-  }
-
-  /// Ascending: merged and converted cells, and children.
+  /// How many there are before each divided cell's, and in all.
   template <Element E>
-  std::vector<Arriving> arriving_at() const {
-    std::vector<Arriving> list;
-    std::ranges::copy_if(arriving_, std::back_inserter(list),
-                         [&](Arriving const& own) { return is_cell_of<E>(after_.cell(own.cell)); });
-    std::ranges::sort(list, {}, &Arriving::cell);
-    auto family = first_divided_;
-    auto const add_children = [&](std::vector<Index> const& parents) {
-      for (Index const parent : parents) {
-        Index const first = after_.cell(parent).first_child;
-        for (Index child = 0; child < after_.cell(parent).divided().children; ++child)
-          if (is_cell_of<E>(after_.cell(first + child)))
-            list.push_back({first + child, child, family});
-        ++family;
-      }
-    };
-    add_children(changed_.refinement.parents);
-    add_children(changed_.split);
-    return list;
+  std::vector<Index> children_of() const {
+    std::vector<Index> first(families_.size() - first_divided_ + 1, 0);
+    for_each_on_host(static_cast<Index>(first.size()) - 1, few, [&](Index k) {
+      for_each_child<E>(first_divided_ + at(k), [&](Index, int) { ++first[at(k) + 1]; });
+    });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    return first;
   }
+  /// Elements ascend.
+  Leaving leaving_from(std::size_t type) const {
+    Leaving all;
+    for (auto const& of_part : leaving_) {
+      auto const& own = of_part[type];
+      all.elements.insert(all.elements.end(), own.elements.begin(), own.elements.end());
+      all.cells.insert(all.cells.end(), own.cells.begin(), own.cells.end());
+    }
+    all.elements = each_once(std::move(all.elements), old_cells_[type].size());
+    return all;
+  }
+  void list_arriving(Index old, int child, std::size_t family) {
+    arriving_.push_back({changed_.renumbered(old), child, family, old});
+  }
+  void note_old_numbers(bool none_is_asked_for) {
+    auto const& renumbered = changed_.coarsening.renumbered.cells;
+    if (none_is_asked_for) return;
+    for (Index old = 0; old < static_cast<Index>(renumbered.size()); ++old)
+      if (renumbered[at(old)] >= 0) old_numbers_.push_back(old);
+  }
+  Index old_number(Index c) const { return old_numbers_.empty() ? c : old_numbers_[at(c)]; }
+
   /// Of the element with a number in the list of its type. Makes it a member of its family.
   Origin origin_of(std::size_t type, int child, std::size_t number, Index element) {
     auto& family = families_[number];
@@ -207,30 +231,31 @@ class ElementChanges {
   }
 
   std::vector<CellSet> const& old_cells_;
-  std::vector<std::vector<Index>> leaving_cells_;  // by type, by their old numbers
   Hierarchy<dim> const &before_, &after_;
   ChangedCells<dim> const& changed_;
   std::vector<std::pair<CellKind, CellNodes>> types_;
-  std::vector<Family> families_;    // merged cells, converted ones, refined ones, split ones
-  std::vector<Arriving> arriving_;  // merged and converted cells
-  std::size_t first_divided_ = 0;   // of the families
-  std::vector<Index> old_numbers_;  // of cells; empty until one is asked for that changed
+  std::vector<Family> families_;  // merged cells, converted ones, refined ones, split ones
+  std::size_t first_converted_ = 0, first_divided_ = 0, first_split_ = 0;  // of the families
+  std::vector<std::vector<Leaving>> leaving_;  // by the part of the families and by type
+  std::vector<Arriving> arriving_;             // merged and converted cells, ascending
+  std::vector<Index> old_numbers_;  // of cells; empty where they are the same, or none is asked for
 };
 
-/// The shares of the elements before in the volume of their family, for those that are merged.
+/// The shares of the elements before in the volume of their family: those of merged ones have several.
 template <class M>
 void share_volumes(Topology<M> const& before,
                    std::vector<typename Transfer<M::dim>::Family>& families) {
-  for (auto& family : families) family.shares.resize(family.before.size());
-  for (auto& family : families)
+  for_each_on_host(static_cast<Index>(families.size()), 512, [&](Index f) {
+    auto& family = families[static_cast<std::size_t>(f)];
+    family.shares.assign(family.before.size(), 1);
+    if (family.before.size() == 1) return;
     for (std::size_t i = 0; i < family.before.size(); ++i)
       visit_member(before, family.before[i], [&]<Element E>(E, Connectivity<E> const& nodes) {
         family.shares[i] = volume<E, MassQuadrature<E>>(nodal(before, nodes));
       });
-  for (auto& family : families) {
     double const sum = std::accumulate(family.shares.begin(), family.shares.end(), 0.0);
     for (double& share : family.shares) share /= sum;
-  }
+  });
 }
 
 /// The values that laws read, of the elements of a type after a change: (elements, values).

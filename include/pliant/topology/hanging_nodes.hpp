@@ -4,10 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <tuple>
+#include <iterator>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/compose.hpp>
 #include <pliant/topology/shape_weights.hpp>
@@ -29,30 +31,40 @@ class HangingNodes {
       linear_edge_.assign(edges_.size(), false);
     }
     auto const& divided_cells = tree_.divided();
+    auto const edges = tree_.edges_of(divided_cells);
     auto divided = divided_sides(tree_.sides_of(divided_cells));
     if (mixed()) lower_sides(divided);
-    for (Index const e : tree_.edges_of(divided_cells))
-      if (edges_[at(e)].leaves > 0) add_nodes_on(e);
-    for (auto const& [side, has] : divided) add_nodes_on_parts(*side, has);
-    if (mixed()) add_nodes_of_higher_degree();
+    detail::HostParts const parts(static_cast<Index>(edges.size() + divided.size()),
+                                  mixed() ? std::numeric_limits<Index>::max() : Index{2048});
+    std::vector<Found> found(static_cast<std::size_t>(parts.count()));
+    parts([&](Index from, Index to, int part) {
+      auto& own = found[static_cast<std::size_t>(part)];
+      for (auto k = at(from); k < at(to); ++k)
+        if (k >= edges.size())
+          add_nodes_on_parts(*divided[k - edges.size()].side, divided[k - edges.size()].has, own);
+        else if (edges_[at(edges[k])].leaves > 0)
+          add_nodes_on(edges[k], own);
+    });
+    if (mixed()) add_nodes_of_higher_degree(found[0]);
     // The masters of a node at an element's side are that element's nodes; those can hang at coarser ones, and those on
     // the side's edges can be of too high a degree there.
-    std::ranges::sort(hanging_, {}, [](Hanging const& own) {
-      return std::tuple(own.level, own.on_side, own.slave.node);
-    });
     std::vector<Slave> slaves;
-    slaves.reserve(hanging_.size());
-    for (auto& own : hanging_) slaves.push_back(std::move(own.slave));
+    std::size_t levels = 0, count = 0;
+    for (auto const& own : found) {
+      levels = std::max(levels, own.size());
+      for (auto const& list : own) count += list.size();
+    }
+    slaves.reserve(count);
+    for (std::size_t k = 0; k < levels; ++k)
+      for (auto& own : found)
+        if (k < own.size()) std::ranges::move(own[k], std::back_inserter(slaves));
     return compose(std::move(slaves));
   }
 
  private:
   using Masters = std::vector<std::pair<Index, double>>;
-  struct Hanging {
-    int level;  // of the coarser element
-    bool on_side;
-    Slave slave;
-  };
+  /// Hanging nodes by the level of the coarser element, each level's on edges before those on sides.
+  using Found = std::vector<std::vector<Slave>>;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] bool mixed() const { return !listed_.empty(); }
@@ -63,17 +75,19 @@ class HangingNodes {
     if (edge.linear > 0 || (mixed() && linear_edge_[at(e)])) return true;
     return edge.first_half >= 0 && (is_linear(edge.first_half) || is_linear(edge.first_half + 1));
   }
-  void add(int level, bool on_side, Index node, Masters masters) {
+  void add(Found& found, int level, bool on_side, Index node, Masters masters) {
     if (mixed()) {
       if (listed_[at(node)]) return;
       listed_[at(node)] = true;
     }
     std::ranges::sort(masters);
-    hanging_.push_back({level, on_side, {node, std::move(masters)}});
+    auto const place = 2 * static_cast<std::size_t>(level) + (on_side ? 1 : 0);
+    if (found.size() <= place) found.resize(place + 1);
+    found[place].push_back({node, std::move(masters)});
   }
 
   /// The nodes on a whole edge of a leaf that is bisected for others, unless it lies on such an edge itself.
-  void add_nodes_on(Index e) {
+  void add_nodes_on(Index e, Found& found) {
     auto const& edge = edges_[at(e)];
     for (Index above = edge.parent; above >= 0; above = edges_[at(above)].parent)
       if (edges_[at(above)].leaves > 0) return;
@@ -83,9 +97,9 @@ class HangingNodes {
       auto const& own = edges_[at(part)];
       double const t = (from + to) / 2;
       if (own.middle >= 0 && linear)
-        add(edge.level, false, own.middle, {{a, 1 - t}, {b, t}});
+        add(found, edge.level, false, own.middle, {{a, 1 - t}, {b, t}});
       else if (own.middle >= 0 && part != e)
-        add(edge.level, false, own.middle,
+        add(found, edge.level, false, own.middle,
             {{a, (1 - t) * (1 - 2 * t)}, {edge.middle, 4 * t * (1 - t)}, {b, t * (2 * t - 1)}});
       if (own.first_half < 0) return;
       self(self, own.first_half, from, t);
@@ -139,7 +153,7 @@ class HangingNodes {
   }
   /// The nodes between a leaf's side and its parts on the other side that the leaf itself has not, or that are of a
   /// higher degree than `has`.
-  void add_nodes_on_parts(TreeSide const& side, CellNodes has) {
+  void add_nodes_on_parts(TreeSide const& side, CellNodes has, Found& found) {
     auto const& p = side.pattern();
     auto const n = side.corners();
     bool const quad = n == 4;
@@ -147,7 +161,7 @@ class HangingNodes {
     auto const kind = quad ? CellKind::quadrilateral : CellKind::triangle;
     auto const add_at = [&](Index node, std::array<double, 3> const& place) {
       if (node >= 0)
-        add(side.level, true, node, detail::shape_weights<Dim>(kind, has, nodes, place));
+        add(found, side.level, true, node, detail::shape_weights<Dim>(kind, has, nodes, place));
     };
     if (quad && has != CellNodes::all) add_at(side.centre, p.place[at(p.centre)]);
     if (has == CellNodes::corners && !mixed()) return;
@@ -166,12 +180,12 @@ class HangingNodes {
 
   /// Nodes between the corners of whole edges and sides, and in the middle of cells, that are there for leaves of a higher
   /// degree than others around, or for none any more.
-  void add_nodes_of_higher_degree() {
+  void add_nodes_of_higher_degree(Found& found) {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       auto const& edge = edges_[e];
       if (edge.leaves > 0 && edge.first_half < 0 && edge.middle >= 0 &&
           is_linear(static_cast<Index>(e)))
-        add(edge.level, false, edge.middle, {{edge.nodes[0], 0.5}, {edge.nodes[1], 0.5}});
+        add(found, edge.level, false, edge.middle, {{edge.nodes[0], 0.5}, {edge.nodes[1], 0.5}});
     }
     for (TreeSide const& side : tree_.sides()) {
       if (side.centre < 0 || side.first_child >= 0) continue;
@@ -179,14 +193,14 @@ class HangingNodes {
       for (Index const c : side.cells)
         if (c >= 0) has = std::min(has, tree_[c].has);
       if (has == CellNodes::all) continue;
-      add(side.level, true, side.centre,
+      add(found, side.level, true, side.centre,
           detail::shape_weights<Dim>(CellKind::quadrilateral, has, nodes_of(side, has), {0, 0, 0}));
     }
     for (Index c = 0; c < static_cast<Index>(tree_.cells().size()); ++c) {
       auto const& cell = tree_[c];
       if (cell.first_child >= 0 || cell.centre < 0 || cell.has == CellNodes::all) continue;
       auto const& p = cell.pattern();
-      add(cell.level, true, cell.centre,
+      add(found, cell.level, true, cell.centre,
           detail::shape_weights<Dim>(cell.kind, cell.has, tree_.nodes_of(c),
                                      p.place[at(p.centre)]));
     }
@@ -196,7 +210,6 @@ class HangingNodes {
   SharedList<TreeEdge> const& edges_;
   std::vector<bool> listed_;       // by node; empty where leaves are of one degree
   std::vector<bool> linear_edge_;  // by edge, from sides
-  std::vector<Hanging> hanging_;
 };
 
 }  // namespace pliant
