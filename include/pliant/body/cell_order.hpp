@@ -81,14 +81,15 @@ std::array<ElementBlocks, sizeof...(Es)> first_blocks(Mesh<Es...> const& mesh) {
 template <class M>
 std::vector<Index> places_of_families(Topology<M> const& after, CellOrder const& first,
                                       Transfer<M::dim> const& transfer) {
-  std::vector<Index> places;
-  places.reserve(transfer.families().size());
-  for (auto const& family : transfer.families()) {
-    auto const& member = family.after.front();
+  auto const& families = transfer.families();
+  std::vector<Index> places(families.size());
+  constexpr Index few_families = 1024;  // worth a thread
+  detail::for_each_on_host(static_cast<Index>(families.size()), few_families, [&](Index f) {
+    auto const& member = families[static_cast<std::size_t>(f)].after.front();
     Index c = after.cells[member.type][static_cast<std::size_t>(member.element)];
     while (after.tree->cell(c).parent >= 0) c = after.tree->cell(c).parent;
-    places.push_back(first.places[static_cast<std::size_t>(c)]);
-  }
+    places[static_cast<std::size_t>(f)] = first.places[static_cast<std::size_t>(c)];
+  });
   return places;
 }
 /// By the block, whether a family is in it: other elements stand there than before the change.

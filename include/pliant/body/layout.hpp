@@ -182,12 +182,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
                                             static_cast<std::size_t>(scratch));
     held = zeros<DirectionMask>(backend, static_cast<std::size_t>(rows));
 
-    std::vector<Slave> internal = topology.interpolation.slaves();
-    for (auto& slave : internal) {
-      slave.node = internal_of(slave.node);
-      for (auto& [master, weight] : slave.masters) master = internal_of(master);
-    }
-    interpolation = InterpolationOn<B>(backend, Interpolation(std::move(internal)));
+    interpolation = InterpolationOn<B>(backend, topology.interpolation,
+                                       [this](Index node) { return internal_of(node); });
     own_masses = find_own_masses();
     mass_list = own_masses;
     topology.interpolation.hand_masses(

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/constraint/interpolation.hpp>
 #include <pliant/math/group_by_key.hpp>
 
@@ -58,9 +59,15 @@ class InterpolationOn {
  public:
   InterpolationOn() = default;
   InterpolationOn(B const& backend, Interpolation const& host)
-      : to_slaves_(backend, rows_by_slave(host.slaves())),
-        to_masters_(backend, rows_by_master(host.slaves())),
-        magnitude_(host.magnitude()) {}
+      : InterpolationOn(backend, host, [](Index node) { return node; }) {}
+  /// The same where number(node) is the number of a node there.
+  template <class Number>
+  InterpolationOn(B const& backend, Interpolation const& host, Number const& number)
+      : magnitude_(host.magnitude()) {
+    auto const by_slave = rows_by_slave(host.slaves(), number);
+    to_slaves_ = Rows(backend, by_slave);
+    to_masters_ = Rows(backend, rows_by_master(by_slave));
+  }
 
   bool empty() const { return to_slaves_.count == 0; }
 
@@ -135,40 +142,50 @@ class InterpolationOn {
     }
   };
 
-  static HostRows rows_by_slave(std::vector<Slave> const& slaves) {
+  static constexpr Index few = 8192;  // rows that are worth a thread
+
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  template <class Number>
+  static HostRows rows_by_slave(std::vector<Slave> const& slaves, Number const& number) {
     HostRows rows;
-    for (auto const& [node, masters] : slaves) {
-      rows.node.push_back(node);
+    rows.first.reserve(slaves.size() + 1);
+    for (Slave const& slave : slaves)
+      rows.first.push_back(rows.first.back() + static_cast<Index>(slave.masters.size()));
+    rows.node.resize(slaves.size());
+    rows.other.resize(at(rows.first.back()));
+    rows.weight.resize(at(rows.first.back()));
+    detail::for_each_on_host(static_cast<Index>(slaves.size()), few, [&](Index k) {
+      auto const& [node, masters] = slaves[at(k)];
+      rows.node[at(k)] = number(node);
+      auto entry = at(rows.first[at(k)]);
       for (auto const& [master, weight] : masters) {
-        rows.other.push_back(master);
-        rows.weight.push_back(static_cast<T>(weight));
+        rows.other[entry] = number(master);
+        rows.weight[entry++] = static_cast<T>(weight);
       }
-      rows.first.push_back(static_cast<Index>(rows.other.size()));
-    }
+    });
     return rows;
   }
-  static HostRows rows_by_master(std::vector<Slave> const& slaves) {
-    std::vector<Index> slave, master;
-    std::vector<double> weight;
-    for (auto const& [node, masters] : slaves)
-      for (auto const& [other, share] : masters) {
-        slave.push_back(node);
-        master.push_back(other);
-        weight.push_back(share);
-      }
-    HostRows rows;
+  static HostRows rows_by_master(HostRows const& by_slave) {
+    std::vector<Index> slave(by_slave.other.size());
+    for (std::size_t k = 0; k < by_slave.node.size(); ++k)
+      std::fill(slave.begin() + by_slave.first[k], slave.begin() + by_slave.first[k + 1],
+                by_slave.node[k]);
+    auto const& master = by_slave.other;
     auto const last = std::ranges::max_element(master);
     auto const grouped = detail::group_by_key(master, last == master.end() ? 0 : *last + 1);
+    HostRows rows;
     for (std::size_t k = 0; k + 1 < grouped.first.size(); ++k) {
       if (grouped.first[k] == grouped.first[k + 1]) continue;
       rows.node.push_back(static_cast<Index>(k));
-      for (Index j = grouped.first[k]; j < grouped.first[k + 1]; ++j) {
-        auto const entry = static_cast<std::size_t>(grouped.order[static_cast<std::size_t>(j)]);
-        rows.other.push_back(slave[entry]);
-        rows.weight.push_back(static_cast<T>(weight[entry]));
-      }
-      rows.first.push_back(static_cast<Index>(rows.other.size()));
+      rows.first.push_back(grouped.first[k + 1]);
     }
+    rows.other.resize(master.size());
+    rows.weight.resize(master.size());
+    detail::for_each_on_host(static_cast<Index>(master.size()), few, [&](Index k) {
+      auto const entry = at(grouped.order[at(k)]);
+      rows.other[at(k)] = slave[entry];
+      rows.weight[at(k)] = by_slave.weight[entry];
+    });
     return rows;
   }
 
