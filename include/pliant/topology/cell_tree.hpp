@@ -85,6 +85,8 @@ class CellTree {
   [[nodiscard]] TreeCell const& operator[](Index c) const { return lists_.cells[at(c)]; }
   [[nodiscard]] bool is_leaf(Index c) const { return lists_.is_leaf(c); }
   [[nodiscard]] Index node_count() const { return lists_.nodes; }
+  /// Those of the initial mesh, which stay.
+  [[nodiscard]] Index initial_nodes() const { return lists_.initial.nodes; }
   /// Whether leaves with corners only are beside others, or cells of the initial mesh have not the nodes that they
   /// had there.
   [[nodiscard]] bool mixes_degrees() const {

@@ -124,7 +124,7 @@ class Hierarchy {
     std::erase_if(refined, [&](Index c) { return cell(c).is_split(); });
     TreeFacets const facets(tree_);
     done.facets = facets.divided(facets.sides_of_no_other(refined));
-    auto const inside = detail::nodes_between(tree_, parents, lowered);
+    auto const inside = detail::nodes_between(tree_, lowered, parents);
     std::size_t children = 0;
     for (Index const c : parents) children += at(cell(c).divided().children);
     done.renumbered = tree_.merge(parents, lowered);

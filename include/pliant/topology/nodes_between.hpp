@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/transfer.hpp>
+#include <pliant/topology/tree_claims.hpp>
 
 namespace pliant::detail {
 
@@ -33,44 +35,71 @@ inline std::array<std::array<double, 8>, 27> places_of(TreeCell const& cell) {
 }
 
 /// The nodes of refined cells' children that the cells themselves have not, as they lie between nodes of
-/// the cells, and those between the corners of leaves: each once, ascending.
+/// the cells, and those between the corners of leaves: each once, ascending, without those of the initial mesh. Where several
+/// cells have one, the first of the list tells.
 template <int Dim>
-std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index> const& parents,
-                                   std::vector<Index> const& lowered) {
+std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index> const& lowered,
+                                   std::vector<Index> const& parents) {
+  constexpr Index few = 512;  // cells that are worth a thread
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };
-  std::vector<NewNode> found;
-  std::vector<bool> seen(at(tree.node_count()), false);
-  for (Index const c : lowered) {
-    auto const nodes = tree.nodes_of(c);
-    auto const places = places_of(tree[c]);
-    for (std::size_t a = tree[c].corners(); a < nodes.count; ++a) {
-      if (seen[at(nodes[a])]) continue;
-      seen[at(nodes[a])] = true;
-      NewNode node{nodes[a], {}};
-      for (std::size_t b = 0; b < tree[c].corners(); ++b)
-        if (places[a][b] != 0) node.parents.emplace_back(nodes[b], places[a][b]);
-      found.push_back(std::move(node));
-    }
-  }
-  for (Index const c : parents) {
+  Index const initial = tree.initial_nodes();
+  auto const cells = static_cast<Index>(lowered.size() + parents.size());
+  auto const cell_at = [&](Index k) {
+    return at(k) < lowered.size() ? lowered[at(k)] : parents[at(k) - lowered.size()];
+  };
+  // visit(node, parents) for the nodes between those of a cell; parents() gives what it lies between.
+  auto const visit_nodes = [&](Index k, auto const& visit) {
+    Index const c = cell_at(k);
     auto const& own = tree[c];
-    auto const& p = own.divided();
     auto const nodes = tree.nodes_of(c);
+    if (at(k) < lowered.size()) {
+      auto const places = places_of(own);
+      for (std::size_t a = own.corners(); a < nodes.count; ++a)
+        visit(nodes[a], [&] {
+          NewNode node{nodes[a], {}};
+          for (std::size_t b = 0; b < own.corners(); ++b)
+            if (places[a][b] != 0) node.parents.emplace_back(nodes[b], places[a][b]);
+          return node;
+        });
+      return;
+    }
+    auto const& p = own.divided();
     for (Index child = own.first_child; child < own.first_child + p.children; ++child) {
-      auto const& corners = p.child[at(child - own.first_child)];
       auto const list = tree.nodes_of(child);
-      auto const places = places_of(tree[child]);
       for (std::size_t a = 0; a < list.count; ++a) {
-        if (seen[at(list[a])] || std::ranges::find(nodes, list[a]) != nodes.end()) continue;
-        seen[at(list[a])] = true;
-        std::array<double, 3> place{};
-        for (std::size_t b = 0; b < tree[child].corners(); ++b)
-          for (std::size_t k = 0; k < 3; ++k) place[k] += places[a][b] * p.place[at(corners[b])][k];
-        found.push_back({list[a], shape_weights<Dim>(own.kind, own.has, nodes, place)});
+        if (std::ranges::find(nodes, list[a]) != nodes.end()) continue;
+        visit(list[a], [&] {
+          auto const& corners = p.child[at(child - own.first_child)];
+          auto const places = places_of(tree[child]);
+          std::array<double, 3> place{};
+          for (std::size_t b = 0; b < tree[child].corners(); ++b)
+            for (std::size_t d = 0; d < 3; ++d)
+              place[d] += places[a][b] * p.place[at(corners[b])][d];
+          return NewNode{list[a], shape_weights<Dim>(own.kind, own.has, nodes, place)};
+        });
       }
     }
+  };
+  std::vector<Index> first(at(tree.node_count() - initial), -1);  // claims of places in the list
+  for_each_on_host(cells, few, [&](Index k) {
+    visit_nodes(k, [&](Index node, auto const&) {
+      if (node >= initial) claim(first[at(node - initial)], k);
+    });
+  });
+  Index count = 0;
+  std::vector<Index> places(first.size());
+  for (std::size_t node = 0; node < first.size(); ++node) {
+    places[node] = count;
+    count += first[node] < -1 ? 1 : 0;
   }
-  std::ranges::sort(found, {}, &NewNode::node);
+  std::vector<NewNode> found(at(count));
+  for_each_on_host(cells, few, [&](Index k) {
+    visit_nodes(k, [&](Index node, auto const& between) {
+      if (node < initial || !makes(k, first[at(node - initial)])) return;
+      auto& own = found[at(places[at(node - initial)])];
+      if (own.node < 0) own = between();
+    });
+  });
   return found;
 }
 
