@@ -191,17 +191,21 @@ class Hierarchy {
       Index const parent = cell(sorted[i]).parent;
       std::size_t next = i + 1;
       while (next < sorted.size() && cell(sorted[next]).parent == parent) ++next;
-      if (parent >= 0 && next - i == at(cell(parent).divided().children) && wanted(cell(parent)) &&
-          tree_.can_be_merged(parent))
+      if (parent >= 0 && next - i == at(cell(parent).divided().children) && wanted(cell(parent)))
         parents.push_back(parent);
       i = next;
     }
-    std::ranges::sort(parents);
-    return parents;
+    std::vector<char> can(parents.size());
+    detail::for_each_on_host(size(parents), 512,
+                             [&](Index k) { can[at(k)] = tree_.can_be_merged(parents[at(k)]); });
+    std::vector<Index> found;
+    for (std::size_t k = 0; k < parents.size(); ++k)
+      if (can[k] != 0) found.push_back(parents[k]);
+    std::ranges::sort(found);
+    return found;
   }
 
   static constexpr std::size_t most_ = std::numeric_limits<Index>::max();
-
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   void check_number(char const* verb, Index c) const {
