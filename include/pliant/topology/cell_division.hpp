@@ -84,12 +84,11 @@ class CellDivision {
       }
       if (!has(own.halves, e)) continue;
       edge.first_half = own.edge + 2 * rank(own.halves, e);
-      auto &one = lists_.edges.edit(at(edge.first_half)),
-           &other = lists_.edges.edit(at(edge.first_half + 1));
-      one.nodes = {edge.nodes[0], edge.middle};
-      other.nodes = {edge.middle, edge.nodes[1]};
-      one.parent = other.parent = number;
-      one.level = other.level = edge.level + 1;
+      TreeEdge half{.parent = number, .level = edge.level + 1};
+      half.nodes = {edge.nodes[0], edge.middle};
+      lists_.edges.edit(at(edge.first_half)) = half;
+      half.nodes = {edge.middle, edge.nodes[1]};
+      lists_.edges.edit(at(edge.first_half + 1)) = half;
     }
   }
   /// Centres and parts of sides, whose edges have all of theirs.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -43,7 +44,7 @@ class SharedList {
     for (std::size_t first = 0; first < size_; first += per_block) {
       auto const& block = blocks_.emplace_back(std::make_shared<Block>());
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first),
-                  std::min(per_block, size_ - first), block->begin());
+                  std::min(per_block, size_ - first), block->values.begin());
     }
   }
   friend bool operator==(SharedList const& one, SharedList const& other) {
@@ -53,22 +54,19 @@ class SharedList {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] Iterator begin() const { return {*this, 0}; }
   [[nodiscard]] Iterator end() const { return {*this, size_}; }
-  V const& operator[](std::size_t i) const { return (*blocks_[i / per_block])[i % per_block]; }
+  V const& operator[](std::size_t i) const { return blocks_[i / per_block]->values[i % per_block]; }
   /// An entry to be changed: one's own, whoever shared it.
-  V& edit(std::size_t i) { return own(i / per_block)[i % per_block]; }
+  V& edit(std::size_t i) { return own(i / per_block).values[i % per_block]; }
 
   void push_back(V const& value) {
     if (size_ % per_block == 0) blocks_.push_back(std::make_shared<Block>());
-    own(size_ / per_block)[size_ % per_block] = value;
+    own(size_ / per_block).values[size_ % per_block] = value;
     ++size_;
   }
-  /// Appends entries as V{} is.
+  /// Appends entries that have no value until they are edited.
   void extend(std::size_t count) {
     auto const first_new = blocks_.size();
-    if (size_ % per_block != 0) {
-      auto const used = static_cast<std::ptrdiff_t>(size_ % per_block);
-      std::fill(own(first_new - 1).begin() + used, own(first_new - 1).end(), V{});
-    }
+    if (size_ % per_block != 0) own(first_new - 1);
     size_ += count;
     blocks_.resize((size_ + per_block - 1) / per_block);
     for_each_block(first_new, [&](std::size_t b) { blocks_[b] = std::make_shared<Block>(); });
@@ -113,7 +111,7 @@ class SharedList {
     others.for_each_block(kept, [&](std::size_t b) {
       auto block = std::make_shared<Block>();
       for (std::size_t i = b * per_block; i < std::min((b + 1) * per_block, others.size_); ++i)
-        (*block)[i % per_block] = i < first ? (*this)[i] : make(i - first);
+        block->values[i % per_block] = i < first ? (*this)[i] : make(i - first);
       others.blocks_[b] = std::move(block);
     });
     *this = std::move(others);
@@ -138,7 +136,12 @@ class SharedList {
 
  private:
   static constexpr std::size_t per_block = 256;
-  using Block = std::array<V, per_block>;
+  static_assert(std::is_trivially_copyable_v<V>);
+  union Block {  // without values, at first
+    Block() {}
+    Block(Block const& other) : values(other.values) {}
+    std::array<V, per_block> values;
+  };
 
   /// Of blocks from this one on, on the threads of the host.
   template <class F>
