@@ -61,14 +61,15 @@ struct ChangedCells {
 /// Makes changes of cells. Those that are refined, or merged, are not raised, and neither they nor raised ones are split.
 template <int Dim>
 ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& changes,
-                               RefinementLimits const& limits) {
+                               RefinementLimits const& limits, KnownFacets<Dim> const& known) {
   ChangedCells<Dim> changed{
       std::make_shared<Hierarchy<Dim>>(before), {}, {}, {}, changes.lower, {}, 0};
   auto& tree = *changed.tree;
-  changed.coarsening = tree.merge(changes.families, changes.lower);
+  changed.coarsening = tree.merge(changes.families, changes.lower, known);
   auto refine = changes.refine;
   for (Index& c : refine) c = changed.renumbered(c);
-  changed.refinement = tree.refine(refine, limits);
+  changed.refinement =
+      tree.refine(refine, limits, known.renumbered(changed.coarsening.renumbered.nodes));
   std::vector<CellConversion> raise;
   for (auto const& [old, has] : changes.raise) {
     Index const c = changed.renumbered(old);

@@ -82,7 +82,8 @@ class ElementNodes {
     made.resize(known + at(lists_.nodes - before));
     for_each([&](Index k) {
       auto const place = placement(k);
-      auto [bits, next] = own[at(k)];
+      std::uint32_t const bits = own[at(k)].makes;
+      Index next = own[at(k)].first;
       visit(k, [&](std::size_t i, Index& node, auto const& corners, std::size_t count) {
         if ((bits >> i & 1) == 0) return;
         node = next++;

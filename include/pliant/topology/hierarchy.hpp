@@ -75,7 +75,8 @@ class Hierarchy {
   /// sides, and so on. The result depends on the set of marked leaves, not on order or repetition. Throws
   /// Error for a cell that is out of range or no leaf, and where a limit would be exceeded; the hierarchy is
   /// then as it was.
-  Refinement<Dim> refine(std::span<Index const> marked, RefinementLimits const& limits = {}) {
+  Refinement<Dim> refine(std::span<Index const> marked, RefinementLimits const& limits = {},
+                         KnownFacets<Dim> const& known = {}) {
     std::vector<Index> wanted;
     for (Index const c : marked) {
       check_number("refine", c);
@@ -86,15 +87,14 @@ class Hierarchy {
     }
     wanted = detail::each_once(std::move(wanted), cells().size());
     if (wanted.empty()) return {};
-    auto const may_have_coarser_neighbours = [&](Index c) { return cell(c).level > 0; };
-    if (std::ranges::any_of(wanted, may_have_coarser_neighbours)) tree_.keep_cells_at_edges();
-
+    if (std::ranges::any_of(wanted, [&](Index c) { return cell(c).level > 0; }))
+      tree_.keep_cells_at_edges();  // some may have coarser neighbours
     Refinement<Dim> done{
         .parents = TreeQueries(tree_).closure(std::move(wanted)), .new_nodes = {}, .facets = {}};
     std::vector<CellSplit> leaves;
     leaves.reserve(done.parents.size());
     for (Index const c : done.parents) leaves.push_back({c, Division::refined});
-    auto const whole = TreeFacets(tree_).whole_sides_of(done.parents);
+    auto const whole = TreeFacets(tree_, known).whole_sides_of(done.parents);
     done.new_nodes = divide("refine", leaves, limits);
     done.facets = TreeFacets(tree_).divided(whole);
     return done;
@@ -116,20 +116,20 @@ class Hierarchy {
     return families(marked, [](TreeCell const& parent) { return parent.is_split(); });
   }
   /// Merges what `families` and `split_cells` gave, and takes other leaves the nodes between their corners.
-  Coarsening<Dim> merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
+  Coarsening<Dim> merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {},
+                        KnownFacets<Dim> const& known = {}) {
     Coarsening<Dim> done{.parents = parents, .renumbered = {}, .gone = {}, .facets = {}};
     if (parents.empty() && lowered.empty()) return done;
     tree_.take_degree_of_children(parents);
     auto refined = parents;
     std::erase_if(refined, [&](Index c) { return cell(c).is_split(); });
-    TreeFacets const facets(tree_);
+    TreeFacets const facets(tree_, known);
     done.facets = facets.divided(facets.sides_of_no_other(refined));
     auto const inside = detail::nodes_between(tree_, lowered, parents);
     std::size_t children = 0;
     for (Index const c : parents) children += at(cell(c).divided().children);
     done.renumbered = tree_.merge(parents, lowered);
-    leaf_count_ += parents.size();
-    leaf_count_ -= children;
+    leaf_count_ = leaf_count_ + parents.size() - children;
     for (NewNode const& node : inside)
       if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
     for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
@@ -199,7 +199,7 @@ class Hierarchy {
     detail::for_each_on_host(size(parents), 512,
                              [&](Index k) { can[at(k)] = tree_.can_be_merged(parents[at(k)]); });
     std::vector<Index> found;
-    for (std::size_t k = 0; k < parents.size(); ++k)
+    for (std::size_t k = 0; k < can.size(); ++k)
       if (can[k] != 0) found.push_back(parents[k]);
     std::ranges::sort(found);
     return found;

@@ -53,9 +53,12 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto const old = detail::tree_of(before);
   auto changes = detail::changes_of(old, marked);
   if (changes.none()) return std::nullopt;
-  auto changed = detail::change_cells(*old.tree, changes, limits);
+  auto lists = kept.facets;
+  for (auto const& [name, facets] : before->boundaries()) lists.push_back(&facets);
+  KnownFacets<dim> const known(std::move(lists));
+  auto changed = detail::change_cells(*old.tree, changes, limits, known);
   while (detail::take_back(*old.tree, changes, changed, kept))
-    changed = detail::change_cells(*old.tree, changes, limits);
+    changed = detail::change_cells(*old.tree, changes, limits, known);
   if (changes.families.empty() && changed.refinement.parents.empty() && changed.converted.empty() &&
       changed.split.empty())
     return std::nullopt;

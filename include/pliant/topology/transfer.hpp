@@ -182,7 +182,7 @@ class Transfer {
              std::ranges::any_of(family.before, is_of(old_type));
     });
   }
-  /// Facets of the boundary on the new mesh: a facet that was divided gives way to its parts, and parts that were
+  /// Facets of the boundary, or such as the mesh, a condition or a pressure names, on the new mesh: a facet that was divided gives way to its parts, and parts that were
   /// merged to the whole, in the place of the first. Throws Error where not all of them are there.
   std::vector<Facet<Dim>> carry_facets(std::vector<Facet<Dim>> const& facets) const {
     return facets_.carry(facets, [&](Facet<Dim> const& facet) {

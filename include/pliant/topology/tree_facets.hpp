@@ -9,15 +9,18 @@
 #include <pliant/math/each_once.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
+#include <pliant/topology/known_facets.hpp>
 #include <pliant/topology/transfer.hpp>
 
 namespace pliant {
 
-/// The sides of a tree's cells, in the plane their edges, as facets of the mesh. Refers to the tree.
+/// The sides of a tree's cells, in the plane their edges, as facets of the mesh: those of its boundary, and known ones inside.
+/// Refers to the tree.
 template <int Dim>
 class TreeFacets {
  public:
-  explicit TreeFacets(CellTree<Dim> const& tree) : tree_(tree) {}
+  explicit TreeFacets(CellTree<Dim> const& tree, KnownFacets<Dim> known = {})
+      : tree_(tree), known_(std::move(known)) {}
 
   /// The sides of leaves that are whole, with the nodes that they have now.
   [[nodiscard]] std::vector<DividedFacet<Dim>> whole(std::vector<Index> const& leaves) const {
@@ -29,11 +32,13 @@ class TreeFacets {
   [[nodiscard]] std::vector<Index> whole_sides_of(std::vector<Index> const& cells) const {
     auto sides = Dim == 2 ? tree_.edges_of(cells) : tree_.sides_of(cells);
     std::erase_if(sides, [&](Index s) { return first_part(s) >= 0; });
+    leave_unknown_out(sides);
     return sides;
   }
   /// The sides of refined cells that have no other refined cell.
   [[nodiscard]] std::vector<Index> sides_of_no_other(std::vector<Index> const& cells) const {
     auto all = sides_of(cells);
+    leave_unknown_out(all);
     auto const count = Dim == 2 ? tree_.edges().size() : tree_.sides().size();
     std::vector<bool> once(count, false), twice(count, false);
     for (Index const s : all) (once[at(s)] ? twice : once)[at(s)] = true;
@@ -52,6 +57,34 @@ class TreeFacets {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+  void leave_unknown_out(std::vector<Index>& sides) const {
+    if (!known_.tells_apart(sides.size())) return;
+    auto const corners = known_.corners(tree_.node_count());
+    auto const has_known_corners = [&](Index s) {
+      return std::ranges::all_of(nodes_at(s),
+                                 [&](Index node) { return node < 0 || corners[at(node)]; });
+    };
+    std::erase_if(sides, [&](Index s) {
+      if (is_outside(s)) return false;
+      Index const first = first_part(s);
+      if (first < 0) return !has_known_corners(s);
+      for (Index part = first; part < first + (Dim == 2 ? 2 : 4); ++part)
+        if (has_known_corners(part)) return false;
+      return true;
+    });
+  }
+  auto const& nodes_at(Index s) const {
+    if constexpr (Dim == 2)
+      return tree_.edges()[at(s)].nodes;
+    else
+      return tree_.sides()[at(s)].nodes;
+  }
+  /// Whether a side has a cell on one side only.
+  bool is_outside(Index s) const {
+    if constexpr (Dim == 2) return tree_.edges()[at(s)].leaves + tree_.edges()[at(s)].refined < 2;
+    auto const& cells = tree_.sides()[at(s)].cells;
+    return cells[0] < 0 || cells[1] < 0;
+  }
   DividedFacet<Dim> divided(Index s) const {
     DividedFacet<Dim> facet{facet_of(s), {}};
     facet.parts.reserve(Dim == 2 ? 2 : 4);
@@ -106,6 +139,7 @@ class TreeFacets {
   }
 
   CellTree<Dim> const& tree_;
+  KnownFacets<Dim> known_;
 };
 
 }  // namespace pliant
