@@ -64,6 +64,43 @@ TEMPLATE_TEST_CASE("bodies do not depend on the number of threads", "[body]", Tr
   CHECK((made.first == made.second));
 }
 
+TEMPLATE_TEST_CASE("changes of the mesh do not depend on the number of threads", "[body]", Quad4,
+                   Tet4) {
+  auto const changed = on_threads([] {
+    Body body{MainBackend{}, regular_mesh<TestType>(TestType::dim == 2 ? 50 : 10), soft,
+              Group<Of<TestType>>{}};
+    Random random(5);
+    body.set_displacements(random.template field<TestType::dim>(body.mesh().nodes.size(), 1e-3));
+    body.set_velocities(random.template field<TestType::dim>(body.mesh().nodes.size(), 1));
+    auto const mark = [&](int level, std::size_t of_ten) {
+      std::vector<Index> marked;
+      auto const levels = refinement_levels<TestType>(body);
+      for (std::size_t e = 0; e < levels.size(); ++e)
+        if (levels[e] == level && random.below(10) < of_ten)
+          marked.push_back(static_cast<Index>(e));
+      return std::vector<std::vector<Index>>{marked};
+    };
+    std::vector<std::size_t> counts;
+    for (int k = 0; k < 2; ++k) {
+      counts.push_back(refine(body, mark(0, 3)).refined);
+      counts.push_back(coarsen(body, mark(1, 9)).merged);
+      counts.push_back(refine(body, mark(1, 1)).refined);
+    }
+    auto const& layout = body.parts().layout;
+    return std::tuple{counts,
+                      layout.own_masses,
+                      layout.mass_list,
+                      body.mesh().nodes,
+                      body.mesh().tables,
+                      body.displacements(),
+                      body.velocities(),
+                      body.forces(),
+                      adaptation_energy(body)};
+  });
+  CHECK((changed.first == changed.second));
+  for (std::size_t const count : std::get<0>(changed.first)) CHECK(count > 256);
+}
+
 /// Meshes that are wrong in two places, the second of which another thread meets first.
 template <class M, Element E>
 std::vector<M> spoilt(M const& mesh, E) {

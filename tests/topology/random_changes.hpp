@@ -16,8 +16,12 @@ struct ChangingPlane {
   static constexpr std::size_t most_nodes = 600;
   template <class B>
   static auto body(B const& backend) {
-    return Body(backend, mesh::with_types<Tri3, Quad4, Quad9>(mixed_mesh(5, 1)), soft,
-                Group<First>{}, Group<Second>{}, Group<Quads>{}, Group<Quadratic>{});
+    return body(backend, mesh::with_types<Tri3, Quad4, Quad9>(mixed_mesh(5, 1)));
+  }
+  template <class B>
+  static auto body(B const& backend, Mesh<Tri3, Quad4, Quad9> const& mesh) {
+    return Body(backend, mesh, soft, Group<First>{}, Group<Second>{}, Group<Quads>{},
+                Group<Quadratic>{});
   }
 };
 struct ChangingSolid {
@@ -29,9 +33,12 @@ struct ChangingSolid {
   static constexpr std::size_t most_nodes = 900;
   template <class B>
   static auto body(B const& backend) {
-    return Body(backend, mesh::with_types<Tet4, Tet10, Hex8, Pyramid5>(distorted_mesh<Hex8>(3)),
-                soft, Group<First>{}, Group<Second>{}, Group<Quadratic>{}, Group<Hexes>{},
-                Group<Pyramids>{});
+    return body(backend, mesh::with_types<Tet4, Tet10, Hex8, Pyramid5>(distorted_mesh<Hex8>(3)));
+  }
+  template <class B>
+  static auto body(B const& backend, Mesh<Tet4, Tet10, Hex8, Pyramid5> const& mesh) {
+    return Body(backend, mesh, soft, Group<First>{}, Group<Second>{}, Group<Quadratic>{},
+                Group<Hexes>{}, Group<Pyramids>{});
   }
 };
 

@@ -48,9 +48,10 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   std::shared_ptr<CellOrder const> first_order;
-  SharedList<double> own_masses;  // kg, in the user's order, slaves' with them
-  SharedList<double> mass_list;   // the same, slaves' handed on
-  double mass_in_all = 0;         // kg, of the first mesh
+  detail::SumUnit mass_unit;                // by the first mesh
+  SharedList<detail::ExactSum> own_masses;  // in the user's order, slaves' with them
+  SharedList<double> mass_list;             // the same in kg, slaves' handed on
+  double mass_in_all = 0;                   // kg, of the first mesh
   NodeRows node_rows;
   Index rows = 0;             // of fields of nodes: free ones are among them
   Point<dim> middle{};        // m, of the box around the first mesh: `rest` is relative to it
@@ -69,25 +70,17 @@ struct Layout<B, Mesh<Es...>, Fs...> {
          std::tuple<Group<Fs>...> const& groups, Layout const* other = nullptr,
          NodeRows known_rows = {})
       : node_rows(std::move(known_rows)) {
-    if (other != nullptr) {
-      first_order = other->first_order;
-      middle = other->middle;
-      mass_in_all = other->mass_in_all;
-    }
-    make(backend, topology, material, groups, nullptr,
-         [&] { return SharedList(detail::lumped_masses(topology.mesh(), material.density)); });
+    if (other != nullptr) keep_from(*other);
+    make(backend, topology, material, groups, nullptr);
   }
   /// The same from the layout before a change.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups, Layout const& before,
          Transfer<dim> const& transfer, detail::TouchedElements<Mesh<Es...>> const& touched,
-         std::vector<Index> const& looked_at)
-      : first_order(before.first_order), mass_in_all(before.mass_in_all), middle(before.middle) {
+         std::vector<Index> const& looked_at) {
+    keep_from(before);
     Change const change{before, transfer, touched, looked_at};
-    make(backend, topology, material, groups, &change, [&] {
-      return detail::changed_masses(topology, material.density, before.own_masses, transfer,
-                                    touched);
-    });
+    make(backend, topology, material, groups, &change);
   }
 
   /// How many nodes the mesh has.
@@ -144,11 +137,17 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     return field;
   }
 
-  /// find_own_masses() gives own_masses. `change`: null where there was none.
-  template <class FindOwnMasses>
+  /// What follows from the first mesh.
+  void keep_from(Layout const& other) {
+    first_order = other.first_order;
+    middle = other.middle;
+    mass_unit = other.mass_unit;
+    mass_in_all = other.mass_in_all;
+  }
+
+  /// `change`: null where there was none.
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-            std::tuple<Group<Fs>...> const& groups, Change const* change,
-            FindOwnMasses const& find_own_masses) {
+            std::tuple<Group<Fs>...> const& groups, Change const* change) {
     HostThreads const threads(backend, topology);
     OrderedElements<sizeof...(Es)> ordered;
     std::optional<Numbering<Es...>> numbering;  // of a first mesh
@@ -164,7 +163,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     }
     if (!first_order) {
       first_order = std::make_shared<CellOrder const>(pliant::first_order(*numbering));
-      middle = detail::extent(topology).middle;
+      auto const box = detail::extent(topology);
+      middle = box.middle;
+      mass_unit = detail::unit_of_masses(material.density, box.volume);
     }
     rows = node_rows.count();
 
@@ -184,12 +185,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
 
     interpolation = InterpolationOn<B>(backend, topology.interpolation,
                                        [this](Index node) { return internal_of(node); });
-    own_masses = find_own_masses();
-    mass_list = own_masses;
-    topology.interpolation.hand_masses(
-        [&](Index i, int) -> double& { return mass_list.edit(static_cast<std::size_t>(i)); }, 1);
-    if (mass_in_all == 0)
-      for (double m : mass_list) mass_in_all += m;
+    find_masses(topology, material.density, change);
     make_mass(backend, material.density, change);
   }
 
@@ -265,16 +261,23 @@ struct Layout<B, Mesh<Es...>, Fs...> {
                                       });
   }
 
+  void find_masses(Topology<Mesh<Es...>> const& topology, double density, Change const* change) {
+    if (change == nullptr) {
+      own_masses = SharedList(detail::lumped_masses(topology.mesh(), density, mass_unit));
+      mass_list = detail::in_kilograms(own_masses, mass_unit);
+    } else {
+      own_masses = detail::changed_masses(*change, density);
+      mass_list = detail::changed_in_kilograms(*change, own_masses);
+    }
+    topology.interpolation.hand_masses(
+        [&](Index i, int) -> double& { return mass_list.edit(static_cast<std::size_t>(i)); }, 1);
+    if (mass_in_all == 0)
+      for (double m : mass_list) mass_in_all += m;
+  }
+
   void make_mass(B const& backend, double density, Change const* change) {
     auto const checked = [&](Index user) {
-      double const exact = mass_list[static_cast<std::size_t>(user)];
-      T const m = static_cast<T>(exact);
-      if (!(std::isfinite(m) && (m > T(0) || !(exact > 0)) &&
-            std::isfinite(static_cast<T>(density))))
-        throw Error("body: ", 8 * sizeof(T),
-                    " bits cannot hold the mass of a node under the density ", density,
-                    " kg/m³; take double, or other units");
-      return m;
+      return detail::checked_mass<T>(mass_list[static_cast<std::size_t>(user)], density);
     };
     if (change != nullptr) {
       std::vector<Index> places;

@@ -1,98 +1,143 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <memory>
 #include <vector>
 
-#include <pliant/body/touched_elements.hpp>
+#include <pliant/body/exact_sum.hpp>
+#include <pliant/body/layout_change.hpp>
+#include <pliant/error.hpp>
 #include <pliant/formulation/affine.hpp>
-#include <pliant/math/group_by_key.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/shared_list.hpp>
 
+// The masses of a body's nodes, as sums that do not depend on the order of elements: those of a mesh that was changed have
+// the bits of those of one made anew.
 namespace pliant::detail {
 
-/// Calls add(node, share) for the share that each element's nodes have of its mass, kg, on the threads of the host: each node is
-/// one thread's, and its shares come in the order of elements, as in a loop over these, so that sums have the same bits.
-template <Element E, class M, class Add>
-void add_in_order(M const& mesh, double density, Add const& add) {
-  auto const& elements = mesh.template elements<E>();
-  std::size_t const places = elements.size() * E::nodes;
-  auto const node = [&](std::size_t place) { return elements[place / E::nodes][place % E::nodes]; };
-  auto const shares = std::make_unique_for_overwrite<double[]>(places);
-  for_each_on_host(static_cast<Index>(elements.size()), few_elements(E::nodes), [&](Index i) {
-    auto const e = static_cast<std::size_t>(i);
-    auto const share = host_nodal_masses<E>(nodal(mesh, elements[e]), density);
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      shares[e * E::nodes + a] = share[static_cast<int>(a)];
-  });
-  auto const order = std::make_unique_for_overwrite<Index[]>(places);
-  auto const count = static_cast<Index>(mesh.nodes.size());
-  Index const shift = shift_to_few(count), ranges = (count >> shift) + 1;
-  auto const range_of = [&](Index place) { return node(static_cast<std::size_t>(place)) >> shift; };
-  auto const begin = distribute(
-      static_cast<Index>(places), ranges,
-      [&](Index from, Index to, Index* numbers) {
-        for (Index place = from; place < to; ++place) ++numbers[range_of(place)];
-      },
-      [&](Index from, Index to, Index* next) {
-        for (Index place = from; place < to; ++place)
-          order[static_cast<std::size_t>(next[range_of(place)]++)] = place;
-      });
-  for_each_on_host(ranges, 1, [&](Index range) {
-    auto const r = static_cast<std::size_t>(range);
-    for (Index k = begin[r]; k < begin[r + 1]; ++k) {
-      auto const place = static_cast<std::size_t>(order[static_cast<std::size_t>(k)]);
-      add(static_cast<std::size_t>(node(place)), shares[place]);
-    }
-  });
+/// The unit of the masses of nodes in a mesh of which the box around has a volume, m³, at a density, kg/m³: elements at a
+/// node lie beside each other, and curved ones not far outside of the box.
+inline SumUnit unit_of_masses(double density, double volume_of_box) {
+  return SumUnit(64 * density * volume_of_box);
 }
 
-/// Adds the lumped masses of a type's elements to their nodes', kg.
-template <Element E, class M>
-void add_masses(M const& mesh, double density, std::vector<double>& masses) {
-  auto const& elements = mesh.template elements<E>();
-  auto const add = [&](std::size_t node, double share) { masses[node] += share; };
-  HostParts const parts(static_cast<Index>(elements.size()), few_elements(E::nodes));
-  if (parts.count() > 1 && has_many_host_threads() &&
-      elements.size() <= std::numeric_limits<Index>::max() / E::nodes)
-    return add_in_order<E>(mesh, density, add);
-  for (auto const& element : elements) {
-    auto const share = host_nodal_masses<E>(nodal(mesh, element), density);
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      add(static_cast<std::size_t>(element[a]), share[static_cast<int>(a)]);
+/// A node's mass, kg, in a body's precision. Throws Error where that cannot hold it.
+template <class T>
+T checked_mass(double exact, double density) {
+  T const m = static_cast<T>(exact);
+  if (!(std::isfinite(m) && (m > T(0) || !(exact > 0)) && std::isfinite(static_cast<T>(density))))
+    throw Error("body: ", 8 * sizeof(T), " bits cannot hold the mass of a node under the density ",
+                density, " kg/m³; take double, or other units");
+  return m;
+}
+
+/// Calls add(node, share) for the share that each of an element's nodes has of its mass. Throws Error where that is no number
+/// or too large.
+template <Element E, class M, class Add>
+void share_mass(M const& mesh, Connectivity<E> const& nodes, double density, SumUnit const& unit,
+                Add const& add) {
+  auto const shares = host_nodal_masses<E>(nodal(mesh, nodes), density);
+  ExactSum share;
+  for (std::size_t a = 0; a < E::nodes; ++a) {
+    int const k = static_cast<int>(a);
+    if (a == 0 || shares[k] != shares[k - 1]) {  // those of linear simplices are the same
+      if (!unit.holds(shares[k]))
+        throw Error("body: the share of a node in the mass of an element is ", shares[k],
+                    " kg under the density ", density, " kg/m³; take other units");
+      share = unit.multiple_of(shares[k]);
+    }
+    add(static_cast<std::size_t>(nodes[a]), share);
   }
 }
 
-/// The lumped masses of a mesh's nodes, kg, slaves' with them.
+/// Adds to a sum in a loop over parts, which others may add to beside it.
+inline void add_in_parts(HostParts<Index> const& parts, ExactSum& sum, ExactSum const& share) {
+  if (parts.count() > 1)
+    sum.add_from_threads(share);
+  else
+    sum += share;
+}
+
+/// The lumped masses of a mesh's nodes, slaves' with them.
 template <Element... Es>
-std::vector<double> lumped_masses(Mesh<Es...> const& mesh, double density) {
-  std::vector<double> masses(mesh.nodes.size(), 0.0);
-  (add_masses<Es>(mesh, density, masses), ...);
+std::vector<ExactSum> lumped_masses(Mesh<Es...> const& mesh, double density, SumUnit const& unit) {
+  std::vector<ExactSum> masses(mesh.nodes.size());
+  auto const add_type = [&]<Element E>(E) {
+    auto const& elements = mesh.template elements<E>();
+    HostParts const parts(static_cast<Index>(elements.size()), few_elements(E::nodes));
+    parts([&](Index from, Index to, int) {
+      for (auto e = static_cast<std::size_t>(from); e < static_cast<std::size_t>(to); ++e)
+        share_mass<E>(mesh, elements[e], density, unit, [&](std::size_t node, ExactSum const& x) {
+          add_in_parts(parts, masses[node], x);
+        });
+    });
+  };
+  (add_type(Es{}), ...);
   return masses;
 }
-/// The same by those `before` a change of the topology: summed anew where nodes have elements that came or went, in the same
-/// order.
-template <class M>
-SharedList<double> changed_masses(Topology<M> const& topology, double density,
-                                  SharedList<double> const& before,
-                                  Transfer<M::dim> const& transfer,
-                                  TouchedElements<M> const& touched) {
-  auto masses = before;
-  if (transfer.staying_nodes() < transfer.old_nodes())
-    masses.keep(0, [&](std::size_t i) { return transfer.renumbered(static_cast<Index>(i)) >= 0; });
-  for (Index node = transfer.staying_nodes(); node < transfer.nodes(); ++node) masses.push_back(0);
+
+/// A list of values per node after a change of the topology: those of nodes that stay, and V{} of new ones.
+template <class V, int Dim>
+SharedList<V> carried_list(SharedList<V> list, Transfer<Dim> const& transfer) {
+  if (transfer.renumbers())
+    list.keep(static_cast<std::size_t>(transfer.first_renumbered()),
+              [&](std::size_t i) { return transfer.renumbered(static_cast<Index>(i)) >= 0; });
+  for (Index node = transfer.staying_nodes(); node < transfer.nodes(); ++node) list.push_back(V{});
+  return list;
+}
+
+/// The sums of lumped_masses after a change of the topology: those before it less the shares of elements that go, and
+/// with those of elements that come.
+template <class L, class M>
+SharedList<ExactSum> changed_masses(LayoutChange<L, M> const& change, double density) {
+  constexpr Index few_families = 128;
+  auto const& transfer = change.transfer;
+  auto const& touched = change.touched;
+  auto const& unit = change.before.mass_unit;
+  auto masses = carried_list(change.before.own_masses, transfer);
   for (Index const node : touched.nodes())
-    if (touched.changes_elements(node)) masses.edit(static_cast<std::size_t>(node)) = 0;
-  for_each_type_of<M>([&]<Element E>(E, std::size_t) {
-    for (auto const& element : touched.template nodes_after<E>()) {
-      auto const share = host_nodal_masses<E>(nodal(topology, element), density);
-      for (std::size_t a = 0; a < E::nodes; ++a)
-        if (touched.changes_elements(element[a]))
-          masses.edit(static_cast<std::size_t>(element[a])) += share[static_cast<int>(a)];
+    if (touched.changes_elements(node)) masses.edit(static_cast<std::size_t>(node));
+  auto const &gone = touched.families_before(), &come = touched.families_after();
+  HostParts const parts(static_cast<Index>(transfer.families().size()), few_families);
+  parts([&](Index from, Index to, int) {
+    for (auto f = static_cast<std::size_t>(from); f < static_cast<std::size_t>(to); ++f) {
+      gone.visit_all(f, [&]<Element E>(E, Connectivity<E> const& nodes) {
+        share_mass<E>(gone.topology(), nodes, density, unit, [&](std::size_t i, ExactSum const& x) {
+          if (Index const node = transfer.renumbered(static_cast<Index>(i)); node >= 0)
+            add_in_parts(parts, masses.edited(static_cast<std::size_t>(node)), -x);
+        });
+      });
+      come.visit_all(f, [&]<Element E>(E, Connectivity<E> const& nodes) {
+        share_mass<E>(come.topology(), nodes, density, unit, [&](std::size_t i, ExactSum const& x) {
+          add_in_parts(parts, masses.edited(i), x);
+        });
+      });
     }
   });
   return masses;
+}
+
+/// Sums in kg.
+inline SharedList<double> in_kilograms(SharedList<ExactSum> const& masses, SumUnit const& unit) {
+  std::vector<double> values(masses.size());
+  for_each_on_host(static_cast<Index>(values.size()), 16384, [&](Index node) {
+    auto const i = static_cast<std::size_t>(node);
+    values[i] = unit.value_of(masses[i]);
+  });
+  return SharedList(values);
+}
+
+/// The same after a change of the topology, by the list before it: slaves and masters, before and now, are among the nodes that
+/// the change looks at.
+template <class L, class M>
+SharedList<double> changed_in_kilograms(LayoutChange<L, M> const& change,
+                                        SharedList<ExactSum> const& masses) {
+  auto values = carried_list(change.before.mass_list, change.transfer);
+  for (Index const node : change.looked_at) {
+    auto const i = static_cast<std::size_t>(node);
+    values.edit(i) = change.before.mass_unit.value_of(masses[i]);
+  }
+  return values;
 }
 
 }  // namespace pliant::detail

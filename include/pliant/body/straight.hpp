@@ -14,11 +14,11 @@
 
 namespace pliant::detail {
 
-/// The box around a topology's nodes: its middle, and how far it reaches from there, m.
+/// The box around a topology's nodes: its middle, how far it reaches from there, m, and its volume, m³ (m² in 2D).
 template <int Dim>
 struct Extent {
   Point<Dim> middle;
-  double reach = 0;
+  double reach = 0, volume = 1;
 };
 template <class M>
 Extent<M::dim> extent(Topology<M> const& topology) {
@@ -27,7 +27,9 @@ Extent<M::dim> extent(Topology<M> const& topology) {
   Extent<M::dim> box;
   for (std::size_t k = 0; k < M::dim; ++k) {
     box.middle[k] = (bounds.low[k] + bounds.high[k]) / 2;
-    box.reach = std::max(box.reach, (bounds.high[k] - bounds.low[k]) / 2);
+    double const size = bounds.high[k] - bounds.low[k];
+    box.reach = std::max(box.reach, size / 2);
+    box.volume *= size;
   }
   return box;
 }

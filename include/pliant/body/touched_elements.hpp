@@ -67,22 +67,24 @@ class ElementsAtNodes {
   typename Parts::template Array<std::uint8_t> marks_;
 };
 
-/// The nodes of the members of families, each looked up once.
+/// The nodes of the members of families, each looked up once. Refers to their topology.
 template <class M>
 class FamilyNodes {
   using Member = typename Transfer<M::dim>::Member;
 
  public:
+  explicit FamilyNodes(Topology<M> const& topology) : topology_(topology) {}
+  [[nodiscard]] Topology<M> const& topology() const { return topology_; }
   void reserve(std::size_t families, std::size_t members) {
     first_.reserve(families);
     types_.reserve(members);
     places_.reserve(members);
     std::apply([&](auto&... rows) { (rows.reserve(members / sizeof...(rows)), ...); }, rows_);
   }
-  void add(Topology<M> const& topology, std::vector<Member> const& members) {
+  void add(std::vector<Member> const& members) {
     first_.push_back(types_.size());
     for (auto const& member : members)
-      visit_member(topology, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
+      visit_member(topology_, member, [&]<Element E>(E, Connectivity<E> const& nodes) {
         auto& rows = std::get<std::vector<Connectivity<E>>>(rows_);
         types_.push_back(member.type);
         places_.push_back(rows.size());
@@ -114,6 +116,7 @@ class FamilyNodes {
   std::vector<Connectivity<E>> const& rows() const {
     return std::get<std::vector<Connectivity<E>>>(rows_);
   }
+  Topology<M> const& topology_;
   std::vector<std::size_t> first_;           // member, by family
   std::vector<std::size_t> types_, places_;  // of members, and in the rows of their types
   decltype(M::tables) rows_;
@@ -141,7 +144,10 @@ class TouchedElements {
   template <class Find>
   TouchedElements(Topology<M> const& before, Topology<M> const& after,
                   Transfer<dim> const& transfer, Find const& find)
-      : nodes_(static_cast<std::size_t>(after.nodes()), 0), old_numbers_(transfer.old_numbers()) {
+      : nodes_(static_cast<std::size_t>(after.nodes()), 0),
+        old_numbers_(transfer.old_numbers()),
+        families_before_(before),
+        families_after_(after) {
     auto const reserve = [&](FamilyNodes<M>& nodes, auto const& members_of) {
       std::size_t members = 0;
       for (auto const& family : transfer.families()) members += members_of(family).size();
@@ -150,8 +156,8 @@ class TouchedElements {
     reserve(families_before_, [](auto const& family) -> auto& { return family.before; });
     reserve(families_after_, [](auto const& family) -> auto& { return family.after; });
     for (std::size_t f = 0; auto const& family : transfer.families()) {
-      families_before_.add(before, family.before);
-      families_after_.add(after, family.after);
+      families_before_.add(family.before);
+      families_after_.add(family.after);
       families_before_.visit_all(f, [&](auto, auto const& nodes) {
         for (Index const old : nodes)
           if (Index const node = transfer.renumbered(old); node >= 0) touch(node, of_elements);

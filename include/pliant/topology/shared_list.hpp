@@ -57,6 +57,8 @@ class SharedList {
   V const& operator[](std::size_t i) const { return blocks_[i / per_block]->values[i % per_block]; }
   /// An entry to be changed: one's own, whoever shared it.
   V& edit(std::size_t i) { return own(i / per_block).values[i % per_block]; }
+  /// An entry that was edited since the last copy was made: several threads may ask for theirs at once.
+  V& edited(std::size_t i) { return blocks_[i / per_block]->values[i % per_block]; }
 
   void push_back(V const& value) {
     if (size_ % per_block == 0) blocks_.push_back(std::make_shared<Block>());

@@ -68,9 +68,10 @@ class Transfer {
   explicit Transfer(Parts parts)
       : p_(std::move(parts)), facets_(std::move(p_.divided), std::move(p_.merged)) {
     stay_ = p_.old_nodes;
-    if (!p_.renumbered.empty())
-      stay_ = static_cast<Index>(
-          std::ranges::count_if(p_.renumbered, [](Index node) { return node >= 0; }));
+    if (p_.renumbered.empty()) return;
+    stay_ = static_cast<Index>(
+        std::ranges::count_if(p_.renumbered, [](Index node) { return node >= 0; }));
+    while (first_moved_ < stay_ && renumbered(first_moved_) == first_moved_) ++first_moved_;
   }
 
   Index old_nodes() const { return p_.old_nodes; }
@@ -87,6 +88,8 @@ class Transfer {
   }
   /// Whether parts of the mesh went, so that others may have other numbers.
   bool renumbers() const { return !p_.renumbered.empty(); }
+  /// Where it does, nodes before this one stay, and keep their numbers.
+  Index first_renumbered() const { return first_moved_; }
   std::vector<NewNode> const& new_nodes() const { return p_.new_nodes; }
   /// Nodes that go, by old numbers, as weighted sums over nodes that stay.
   std::vector<NewNode> const& gone() const { return p_.gone; }
@@ -288,7 +291,7 @@ class Transfer {
     return facet;
   }
   Parts p_;
-  Index stay_ = 0;
+  Index stay_ = 0, first_moved_ = 0;
   FacetTransfer<Dim> facets_;
 };
 
