@@ -107,6 +107,41 @@ TEST_CASE("a layout that was changed is what a new one would be", "[topology]") 
   });
 }
 
+TEST_CASE("energies of elements whose nodes hang at other masters are in the ledger",
+          "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Mesh<Tri3> const mesh{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{{0, 1, 2}, {0, 2, 3}}}};
+    Body body{backend, mesh, soft, Group<Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>>{}};
+    // The elements in the upper triangle, those inside of it, whose nodes are new, and those in the lower one.
+    auto const where = [&](bool upper, bool inside) {
+      std::vector<Index> found;
+      auto const& elements = body.mesh().template elements<Tri3>();
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        auto const centre = mean_of_nodes(*body.parts().state.topology, elements[e]);
+        bool const is_new = std::ranges::all_of(elements[e], [](Index node) { return node > 3; });
+        if (upper == (centre[1] > centre[0]) && (!inside || is_new))
+          found.push_back(static_cast<Index>(e));
+      }
+      return std::vector<std::vector<Index>>{found};
+    };
+    refine(body, {{0, 1}});
+    refine(body, where(true, true));
+    REQUIRE(body.mesh().slaves.size() == 3);  // the middles of the edges of the element inside
+    Random random(2);
+    body.set_displacements(random.field<2>(body.mesh().nodes.size(), 1e-3));
+    double const before = strain_energy(body);
+    auto const entries = ledger(body).size();
+
+    // Two of them hang on a node that begins to hang itself, in elements that have not that node.
+    REQUIRE(coarsen(body, where(false, false)).merged == 1);
+
+    REQUIRE(ledger(body).size() == entries + 1);
+    CHECK(std::abs(strain_energy(body) - before) > 0.01 * before);
+    check_ledger(body, before, entries);
+    check_layout(body);
+  });
+}
+
 /// By the new number of each element the old one of those that stay, -1 for others.
 template <class M>
 std::vector<Index> old_elements(TopologyChange<M> const& change) {

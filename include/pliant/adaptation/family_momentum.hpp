@@ -1,9 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/carried_nodes.hpp>
+#include <pliant/body/lumped_masses.hpp>
 #include <pliant/body/touched_elements.hpp>
 #include <pliant/constraint/condition.hpp>
 #include <pliant/formulation/affine.hpp>
@@ -82,25 +86,38 @@ void add_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& t
       impulse[static_cast<std::size_t>(node)][k] += lost[k] * share / volume;
 }
 
-/// What each node must be given where an element stays, but one of its nodes begins or ceases to hang: the difference in the
-/// velocity at which its mass moves.
-template <Element E, class M>
-void add_impulse_of_slaves(Topology<M> const& now, TouchedElements<M> const& touched,
-                           std::size_t type, double density,
+/// What a node that stays must be given where it begins or ceases to hang, or hangs otherwise: the difference in the velocity
+/// at which the mass moves that it has of elements that stay. That is what is left of its own without the shares of those
+/// that come.
+template <class Layout, class M>
+void add_impulse_of_slaves(Transfer<M::dim> const& transfer, TouchedElements<M> const& touched,
+                           double density, Layout const& layout,
                            ValuesAt<Point<M::dim>> const& v_before,
                            ValuesAt<Point<M::dim>> const& v, ValuesAt<Point<M::dim>>& impulse) {
-  for (auto const& element : touched.of_type(type).staying) {
-    auto const& to = touched.template nodes_after<E>()[element.place];
-    auto const changes = [&](Index node) { return touched.hangs_otherwise(node); };
-    if (std::ranges::none_of(to, changes)) continue;
-    auto const volumes = host_nodal_volumes<E>(nodal(now, to));
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      if (changes(to[a]))
-        for (std::size_t k = 0; k < M::dim; ++k)
-          impulse[static_cast<std::size_t>(to[a])][k] +=
-              density * volumes[static_cast<int>(a)] *
-              (v_before[static_cast<std::size_t>(touched.old_number(to[a]))][k] -
-               v[static_cast<std::size_t>(to[a])][k]);
+  auto const changes = [&](Index node) {
+    return node < transfer.staying_nodes() && touched.hangs_otherwise(node);
+  };
+  std::vector<Index> nodes;
+  std::ranges::copy_if(touched.nodes(), std::back_inserter(nodes), changes);
+  if (nodes.empty()) return;
+  ValuesAt<ExactSum> masses(*v.subset);
+  for (Index const node : nodes) {
+    auto const i = static_cast<std::size_t>(node);
+    masses[i] = layout.own_masses[i];
+  }
+  auto const& come = touched.families_after();
+  come.visit_all([&]<Element E>(E, Connectivity<E> const& element) {
+    if (std::ranges::any_of(element, changes))
+      share_mass<E>(come.topology(), element, density, layout.mass_unit,
+                    [&](std::size_t node, ExactSum const& share) {
+                      if (changes(static_cast<Index>(node))) masses[node] += -share;
+                    });
+  });
+  for (Index const node : nodes) {
+    auto const i = static_cast<std::size_t>(node);
+    double const mass = layout.mass_unit.value_of(masses[i]);
+    auto const &from = v_before[static_cast<std::size_t>(touched.old_number(node))], &to = v[i];
+    for (std::size_t k = 0; k < M::dim; ++k) impulse[i][k] += mass * (from[k] - to[k]);
   }
 }
 
@@ -124,9 +141,7 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M>
   ValuesAt<Point<dim>> impulse(*v.subset);
   for (std::size_t number = 0; auto const& family : plan.transfer.families())
     add_family_impulse(plan, touched, family, number++, density, v_before, moving, impulse);
-  for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
-    add_impulse_of_slaves<E>(*plan.after, touched, type, density, v_before, moving, impulse);
-  });
+  add_impulse_of_slaves(plan.transfer, touched, density, layout, v_before, moving, impulse);
   plan.after->interpolation.hand_masses(components(impulse), M::dim);
   Point<dim> taken{};
   for (Index const node : v.subset->nodes) {

@@ -152,19 +152,15 @@ ChangedTopology<Parts> change_topology(
   std::vector<Point<dim>> loads;
   if (parts.state.load.size() > 0) loads = parts.layout.in_user_order(parts.state.load);
   std::vector<std::vector<Tag>> groups, tags;  // by type: before and after
-  std::vector<std::vector<Index> const*> elements, elements_before;
   std::vector<detail::CarriedPoints> points;
   auto const kept = detail::kept_points(std::as_const(parts));
   parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    auto const& own = touched.of_type(groups.size());
-    elements_before.push_back(&own.before);
-    elements.push_back(&own.after);
     groups.push_back(user_groups<typename Table::element>(std::as_const(parts)));
   });
   double const energy_before = detail::energy_of_some(
-      std::as_const(parts), elements_before,
-      [&]<Element E>() -> auto& { return touched.template nodes_before<E>(); }, groups);
+      std::as_const(parts),
+      [&]<Element E>(auto const& visit) { touched.template visit_before<E>(visit); }, groups);
   parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
     std::size_t const type = tags.size();
@@ -213,8 +209,8 @@ ChangedTopology<Parts> change_topology(
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
   state.implicit = {};
   changed.strain_energy = detail::energy_of_some(
-      std::as_const(next), elements,
-      [&]<Element E>() -> auto& { return touched.template nodes_after<E>(); }, tags);
+      std::as_const(next),
+      [&]<Element E>(auto const& visit) { touched.template visit_after<E>(visit); }, tags);
   return changed;
 }
 
