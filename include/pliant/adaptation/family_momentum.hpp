@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/body/carried_nodes.hpp>
 #include <pliant/body/lumped_masses.hpp>
 #include <pliant/body/touched_elements.hpp>
@@ -53,16 +54,21 @@ Point<M::dim> velocity_in(TouchedElements<M> const& touched,
   return velocity;
 }
 
-/// What each node must be given so that a family, which has a number among all, keeps its momentum: the difference that lumping
-/// made, shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers of the mesh
-/// before and after.
+/// What nodes are given, kg m/s, as lists of several threads.
+template <int Dim>
+using ImpulseList = std::vector<std::pair<Index, Point<Dim>>>;
+
+/// Lists what each node must be given so that a family, which has a number among all, keeps its momentum: the difference that
+/// lumping made, shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers
+/// of the mesh before and after.
 template <class M>
-void add_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
-                        typename Transfer<M::dim>::Family const& family, std::size_t number,
-                        double density, ValuesAt<Point<M::dim>> const& v_before,
-                        ValuesAt<Point<M::dim>> const& v, ValuesAt<Point<M::dim>>& impulse) {
+void list_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
+                         std::size_t number, double density,
+                         ValuesAt<Point<M::dim>> const& v_before, ValuesAt<Point<M::dim>> const& v,
+                         ImpulseList<M::dim>& list) {
   constexpr std::size_t dim = M::dim;
-  Point<dim> const base = velocity_in(touched, family, number, v_before, v);
+  Point<dim> const base =
+      velocity_in(touched, plan.transfer.families()[number], number, v_before, v);
   Point<dim> lost{};
   touched.families_before().visit_all(number, [&]<Element E>(E, Connectivity<E> const& nodes) {
     auto const p = momentum<E>(nodes, host_nodal_volumes<E>(nodal(*plan.before, nodes)), density,
@@ -71,19 +77,43 @@ void add_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& t
   });
   double volume = 0;
   std::vector<std::pair<Index, double>> shares;  // of nodes, in this volume
-  shares.reserve(8 * family.after.size());
   touched.families_after().visit_all(number, [&]<Element E>(E, Connectivity<E> const& nodes) {
     auto const own = host_nodal_volumes<E>(nodal(*plan.after, nodes));
     auto const p = momentum<E>(nodes, own, density, v, base);
     for (std::size_t k = 0; k < dim; ++k) lost[k] -= p[k];
     for (int a = 0; a < E::nodes; ++a) {
       volume += own[a];
-      shares.emplace_back(nodes[static_cast<std::size_t>(a)], own[a]);
+      Index const node = nodes[static_cast<std::size_t>(a)];
+      auto const known = std::ranges::find(shares, node, &std::pair<Index, double>::first);
+      if (known == shares.end())
+        shares.emplace_back(node, own[a]);
+      else
+        known->second += own[a];
     }
   });
-  for (auto const& [node, share] : shares)
-    for (std::size_t k = 0; k < dim; ++k)
-      impulse[static_cast<std::size_t>(node)][k] += lost[k] * share / volume;
+  if (lost == Point<dim>{}) return;
+  for (auto const& [node, share] : shares) {
+    auto& own = list.emplace_back(node, lost).second;
+    for (double& x : own) x *= share / volume;
+  }
+}
+
+/// The impulses of all families, on the threads of the host.
+template <class M>
+void add_family_impulses(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
+                         double density, ValuesAt<Point<M::dim>> const& v_before,
+                         ValuesAt<Point<M::dim>> const& v, ValuesAt<Point<M::dim>>& impulse) {
+  constexpr Index few_families = 128;
+  HostParts const parts(static_cast<Index>(plan.transfer.families().size()), few_families);
+  std::vector<ImpulseList<M::dim>> lists(static_cast<std::size_t>(parts.count()));
+  parts([&](Index from, Index to, int part) {
+    for (auto f = static_cast<std::size_t>(from); f < static_cast<std::size_t>(to); ++f)
+      list_family_impulse(plan, touched, f, density, v_before, v,
+                          lists[static_cast<std::size_t>(part)]);
+  });
+  for (auto const& list : lists)  // in the order of families
+    for (auto const& [node, own] : list)
+      for (std::size_t k = 0; k < M::dim; ++k) impulse[static_cast<std::size_t>(node)][k] += own[k];
 }
 
 /// What a node that stays must be given where it begins or ceases to hang, or hangs otherwise: the difference in the velocity
@@ -139,8 +169,7 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M>
   plan.before->interpolation.apply_masses(components(v_before), M::dim);
   plan.after->interpolation.apply_masses(components(moving), M::dim);
   ValuesAt<Point<dim>> impulse(*v.subset);
-  for (std::size_t number = 0; auto const& family : plan.transfer.families())
-    add_family_impulse(plan, touched, family, number++, density, v_before, moving, impulse);
+  add_family_impulses(plan, touched, density, v_before, moving, impulse);
   add_impulse_of_slaves(plan.transfer, touched, density, layout, v_before, moving, impulse);
   plan.after->interpolation.hand_masses(components(impulse), M::dim);
   Point<dim> taken{};

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -20,15 +19,5 @@ struct Slave {
     visit("masters", r.masters...);
   }
 };
-
-/// Slaves by other numbers of nodes: numbers[node].
-inline std::vector<Slave> renumbered(std::vector<Slave> slaves, std::vector<Index> const& numbers) {
-  auto const renumber = [&](Index& node) { node = numbers[static_cast<std::size_t>(node)]; };
-  for (Slave& slave : slaves) {
-    renumber(slave.node);
-    for (auto& [master, weight] : slave.masters) renumber(master);
-  }
-  return slaves;
-}
 
 }  // namespace pliant
