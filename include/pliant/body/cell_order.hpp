@@ -141,16 +141,20 @@ OrderedElements<sizeof...(Es)> elements_in_order(
   };
   OrderedElements<types> ordered;
   for (auto& cells : ordered.cells) cells.resize(blocks);
-  constexpr Index few_blocks = 64;  // worth a thread
-  detail::for_each_on_host(first.blocks(), few_blocks, [&](Index block) {
-    auto const b = static_cast<std::size_t>(block);
-    if (is_known(b)) {
-      for (std::size_t type = 0; type < types; ++type)
-        ordered.cells[type][b] = before->cells[type][b];
-      return;
+  std::vector<std::size_t> others;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (!is_known(b)) {
+      others.push_back(b);
+      continue;
     }
+    for (std::size_t type = 0; type < types; ++type)
+      ordered.cells[type][b] = before->cells[type][b];
+  }
+  constexpr Index few_blocks = 64;  // worth a thread
+  detail::for_each_on_host(static_cast<Index>(others.size()), few_blocks, [&](Index k) {
+    auto const b = others[static_cast<std::size_t>(k)];
     std::array<BlockCells, types> own;
-    detail::for_each_leaf(*topology.tree, first, block, [&](Index c) {
+    detail::for_each_leaf(*topology.tree, first, static_cast<Index>(b), [&](Index c) {
       detail::for_each_type_of<Mesh<Es...>>([&]<Element E>(E, std::size_t type) {
         if (types == 1 || detail::is_cell_of<E>(topology.tree->cell(c))) own[type].add(c);
       });
@@ -176,18 +180,20 @@ std::vector<Connectivity<E>> rows_of_blocks(Topology<M> const& topology,
                                             ElementNumbers::Blocks const& cells,
                                             ElementBlocks const& blocks, bool all,
                                             NodeRows const& node_rows) {
-  std::vector<Index> first{0};  // row, by block
-  for (std::size_t b = 0; b < cells.size(); ++b)
-    first.push_back(first.back() + (all || !blocks.some_stay() || blocks.stays[b] == 0
-                                        ? static_cast<Index>(cells[b]->cells.size())
-                                        : 0));
+  std::vector<std::size_t> chosen;  // blocks
+  std::vector<Index> first{0};      // row, by these
+  for (std::size_t b = 0; b < cells.size(); ++b) {
+    if (!all && blocks.some_stay() && blocks.stays[b] != 0) continue;
+    chosen.push_back(b);
+    first.push_back(first.back() + static_cast<Index>(cells[b]->cells.size()));
+  }
   std::vector<Connectivity<E>> rows(static_cast<std::size_t>(first.back()));
   constexpr Index few_blocks = 32;  // worth a thread
-  detail::for_each_on_host(static_cast<Index>(cells.size()), few_blocks, [&](Index block) {
-    auto const b = static_cast<std::size_t>(block);
-    auto row = rows.begin() + first[b];
-    for (std::size_t k = 0; row != rows.begin() + first[b + 1]; ++k) {
-      *row = topology.template nodes_of_cell<E>(cells[b]->cells[k]);
+  detail::for_each_on_host(static_cast<Index>(chosen.size()), few_blocks, [&](Index i) {
+    auto const k = static_cast<std::size_t>(i);
+    auto row = rows.begin() + first[k];
+    for (Index const c : cells[chosen[k]]->cells) {
+      *row = topology.template nodes_of_cell<E>(c);
       for (Index& node : *row++) node = node_rows.of_node[static_cast<std::size_t>(node)];
     }
   });

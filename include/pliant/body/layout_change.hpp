@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -32,14 +33,15 @@ std::pair<NodeRows, std::vector<Index>> rows_after(NodeRows const& before,
                                                    std::vector<Index> const& places_of_families) {
   constexpr Index cells_per_region = 16 * cells_per_block;
   ChangedNodeRows rows(before, transfer);
-  std::vector<std::pair<Index, std::size_t>> order;  // of families, by their places
-  order.reserve(places_of_families.size());
-  for (std::size_t f = 0; f < places_of_families.size(); ++f)
-    order.emplace_back(places_of_families[f], f);
+  // Of families, by their places: those in the upper half of a number.
+  std::vector<std::uint64_t> order(places_of_families.size());
+  for (std::size_t f = 0; f < order.size(); ++f)
+    order[f] = static_cast<std::uint64_t>(places_of_families[f]) << 32 | f;
   std::ranges::sort(order);
-  for (auto const& own : order) {
-    Index const region = own.first / cells_per_region;
-    families_after.visit_all(own.second, [&](auto, auto const& nodes) {
+  for (std::uint64_t const own : order) {
+    auto const family = static_cast<std::size_t>(own & 0xffffffff);
+    Index const region = static_cast<Index>(own >> 32) / cells_per_region;
+    families_after.visit_all(family, [&](auto, auto const& nodes) {
       for (Index const node : nodes)
         if (node >= transfer.staying_nodes()) rows.give(node, region);
     });

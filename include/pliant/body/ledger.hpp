@@ -25,6 +25,7 @@ template <class Table, class Parts, class Elements>
 std::vector<double> all_counters(Parts const& parts, Elements const& elements, std::size_t which) {
   using Counters = CounterLayout<Table::groups>;
   std::vector<double> sums = counters<Table>(parts, elements, which);
+  if (!elements.statistics.open && parts.state.steps == parts.state.record.born) return sums;
   auto const tags = download<Tag>(elements.tags);
   if (!elements.statistics.open) {
     auto const each = static_cast<double>(parts.state.steps - parts.state.record.born);

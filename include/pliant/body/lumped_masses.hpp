@@ -133,10 +133,9 @@ template <class L, class M>
 SharedList<double> changed_in_kilograms(LayoutChange<L, M> const& change,
                                         SharedList<ExactSum> const& masses) {
   auto values = carried_list(change.before.mass_list, change.transfer);
-  for (Index const node : change.looked_at) {
-    auto const i = static_cast<std::size_t>(node);
-    values.edit(i) = change.before.mass_unit.value_of(masses[i]);
-  }
+  values.edit_listed(change.looked_at, [&](double& value, std::size_t k) {
+    value = change.before.mass_unit.value_of(masses[static_cast<std::size_t>(change.looked_at[k])]);
+  });
   return values;
 }
 

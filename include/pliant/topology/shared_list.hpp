@@ -85,22 +85,25 @@ class SharedList {
   };
   /// Makes these entries one's own, whoever shared them: then several threads may edit them at once, each another one.
   void own(Touched const& touched) {
-    for_each_block(0, [&](std::size_t b) {
-      if (touched.blocks_[b].load(std::memory_order_relaxed)) own(b);
-    });
+    std::vector<std::size_t> found;
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      if (touched.blocks_[b].load(std::memory_order_relaxed)) found.push_back(b);
+    detail::for_each_on_host(static_cast<Index>(found.size()), few_blocks,
+                             [&](Index k) { own(found[static_cast<std::size_t>(k)]); });
   }
-  /// edit(entry) for each of the numbers, which are different ones, on the threads of the host.
+  /// edit(entry, k) for the entry of the k-th of the numbers, which are different ones, on the threads of the host.
   template <class Edit>
   void edit_listed(std::vector<Index> const& numbers, Edit const& edit_one) {
     auto const for_each = [&](auto const& f) {
-      detail::for_each_on_host(static_cast<Index>(numbers.size()), 1024, [&](Index k) {
-        f(static_cast<std::size_t>(numbers[static_cast<std::size_t>(k)]));
+      detail::for_each_on_host(static_cast<Index>(numbers.size()), 1024, [&](Index i) {
+        auto const k = static_cast<std::size_t>(i);
+        f(static_cast<std::size_t>(numbers[k]), k);
       });
     };
     Touched touched(*this);
-    for_each([&](std::size_t i) { touched.add(i); });
+    for_each([&](std::size_t i, std::size_t) { touched.add(i); });
     own(touched);
-    for_each([&](std::size_t i) { edit_one(edit(i)); });
+    for_each([&](std::size_t i, std::size_t k) { edit_one(edit(i), k); });
   }
   /// Puts `count` entries in the place of those from `first` on: make(k), which may read the list as it was.
   template <class Make>
@@ -138,6 +141,7 @@ class SharedList {
 
  private:
   static constexpr std::size_t per_block = 256;
+  static constexpr Index few_blocks = 16;  // worth a thread
   static_assert(std::is_trivially_copyable_v<V>);
   union Block {  // without values, at first
     Block() {}
@@ -148,8 +152,9 @@ class SharedList {
   /// Of blocks from this one on, on the threads of the host.
   template <class F>
   void for_each_block(std::size_t first, F const& f) const {
-    detail::for_each_on_host(static_cast<Index>(blocks_.size() - std::min(first, blocks_.size())),
-                             16, [&](Index b) { f(first + static_cast<std::size_t>(b)); });
+    auto const count = blocks_.size() - std::min(first, blocks_.size());
+    detail::for_each_on_host(static_cast<Index>(count), few_blocks,
+                             [&](Index b) { f(first + static_cast<std::size_t>(b)); });
   }
   Block& own(std::size_t b) {
     if (blocks_[b].use_count() > 1) blocks_[b] = std::make_shared<Block>(*blocks_[b]);

@@ -93,9 +93,13 @@ class Topology {
   void set_boundaries(std::map<std::string, std::vector<Facet<dim>>> const& others,
                       Carry const& carry) {
     std::vector<std::pair<std::vector<Facet<dim>> const*, std::vector<Facet<dim>>*>> lists;
-    for (auto const& [name, facets] : others)
+    std::size_t count = 0;
+    for (auto const& [name, facets] : others) {
       lists.emplace_back(&facets, &stored_.boundaries[name]);
-    detail::for_each_on_host(static_cast<Index>(lists.size()), 1, [&](Index i) {
+      count += facets.size();
+    }
+    Index const few = count < 65536 ? static_cast<Index>(lists.size()) : 1;  // worth a thread
+    detail::for_each_on_host(static_cast<Index>(lists.size()), few, [&](Index i) {
       auto const& [from, to] = lists[static_cast<std::size_t>(i)];
       *to = carry(*from);
     });

@@ -49,7 +49,7 @@ class TreeCompaction {
       move(s.first_inner_edge, edge);
       for (Index& c : s.cells) move(c, cell);  // parts of split cells among them
     };
-    lists_.sides.edit_listed(known_sides, move_within_side);
+    lists_.sides.edit_listed(known_sides, [&](TreeSide& s, auto) { move_within_side(s); });
     replace(lists_.sides, side, [&](TreeSide s) {
       move_within_side(s);
       move(s.parent, side);
@@ -62,7 +62,7 @@ class TreeCompaction {
       move(e.middle, node);
       move(e.first_half, edge);
     };
-    lists_.edges.edit_listed(known_edges, move_within_edge);
+    lists_.edges.edit_listed(known_edges, [&](TreeEdge& e, auto) { move_within_edge(e); });
     replace(lists_.edges, edge, [&](TreeEdge e) {
       move_within_edge(e);
       move(e.parent, edge);
@@ -75,7 +75,7 @@ class TreeCompaction {
       move(c.first_child, cell);
       move(c.centre, node);
     };
-    lists_.cells.edit_listed(known, move_within_cell);
+    lists_.cells.edit_listed(known, [&](TreeCell& c, auto) { move_within_cell(c); });
     replace(lists_.cells, cell, [&](TreeCell c) {
       move_within_cell(c);
       move(c.parent, cell);
