@@ -20,25 +20,32 @@ std::vector<double> counters(Parts const& parts, Elements const& elements, std::
   return sums;
 }
 
+/// How many steps an element has been in a group, where that is the present one. `since`: by element; null: all came at
+/// step `born`.
+struct StepsInGroup {
+  Tag const* tags;
+  std::int64_t const* since;
+  std::int64_t born, now;
+  Tag group;
+  PLIANT_HOST_DEVICE double operator()(Index e) const {
+    if (tags[e] != group) return 0;
+    return static_cast<double>(now - (since == nullptr ? born : since[e]));
+  }
+};
+
 /// The same with the elements' present stay in their groups.
 template <class Table, class Parts, class Elements>
 std::vector<double> all_counters(Parts const& parts, Elements const& elements, std::size_t which) {
-  using Counters = CounterLayout<Table::groups>;
   std::vector<double> sums = counters<Table>(parts, elements, which);
-  if (!elements.statistics.open && parts.state.steps == parts.state.record.born) return sums;
-  auto const tags = download<Tag>(elements.tags);
-  if (!elements.statistics.open) {
-    auto const each = static_cast<double>(parts.state.steps - parts.state.record.born);
-    for (int group = 0; group < Table::groups; ++group)
-      sums[static_cast<std::size_t>(Counters::steps_of(group))] +=
-          static_cast<double>(std::ranges::count(tags, static_cast<Tag>(group))) * each;
-    return sums;
-  }
-  auto const since = download<std::int64_t>(elements.statistics.since);
-  for (std::size_t e = 0; e < tags.size(); ++e)
-    if (tags[e] < Table::groups)
-      sums[static_cast<std::size_t>(Counters::steps_of(tags[e]))] +=
-          static_cast<double>(parts.state.steps - since[e]);
+  auto const& statistics = elements.statistics;
+  std::int64_t const born = parts.state.record.born, now = parts.state.steps;
+  if (!statistics.open && born == now) return sums;
+  for (int group = 0; group < Table::groups; ++group)
+    sums[static_cast<std::size_t>(CounterLayout<Table::groups>::steps_of(group))] +=
+        parts.backend.sum(
+            static_cast<Index>(elements.tags.size()),
+            StepsInGroup{elements.tags.data(), statistics.open ? statistics.since.data() : nullptr,
+                         born, now, static_cast<Tag>(group)});
   return sums;
 }
 
