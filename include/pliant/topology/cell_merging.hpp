@@ -18,7 +18,13 @@ class CellMerging {
 
   /// Divided cells, each once.
   void operator()(std::vector<Index> const& parents) {
-    own_blocks(parents);
+    TreeLists::Touched touched(lists_);
+    for_each(parents, [&](Index c) {
+      auto const& cell = lists_.cells[at(c)];
+      touched.add(c);
+      for (Index k = 0; k < cell.divided().children; ++k) touched.add(cell.first_child + k);
+    });
+    lists_.own(touched);
     for (Index const c : parents) {
       auto const& cell = lists_.cells[at(c)];
       lists_.count_leaves(cell.has, 1 - cell.divided().children);
@@ -31,26 +37,6 @@ class CellMerging {
   template <class F>
   static void for_each(std::vector<Index> const& parents, F const& f) {
     for_each_on_host(static_cast<Index>(parents.size()), 256, [&](Index k) { f(parents[at(k)]); });
-  }
-
-  void own_blocks(std::vector<Index> const& parents) {
-    SharedList<TreeCell>::Touched cells(lists_.cells);
-    SharedList<TreeEdge>::Touched edges(lists_.edges);
-    SharedList<TreeSide>::Touched sides(lists_.sides);
-    auto const add = [&](TreeCell const& cell) {
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) edges.add(at(cell.edges[e]));
-      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) sides.add(at(cell.sides[s]));
-    };
-    for_each(parents, [&](Index c) {
-      auto const& cell = lists_.cells[at(c)];
-      cells.add(at(c));
-      add(cell);
-      for (Index k = 0; k < cell.divided().children; ++k)
-        add(lists_.cells[at(cell.first_child + k)]);
-    });
-    lists_.cells.own(cells);
-    lists_.edges.own(edges);
-    lists_.sides.own(sides);
   }
 
   void merge(Index c) {

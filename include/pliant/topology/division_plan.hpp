@@ -30,7 +30,9 @@ class DivisionPlan {
   /// Leaves, each once: refined are such as have no coarser neighbours but others of the list.
   DivisionPlan(TreeLists& lists, std::vector<CellSplit> const& leaves)
       : lists_(lists), leaves_(leaves), own_(leaves.size()) {
-    own_blocks();
+    TreeLists::Touched touched(lists);
+    for_each([&](Index r) { touched.add(leaf(r)); });
+    lists.own(touched);
     for_each([&](Index r) { visit_shared(r, [&](Index& number) { claim(number, r); }); });
     for_each([&](Index r) { own_[at(r)] = made_by(r); });
     for (Own const& own : own_) {
@@ -99,22 +101,6 @@ class DivisionPlan {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  void own_blocks() {
-    SharedList<TreeCell>::Touched cells(lists_.cells);
-    SharedList<TreeEdge>::Touched edges(lists_.edges);
-    SharedList<TreeSide>::Touched sides(lists_.sides);
-    for_each([&](Index r) {
-      cells.add(at(leaf(r)));
-      auto const& own_cell = cell(r);
-      for (std::size_t e = 0; e < at(own_cell.pattern().edges); ++e)
-        edges.add(at(own_cell.edges[e]));
-      for (std::size_t s = 0; s < at(own_cell.pattern().sides); ++s)
-        sides.add(at(own_cell.sides[s]));
-    });
-    lists_.cells.own(cells);
-    lists_.edges.own(edges);
-    lists_.sides.own(sides);
-  }
   /// visit(number) for what a leaf needs on its edges and sides, and others may need too: −1 where it is missing.
   template <class Visit>
   void visit_shared(Index r, Visit const& visit) {

@@ -44,18 +44,9 @@ class ElementNodes {
 
  private:
   ElementNodes(TreeLists& lists, std::vector<Index> const& cells) : lists_(lists), cells_(cells) {
-    SharedList<TreeCell>::Touched own_cells(lists.cells);
-    SharedList<TreeEdge>::Touched own_edges(lists.edges);
-    SharedList<TreeSide>::Touched own_sides(lists.sides);
-    for_each([&](Index k) {
-      own_cells.add(at(cells_[at(k)]));
-      auto const& cell = lists_.cells[at(cells_[at(k)])];
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) own_edges.add(at(cell.edges[e]));
-      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) own_sides.add(at(cell.sides[s]));
-    });
-    lists.cells.own(own_cells);
-    lists.edges.own(own_edges);
-    lists.sides.own(own_sides);
+    TreeLists::Touched touched(lists);
+    for_each([&](Index k) { touched.add(cells_[at(k)]); });
+    lists.own(touched);
   }
 
   template <class Placement>

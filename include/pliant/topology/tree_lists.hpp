@@ -60,6 +60,33 @@ struct TreeLists {
     return list;
   }
 
+  /// Which cells, edges and sides are to be edited, for `own`: several threads may add to it at once.
+  class Touched {
+   public:
+    explicit Touched(TreeLists const& lists)
+        : lists_(lists), cells_(lists.cells), edges_(lists.edges), sides_(lists.sides) {}
+    /// A cell with its edges and sides.
+    void add(Index c) {
+      cells_.add(at(c));
+      auto const& cell = lists_.cells[at(c)];
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) edges_.add(at(cell.edges[e]));
+      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) sides_.add(at(cell.sides[s]));
+    }
+
+   private:
+    friend TreeLists;
+    TreeLists const& lists_;
+    SharedList<TreeCell>::Touched cells_;
+    SharedList<TreeEdge>::Touched edges_;
+    SharedList<TreeSide>::Touched sides_;
+  };
+  /// Makes these the tree's own, whoever shared them: then several threads may edit them at once.
+  void own(Touched const& touched) {
+    cells.own(touched.cells_);
+    edges.own(touched.edges_);
+    sides.own(touched.sides_);
+  }
+
   /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
   void count_leaf(TreeCell const& cell, int by) {
     for_each_edge(cell, [&](TreeEdge& edge, auto const& add) {
