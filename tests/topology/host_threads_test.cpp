@@ -54,7 +54,12 @@ std::vector<std::vector<Index>> changed(int threads_of_host) {
   };
   auto const any = [](TreeCell const&) { return true; };
   auto const linear = [](TreeCell const& cell) { return cell.has == CellNodes::corners; };
+  auto const lists_of = [](Hierarchy<3> const& of) {
+    return listed(of.cells(), of.tree().edges(), of.tree().sides());
+  };
   for (int round = 0; round < 3; ++round) {
+    Hierarchy<3> const copy = tree;  // shares what does not change
+    auto const before = lists_of(copy);
     note(tree.refine(some_leaves(tree, 4, random, any)).new_nodes);
     std::vector<CellConversion> raise;
     for (Index const c : some_leaves(tree, 3, random, linear)) raise.push_back({c, CellNodes::all});
@@ -73,6 +78,7 @@ std::vector<std::vector<Index>> changed(int threads_of_host) {
     std::erase_if(
         lowered, [&](Index c) { return std::ranges::binary_search(parents, tree.cell(c).parent); });
     note(tree.merge(parents, lowered).gone);
+    CHECK(lists_of(copy) == before);
   }
   return states;
 }
