@@ -1,41 +1,12 @@
 #include <pliant/mesh/box.hpp>
-#include <pliant/topology/hierarchy.hpp>
 
 #include "support/catch.hpp"
-#include "support/random.hpp"
+#include "topology/tree_states.hpp"
 
 // Trees are divided, raised and merged by several threads at once, and are the same whatever their number.
 namespace pliant::test {
 
 namespace {
-
-template <class... Lists>
-std::vector<Index> listed(Lists const&... lists) {
-  std::vector<Index> numbers;
-  auto const visit = [&](auto const& self, auto const& value) -> void {
-    using V = std::remove_cvref_t<decltype(value)>;
-    if constexpr (std::is_floating_point_v<V>)
-      numbers.push_back(static_cast<Index>(1e6 * value));
-    else if constexpr (std::is_enum_v<V> || std::is_arithmetic_v<V>)
-      numbers.push_back(static_cast<Index>(value));
-    else if constexpr (requires { V::for_each_member([](auto const&...) {}, value); })
-      V::for_each_member([&](char const*, auto const& own) { self(self, own); }, value);
-    else
-      for (auto const& own : value) self(self, own);
-  };
-  (visit(visit, lists), ...);
-  return numbers;
-}
-
-/// Some of the leaves for which wanted(cell).
-template <class Wanted>
-std::vector<Index> some_leaves(Hierarchy<3> const& tree, std::size_t one_in, Random& random,
-                               Wanted const& wanted) {
-  auto leaves = tree.leaves();
-  std::erase_if(leaves,
-                [&](Index c) { return !wanted(tree.cell(c)) || random.below(one_in) != 0; });
-  return leaves;
-}
 
 /// Many random changes of a mesh of one element type; what came of each.
 template <Element E>
