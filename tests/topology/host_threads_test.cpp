@@ -66,4 +66,24 @@ TEMPLATE_TEST_CASE("trees are the same whatever the number of threads", "[topolo
   }
 }
 
+TEST_CASE("cells beside divided ones are divided while a copy shares what these made",
+          "[topology]") {
+  auto const divided = [](int threads_of_host) {
+    HostThreads const threads(threads_of_host);
+    Hierarchy<3> tree(mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {12, 12, 12}}));
+    std::vector<Index> even, odd;
+    for (Index c = 0; c < 4000; ++c) (c % 2 == 0 ? even : odd).push_back(c);
+    tree.refine(even);
+    Hierarchy<3> const copy = tree;
+    auto const lists_of = [](Hierarchy<3> const& of) {
+      return listed(of.cells(), of.tree().edges(), of.tree().sides());
+    };
+    auto const before = lists_of(copy);
+    tree.refine(odd);
+    CHECK(lists_of(copy) == before);
+    return lists_of(tree);
+  };
+  CHECK(divided(5) == divided(1));
+}
+
 }  // namespace pliant::test

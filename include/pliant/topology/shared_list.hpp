@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <memory>
@@ -55,8 +56,11 @@ class SharedList {
   [[nodiscard]] Iterator begin() const { return {*this, 0}; }
   [[nodiscard]] Iterator end() const { return {*this, size_}; }
   V const& operator[](std::size_t i) const { return blocks_[i / per_block]->values[i % per_block]; }
-  /// An entry to be changed: one's own, whoever shared it.
-  V& edit(std::size_t i) { return own(i / per_block).values[i % per_block]; }
+  /// An entry to be changed: one's own, whoever shared it. In a loop of several threads it has to be one's own already.
+  V& edit(std::size_t i) {
+    assert(!HostThreads::in_loop() || blocks_[i / per_block].use_count() == 1);
+    return own(i / per_block).values[i % per_block];
+  }
   /// An entry that was edited since the last copy was made: several threads may ask for theirs at once.
   V& edited(std::size_t i) { return blocks_[i / per_block]->values[i % per_block]; }
 
