@@ -9,7 +9,7 @@ namespace detail {
 
 /// Which nodes an element has behind those of its corners, and between which corners they lie.
 template <Element E>
-struct AddedNodes {
+struct RaisedNodes {
   static constexpr std::size_t corners = E::cell::corners, count = E::nodes - corners;
   using Corners = std::array<Index, corners>;
   struct Node {
@@ -64,7 +64,7 @@ struct AddedNodes {
 /// where the first of them has it.
 template <Element E>
 class AddedNumbers {
-  using Added = AddedNodes<E>;
+  using Added = RaisedNodes<E>;
 
  public:
   using Corners = typename Added::Corners;
@@ -147,7 +147,7 @@ class AddedNumbers {
 
 template <Element E, Element Linear>
 Mesh<E> with_added_nodes(Mesh<Linear> const& from) {
-  using Added = AddedNodes<E>;
+  using Added = RaisedNodes<E>;
   auto const& linear = from.template elements<Linear>();
   HostThreads const threads(HostThreads::worth(E::nodes * linear.size()));
   AddedNumbers<E> const numbers(linear, static_cast<Index>(from.nodes.size()));

@@ -59,7 +59,7 @@ struct NodesOfPatch {
 
   /// The fields of all nodes to shared memory; `next` is the batch of the thread's number.
   template <int AtOnce, class T, int M, class... Fields>
-  __device__ __forceinline__ void load(NodeRows<T, M> const& rows, Batch<AtOnce> next,
+  __device__ __forceinline__ void load(SharedRows<T, M> const& rows, Batch<AtOnce> next,
                                        Fields const&... fields) const {
     Index const threads = static_cast<Index>(blockDim.x);
 #pragma unroll 1

@@ -8,7 +8,7 @@ namespace pliant::detail {
 /// bytes or fewer, all first pieces first. So a warp that reads scattered nodes has few bank
 /// conflicts.
 template <class T, int M>
-struct NodeRows {
+struct SharedRows {
   static constexpr int widest = 16 / sizeof(T);
   static constexpr int width = M % widest == 3 ? M + 1 : M;  // padding included
 
