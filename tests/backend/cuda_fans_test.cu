@@ -247,10 +247,16 @@ void compare_plan(Table const& table, int patch_size) {
   detail::PatchCounts const too_few{right.nodes, right.diagonals, right.fans, right.slots - 4};
   detail::PatchCounts const too_many{2 * right.nodes, 2 * right.diagonals, 2 * right.fans,
                                      2 * right.slots};
+  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patch_size);
+  auto const first = upload(backend, cuts.first());
+  auto const planned = [&](detail::KnownPatches<Planner> const& known) {
+    return detail::plan_patches<Planner>(backend, connectivity, 4, cuts, first.data(), known,
+                                         [](auto const&) { return true; });
+  };
   for (detail::PatchCounts const& guess : {detail::PatchCounts{}, right, too_few, too_many}) {
-    auto const plan =
-        detail::plan_patches<Planner>(backend, connectivity, static_cast<Index>(table.size()), 4,
-                                      patch_size, guess, [](auto const&) { return true; });
+    detail::PatchPlan<Planner> of_guess;
+    of_guess.capacity = guess;
+    auto const plan = planned({&of_guess});
     CHECK(plan.capacity.nodes == right.nodes);
     CHECK(plan.capacity.fans == right.fans);
     CHECK(plan.capacity.slots == right.slots);

@@ -475,14 +475,14 @@ TEST_CASE("a recording keeps what its verbs use when the backend is gone", "[cud
 template <class Planner>
 void compare_plan(std::vector<std::array<Index, Planner::nodes>> const& table, int patch_size) {
   auto const expected = test::plan_on_host<Planner>(table, patch_size);
-  auto const count = static_cast<Index>(table.size());
   Cuda<double> const backend;
   std::vector<Index> flat;
   for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
-  auto connectivity = backend.array<Index>(flat.size());
-  connectivity.upload(flat);
-  auto const plan = detail::plan_patches<Planner>(backend, connectivity, count, Planner::nodes,
-                                                  patch_size, {}, [](auto const&) { return true; });
+  auto const connectivity = upload(backend, flat);
+  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patch_size);
+  auto const first = upload(backend, cuts.first());
+  auto const plan = detail::plan_patches<Planner>(backend, connectivity, Planner::nodes, cuts,
+                                                  first.data(), {}, [](auto const&) { return true; });
   CHECK(plan.capacity.nodes == expected.capacity.nodes);
   CHECK(plan.capacity.diagonals == expected.capacity.diagonals);
   CHECK(plan.capacity.fans == expected.capacity.fans);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/backend/kernel.hpp>
+#include <pliant/backend/patch_cuts.hpp>
 #include <pliant/backend/patch_list.hpp>
 
 namespace pliant {
@@ -36,15 +38,19 @@ class Reference {
     Elements() = default;
     Elements(Reference const&, std::vector<std::array<Index, Nodes>> connectivity, int,
              std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given)
-        : connectivity_(std::move(connectivity)), tags_(tags.size()) {
+        : connectivity_(std::move(connectivity)),
+          tags_(tags.size()),
+          patches_(static_cast<Index>(connectivity_.size()), 512) {
       detail::check_nodes(connectivity_, nodes);
       tags_.upload(tags);
       tag_data_ = tags_.data();
     }
     Index count() const { return static_cast<Index>(connectivity_.size()); }
     Index scratch_nodes() const { return 0; }
-    static constexpr Index patch_size() { return 512; }
-    Index patch_count() const { return (count() + patch_size() - 1) / patch_size(); }
+    Index patch_size() const { return patches_.size(); }
+    Index patch_count() const { return patches_.count(); }
+    PatchRanges patches() const { return patches_.ranges(); }
+    std::span<Index const> patch_bounds() const { return patches_.first(); }
     HostArray<Tag>& tags() { return tags_; }
     HostArray<Tag> const& tags() const { return tags_; }
     HostArray<Tag> take_tags() { return std::move(tags_); }
@@ -59,6 +65,7 @@ class Reference {
     std::vector<std::array<Index, Nodes>> connectivity_;
     HostArray<Tag> tags_;
     Tag const* tag_data_ = nullptr;  // whoever owns them
+    detail::HostPatches patches_;
   };
 
   template <class F>
@@ -147,9 +154,9 @@ class Reference {
     auto const active = detail::active(table);
     auto const& elements = active.elements;
     for (Index k = 0; k < active.patch_count(); ++k) {
-      Index const first = elements.patch_size() * active.patch(k);
-      Index const last = std::min(elements.count(), first + elements.patch_size());
-      for (Index e = first; e < last; ++e)
+      auto const patch = static_cast<std::size_t>(active.patch(k));
+      auto const bounds = elements.patch_bounds();
+      for (Index e = bounds[patch]; e < bounds[patch + 1]; ++e)
         dispatch<Groups>(elements.tag(e), [&](auto group) { f(group, e, elements.nodes(e)); });
     }
   }

@@ -209,7 +209,7 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
             own.step,
             asleep,
             w.patch_levels.size() > 0 ? w.patch_levels.data() : nullptr,
-            table_.elements.patch_size(),
+            table_.elements.patches(),
             static_cast<T>(rule_.tolerance),
             static_cast<T>(rule_.release),
             rule_.stay,
@@ -238,9 +238,11 @@ double evaluations_per_step(TheBody& body, ChoiceRule<Fs...> const& rule) {
   std::array const places{Table::template group_of<Fs>...};
   auto const& user = table.user_elements();
   double sum = 0;
+  std::size_t patch = 0;
+  auto const bounds = table.elements.patch_bounds();
   for (std::size_t internal = 0; internal < groups.size(); ++internal) {
     auto const e = static_cast<std::size_t>(user[internal]);
-    auto const patch = internal / static_cast<std::size_t>(table.elements.patch_size());
+    while (static_cast<std::size_t>(bounds[patch + 1]) <= internal) ++patch;
     auto const place = std::ranges::find(places, int{groups[e]}) - places.begin();
     if (place < ChoiceRule<Fs...>::count && !asleep[e])
       sum += std::ldexp(costs[static_cast<std::size_t>(place)], levels.empty() ? 0 : levels[patch]);

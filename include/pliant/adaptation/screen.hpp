@@ -23,16 +23,16 @@ struct Screen {
   T above[Groups], below[Groups];  // H:H between which elements of a group may act, if any
   std::int64_t* noted;             // (patches)
   std::int64_t const* step;        // (1): of the look
-  Index patch_size;
+  PatchRanges patches;
 
   /// Notes the patch of elements of group G if one of them may act; NaN does not.
   template <int G, class S, class Own>
   PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, S const& squared, Own const& own) const {
     if (any_less(S(above[G]), select(S(below[G]) < squared, S(-1), squared)))
-      noted[some_element(own) / patch_size] = *step;
+      noted[patches.patch_of(some_element(own))] = *step;
   }
   PLIANT_HOST_DEVICE bool selects(Index element) const {
-    return noted[element / patch_size] == *step;
+    return noted[patches.patch_of(element)] == *step;
   }
 };
 

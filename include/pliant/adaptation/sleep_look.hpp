@@ -173,9 +173,13 @@ std::vector<bool> asleep_on(Parts const& parts) {
   auto const asleep = on_host<std::uint8_t>(parts.awake->asleep);
   Index const first = parts.patch_nodes->first_of_type[Parts::layout_type::template type_of<E>];
   auto const& user = table.user_elements();
-  for (std::size_t e = 0; e < sleeps.size(); ++e) {
-    Index const patch = first + static_cast<Index>(e) / table.elements.patch_size();
-    sleeps[static_cast<std::size_t>(user[e])] = asleep[static_cast<std::size_t>(patch)] != 0;
+  auto const bounds = table.elements.patch_bounds();
+  for (Index p = 0; p < table.elements.patch_count(); ++p) {
+    bool const own = asleep[static_cast<std::size_t>(first + p)] != 0;
+    auto const k = static_cast<std::size_t>(p);
+    for (auto e = static_cast<std::size_t>(bounds[k]); e < static_cast<std::size_t>(bounds[k + 1]);
+         ++e)
+      sleeps[static_cast<std::size_t>(user[e])] = own;
   }
   return sleeps;
 }

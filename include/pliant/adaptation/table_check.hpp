@@ -84,7 +84,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
   bool screens() const { return !ranks(); }
   Screen<T, Table::groups> screen() const {
     Screen<T, Table::groups> made{
-        {}, {}, workspace().noted.data(), parts_.clock.data(), table_.elements.patch_size()};
+        {}, {}, workspace().noted.data(), parts_.clock.data(), table_.elements.patches()};
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((made.above[G] = range<G>()[0], made.below[G] = range<G>()[1]), ...);
     }(std::make_integer_sequence<int, Table::groups>());

@@ -10,6 +10,7 @@
 #include <pliant/backend/field.hpp>
 #include <pliant/backend/host_array.hpp>
 #include <pliant/backend/patch_list.hpp>
+#include <pliant/backend/patch_ranges.hpp>
 
 // What a backend must offer: arrays, loops over nodes, loops over elements. A backend knows nothing
 // of mechanics; mechanics calls these verbs and knows nothing of threads. `Reference` is the
@@ -56,8 +57,9 @@
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go
 //   .take_tags()               gives the array of tags away: its new owner keeps it while loops run
-//   .patch_size() .patch_count()  a patch is a run of patch_size() consecutive elements (the last one may
-//                              be shorter), as large as suits the backend
+//   .patch_count() .patches() .patch_bounds()  a patch is a run of consecutive elements, as large as suits the backend;
+//                              a PatchRanges for loops, and the same bounds (patches + 1) on the host
+//   .patch_size()              how many elements a patch has at most
 //   .scratch_nodes()           rows that a field to accumulate into needs behind its nodes
 //   accumulate<Groups>(elements, kernel, out, fields...)
 //                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`
@@ -161,6 +163,8 @@ concept TableOf =
       { c.scratch_nodes() } -> std::same_as<Index>;
       { c.patch_size() } -> std::same_as<Index>;
       { c.patch_count() } -> std::same_as<Index>;
+      { c.patches() } -> std::same_as<PatchRanges>;
+      { c.patch_bounds() } -> std::convertible_to<std::span<Index const>>;
     };
 
 template <class B, class Table>

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <pliant/backend/patch_list.hpp>
+#include <pliant/backend/patch_ranges.hpp>
 #include <pliant/math/functions.hpp>
 
 namespace pliant::detail {
@@ -29,11 +30,13 @@ template <class T>
 struct ListedValueAt {
   ValueAt<T> values;
   Index const* list;  // see over
-  Index patch_size, count;
+  PatchRanges patches;
   PLIANT_HOST_DEVICE double operator()(Index i) const {
-    Index const k = i / patch_size;
-    Index const e = k < list[0] ? list[k + 1] * patch_size + i % patch_size : count;
-    return e < count ? values(e) : -std::numeric_limits<double>::infinity();
+    constexpr double none = -std::numeric_limits<double>::infinity();
+    Index const k = i / patches.size;
+    if (k >= list[0]) return none;
+    Index const patch = list[k + 1], e = patches.first[patch] + i % patches.size;
+    return e < patches.first[patch + 1] ? values(e) : none;
   }
 };
 
@@ -41,10 +44,9 @@ struct ListedValueAt {
 template <class B, class Elements, class T>
 double largest_of(B const& backend, ActiveElements<Elements> const& some, T const* values) {
   ValueAt<T> const at{values};
-  Index const count = some.elements.count();
-  if (some.list == nullptr) return backend.maximum(count, at);
-  Index const size = some.elements.patch_size();
-  return backend.maximum(some.most * size, ListedValueAt<T>{at, some.list, size, count});
+  if (some.list == nullptr) return backend.maximum(some.elements.count(), at);
+  PatchRanges const patches = some.elements.patches();
+  return backend.maximum(some.most * patches.size, ListedValueAt<T>{at, some.list, patches});
 }
 
 template <class T>

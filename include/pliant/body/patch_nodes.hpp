@@ -92,9 +92,10 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
     auto const& elements = parts.state.topology->mesh().template elements<E>();
     auto const& user = table.user_elements();
     Index const before = made.first_of_type.back();
+    auto const bounds = table.elements.patch_bounds();
     for (Index p = 0; p < table.elements.patch_count(); ++p) {
-      Index const first = p * table.elements.patch_size();
-      Index const last = std::min(table.count(), first + table.elements.patch_size());
+      Index const first = bounds[static_cast<std::size_t>(p)],
+                  last = bounds[static_cast<std::size_t>(p) + 1];
       // f(first node of an element, node)
       auto const for_each_node = [&](auto const& f) {
         for (Index e = first; e < last; ++e) {

@@ -17,9 +17,9 @@ template <class T>
 struct LimitBin {
   T const* squared_frequency;
   double largest;
-  Index patch_size, count;
+  PatchRanges patches;
   PLIANT_HOST_DEVICE Bin operator()(Index p) const {
-    Index const first = p * patch_size, last = min(count, first + patch_size);
+    Index const first = patches.first[p], last = patches.first[p + 1];
     T highest = T(0);
     for (Index e = first; e < last; ++e) highest = max(highest, squared_frequency[e]);
     double const x = static_cast<double>(highest);
@@ -36,10 +36,10 @@ template <class Parts>
 LimitCounts count_limits(Parts& parts, double largest) {
   auto bins = zeros<std::int64_t>(parts.backend, histogram_bins);
   parts.for_each_type([&](auto& table, auto&) {
-    parts.backend.histogram(table.elements.patch_count(),
-                            LimitBin<typename Parts::T>{table.scratch.data(), largest,
-                                                        table.elements.patch_size(), table.count()},
-                            bins.data());
+    parts.backend.histogram(
+        table.elements.patch_count(),
+        LimitBin<typename Parts::T>{table.scratch.data(), largest, table.elements.patches()},
+        bins.data());
   });
   LimitCounts counts{};
   bins.download(counts);

@@ -125,14 +125,14 @@ void make_schedule(Parts& parts) {
   double work = 0, elements = 0;
   parts.for_each_type([&](auto& table, auto& of_type) {
     auto levels = zeros<StepLevel>(backend, static_cast<std::size_t>(table.elements.patch_count()));
-    backend.for_each(table.elements.patch_count(),
-                     detail::RaisePatch<T>{table.scratch.data(), levels.data(),
-                                           table.elements.patch_size(), table.count()});
+    backend.for_each(
+        table.elements.patch_count(),
+        detail::RaisePatch<T>{table.scratch.data(), levels.data(), table.elements.patches()});
     schedule.patch_levels.push_back(download<StepLevel>(levels));
+    auto const bounds = table.elements.patch_bounds();
     for (std::size_t p = 0; p < schedule.patch_levels.back().size(); ++p) {
       int const level = schedule.patch_levels.back()[p];
-      Index const first = static_cast<Index>(p) * table.elements.patch_size();
-      double const size = std::min(table.elements.patch_size(), table.count() - first);
+      double const size = bounds[p + 1] - bounds[p];
       schedule.finest = std::max(schedule.finest, level);
       work += size * std::exp2(level);
       elements += size;

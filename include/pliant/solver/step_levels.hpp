@@ -109,9 +109,9 @@ template <class T>
 struct RaisePatch {
   T* weights;         // (elements)
   StepLevel* levels;  // (patches)
-  Index patch_size, count;
+  PatchRanges patches;
   PLIANT_HOST_DEVICE void operator()(Index p) const {
-    Index const first = p * patch_size, last = min(count, first + patch_size);
+    Index const first = patches.first[p], last = patches.first[p + 1];
     T highest = T(1);
     for (Index e = first; e < last; ++e) highest = max(highest, weights[e]);
     for (Index e = first; e < last; ++e) weights[e] = highest;

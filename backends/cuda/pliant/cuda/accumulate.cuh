@@ -27,24 +27,24 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   Index const thread = static_cast<Index>(threadIdx.x);
   Index const threads = static_cast<Index>(blockDim.x);
   NodesOfPatch const nodes = patches.nodes_of(patch);
-  Index e = patch * patches.patch_size + thread;
-  PatchLoop loop(patches.rounds);
-  auto const is_element = [&] { return loop.has_rounds() && e < patches.count; };
 
   // What does not depend on each other is loaded early: memory is far.
+  Index const first = patches.first[patch], end = patches.first[patch + 1];
   using Places = Packed<PatchRow<Nodes>>;
-  Places places;
-  if (is_element()) places = Places::load(patches.units + e);
+  Index unit = patch * patches.patch_size + thread;  // there are as many as threads, at least
+  Places places = Places::load(patches.units + unit);
   auto const first_nodes = nodes.batch<1>(thread);
   patches.load_diagonals(patch, memory.diagonals);
+  Index e = first + thread;
+  PatchLoop loop(end - first, thread, threads);
   begin_after_previous_kernel();
-  Tag const first_tag = is_element() ? patches.tags[e] : Tag{0};
+  Tag const first_tag = loop.has_rounds() ? patches.tags[e] : Tag{0};
   nodes.load(memory.rows, first_nodes, fields...);
   loop.set_tag(first_tag);
   __syncthreads();
 
 #pragma unroll 1
-  while (is_element()) {
+  while (loop.has_rounds()) {
     Places const own = places;
     Tag const own_tag = loop.tag();
     T values[Nodes][M];
@@ -52,10 +52,11 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
     for (int a = 0; a < Nodes; ++a) memory.rows.load(own.unpacked().local[a], values[a]);
     Index const own_element = e;
     e += threads;
+    unit += threads;
     loop.next_round(own_tag < Groups);
     auto const load_next = [&] {
-      if (!is_element()) return;
-      places = Places::load(patches.units + e);
+      if (!loop.has_rounds()) return;
+      places = Places::load(patches.units + unit);
       loop.set_tag(patches.tags[e]);
     };
     if constexpr (tuning.prefetch) load_next();

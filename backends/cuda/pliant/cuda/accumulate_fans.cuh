@@ -69,13 +69,12 @@ __global__ void __launch_bounds__(fan_tuning<T>().max_threads, (fan_blocks<T, Ke
   };
 
   // What does not depend on each other is loaded early: memory is far.
+  Index const first_element = patches.first[patch], end = patches.first[patch + 1];
   FanStart start = first_visits(thread);
   auto const first_nodes = nodes.batch<2>(thread);
   patches.load_diagonals(patch, memory.diagonals);
   begin_after_previous_kernel();
-  Index const first_element = patch * patches.patch_size;
-  load_tags(patches.tags + first_element, min(patches.count - first_element, patches.patch_size),
-            tags);
+  load_tags(patches.tags + first_element, end - first_element, tags);
   nodes.load(memory.rows, first_nodes, fields...);
   __syncthreads();
 

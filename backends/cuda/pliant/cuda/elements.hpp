@@ -8,6 +8,7 @@
 
 #include <pliant/backend/check_nodes.hpp>
 #include <pliant/backend/element_blocks.hpp>
+#include <pliant/backend/patch_cuts.hpp>
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/nodes_of_patch.cuh>
@@ -40,28 +41,29 @@ struct ElementView {
   Index count;
   Index const* connectivity;  // (elements, width)
   Tag const* tags;
-  int patch_size;
+  int patch_size;      // elements, at most
+  Index const* first;  // (patches + 1), elements
   ActiveList active;
 
   /// The i-th element of the active patches; negative where the last patch has none.
   __device__ __forceinline__ Index element(Index i) const {
-    if (active.list != nullptr) {
-      Index const patch = active.patch(i / patch_size);
-      i = patch < 0 ? count : patch * patch_size + i % patch_size;
-    }
-    return i < count ? i : -1;
+    if (active.list == nullptr) return i < count ? i : -1;
+    Index const patch = active.patch(i / patch_size);
+    if (patch < 0) return -1;
+    Index const e = first[patch] + i % patch_size;
+    return e < first[patch + 1] ? e : -1;
   }
 };
 
 /// The patches of an element table as kernels see them.
 template <class Unit>
 struct PatchView {
-  Index count;             // elements
-  int patch_size, rounds;  // of the block's threads
+  int patch_size;      // elements, at most
+  Index const* first;  // (patches + 1), elements
   PatchCounts capacity;
   Tag const* tags;
-  Unit const* units;               // PatchRow (elements), or FanVisit (patches, visits, fans)
-  PatchNode const* nodes;          // (patches, node capacity)
+  Unit const* units;       // PatchRow (patches, elements), or FanVisit (patches, visits, fans)
+  PatchNode const* nodes;  // (patches, node capacity)
   std::uint16_t const* diagonals;  // (patches, diagonal capacity)
   ActiveList active;
 
@@ -95,8 +97,8 @@ class CudaElements {
       : CudaElements(backend, connectivity, tags, nodes, blocks, before) {
     constexpr auto t = detail::fan_tuning<T>();
     bool const in_fans = order == NodeOrder::any_even && count_ >= t.least_elements;
-    if (in_fans && plan_fans(backend, {t.patch_size, t.threads}, before)) return;
-    plan(backend, tuned(count_), before);
+    if (in_fans && plan_fans(backend, {t.patch_size, t.threads}, blocks, before)) return;
+    plan(backend, tuned(count_), blocks, before);
   }
   /// With patches of a given size and threads per block, for tuning; small ones where the GPU has no room in
   /// shared memory for those. Throws Error when the size is no multiple of the threads.
@@ -121,13 +123,15 @@ class CudaElements {
   /// Nothing to do: kernels read the tags.
   void regroup() {}
 
-  Index patch_size() const { return patch_size_; }
-  Index patch_count() const { return count_ / patch_size_ + (count_ % patch_size_ != 0); }
+  Index patch_size() const { return cuts_.size(); }
+  Index patch_count() const { return cuts_.count(); }
+  PatchRanges patches() const { return {first_.data(), of_run_.data(), cuts_.size()}; }
+  std::span<Index const> patch_bounds() const { return cuts_.first(); }
   int threads() const { return threads_; }
   /// Whether accumulation takes fans of elements, where the kernel allows it.
   bool has_fans() const { return fans_.units.size() > 0; }
   View view(detail::ActiveList const& active) const {
-    return {count_, connectivity_.data(), tag_data_, patch_size_, active};
+    return {count_, connectivity_.data(), tag_data_, cuts_.size(), first_.data(), active};
   }
   detail::PatchView<detail::PatchRow<Nodes>> patch_view(detail::ActiveList const& active) const {
     return view_of(patches_, active);
@@ -168,21 +172,32 @@ class CudaElements {
   template <class P>
   detail::PatchView<typename P::Unit> view_of(detail::PatchPlan<P> const& plan,
                                               detail::ActiveList const& active) const {
-    return {count_,    patch_size_,       patch_size_ / threads_, plan.capacity,
-            tag_data_, plan.units.data(), plan.nodes.data(),      plan.diagonals.data(),
-            active};
+    return {cuts_.size(),      first_.data(),     plan.capacity,         tag_data_,
+            plan.units.data(), plan.nodes.data(), plan.diagonals.data(), active};
+  }
+  void cut(Cuda<T> const& backend, int size, ElementBlocks const& blocks) {
+    cuts_ = detail::PatchCuts(count_, size, blocks);
+    first_ = uploaded(backend, cuts_.first());
+    auto const runs = detail::PatchOfRun::count(count_);
+    of_run_ = backend.template array<Index>(static_cast<std::size_t>(runs));
+    backend.for_each(runs, detail::PatchOfRun{first_.data(), cuts_.count(), of_run_.data()});
   }
 
-  /// Of patches of a size, where they fit the GPU's shared memory and `is_fit` holds. `before`: as of plan_patches.
+  /// Of patches of a size, where they fit the GPU's shared memory and `is_fit` holds. `before`: null, or the plan before a change
+  /// to blocks.
   template <class P, class IsFit>
   bool make(detail::PatchPlan<P>& plan, Cuda<T> const& backend, int size,
-            detail::PatchPlan<P> const* before, IsFit const& is_fit) {
+            ElementBlocks const& blocks, CudaElements const* before,
+            detail::PatchPlan<P> const* known_plan, IsFit const& is_fit) {
     int const most = detail::most_shared_bytes(backend.device());
     if (size > most || detail::plan_bytes<P>(size) > most) return false;
+    cut(backend, size, blocks);
+    detail::KnownPatches<P> known;
+    if (known_plan != nullptr && known_plan->units.size() > 0 && before->patch_size() == size)
+      known = {known_plan, cuts_.known_from(before->cuts_, blocks)};
     bool fits = true;
     plan = detail::plan_patches<P>(
-        backend, connectivity_, count_, View::width, size,
-        before == nullptr ? detail::PatchCounts{} : before->capacity,
+        backend, connectivity_, View::width, cuts_, first_.data(), known,
         [&](detail::PatchCounts const& capacity) {
           // With three fields of three components, and tags.
           fits = is_fit(capacity) && detail::PatchMemory<T, 3, 9>::bytes(capacity) + size <= most;
@@ -191,34 +206,32 @@ class CudaElements {
     return fits;
   }
   void plan(Cuda<T> const& backend, std::array<int, 2> size_and_threads,
-            CudaElements const* before = nullptr) {
-    patch_size_ = size_and_threads[0];
-    threads_ = size_and_threads[1];
-    if constexpr (!detail::scatters<T, Nodes>) {
+            ElementBlocks const& blocks = {}, CudaElements const* before = nullptr) {
+    auto const [size, threads] = size_and_threads;
+    threads_ = threads;
+    if constexpr (detail::scatters<T, Nodes>) {
+      cut(backend, size, blocks);
+    } else {
       constexpr int small = detail::patch_tuning<T, Nodes>().small_size;
       auto const anything = [](auto const&) { return true; };
-      auto const known = [&] {
-        return before != nullptr && before->patch_size_ == patch_size_ ? &before->patches_
-                                                                       : nullptr;
-      };
-      if (make(patches_, backend, patch_size_, known(), anything) || patch_size_ <= small) return;
-      patch_size_ = threads_ = small;
-      (void)make(patches_, backend, small, known(), anything);
+      auto const* const known = before == nullptr ? nullptr : &before->patches_;
+      if (make(patches_, backend, size, blocks, before, known, anything) || size <= small) return;
+      threads_ = small;
+      (void)make(patches_, backend, small, blocks, before, known, anything);
     }
   }
   bool plan_fans(Cuda<T> const& backend, std::array<int, 2> size_and_threads,
-                 CudaElements const* before = nullptr) {
+                 ElementBlocks const& blocks = {}, CudaElements const* before = nullptr) {
     if constexpr (Nodes == detail::FanPlanner::nodes) {
       using detail::FanSplitter;
       auto const few_nodes = [](detail::PatchCounts const& capacity) {
         return capacity.nodes <= FanSplitter::most_nodes;
       };
       auto const [size, threads] = size_and_threads;
-      auto const* const known =
-          before != nullptr && before->patch_size_ == size ? &before->fans_ : nullptr;
-      if (size > FanSplitter::most_elements || !make(fans_, backend, size, known, few_nodes))
+      auto const* const known = before == nullptr ? nullptr : &before->fans_;
+      if (size > FanSplitter::most_elements ||
+          !make(fans_, backend, size, blocks, before, known, few_nodes))
         return false;
-      patch_size_ = size;
       threads_ = threads;
       return has_fans();
     } else {
@@ -252,7 +265,9 @@ class CudaElements {
   }
 
   Index count_ = 0;
-  int patch_size_ = 1, threads_ = 1;
+  int threads_ = 1;
+  detail::PatchCuts cuts_;
+  DeviceArray<Index> first_, of_run_;  // see PatchRanges
   DeviceArray<Tag> tags_;
   Tag const* tag_data_ = nullptr;  // whoever owns them
   DeviceArray<Index> connectivity_;

@@ -12,7 +12,9 @@ namespace pliant::detail {
 /// element that comes next, whether one has acted, and how many rounds are left.
 class PatchLoop {
  public:
-  __device__ explicit PatchLoop(int rounds) : bits_(static_cast<unsigned>(rounds) * round) {}
+  /// Of one of a block's threads, which share a patch's elements.
+  __device__ PatchLoop(Index elements, Index thread, Index threads)
+      : bits_(static_cast<unsigned>((elements - thread + threads - 1) / threads) * round) {}
   __device__ bool has_rounds() const { return bits_ >= round; }
   __device__ bool acted() const { return bits_ & act; }
   __device__ Tag tag() const { return static_cast<Tag>(bits_); }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include <pliant/backend/patch_cuts.hpp>
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/fan_plan.hpp>
 #include <pliant/cuda/launch.hpp>
@@ -16,6 +19,7 @@ struct PatchPlan {
   DeviceArray<typename Planner::Unit> units;  // (patches, Planner::units)
   DeviceArray<PatchNode> nodes;               // (patches, node capacity)
   DeviceArray<std::uint16_t> diagonals;       // (patches, diagonal capacity)
+  DeviceArray<PatchCounts> counts;            // (patches): what each has
 };
 
 inline constexpr int plan_threads = 128;
@@ -40,13 +44,9 @@ int plan_bytes(int patch_size) {
 
 /// Rows of a table's node numbers, cut into patches.
 struct PatchInput {
-  Index count;                // elements
   Index const* connectivity;  // (elements, width)
   int width, patch_size;
-
-  __device__ int size(Index first) const {
-    return static_cast<int>(min(count - first, static_cast<Index>(patch_size)));
-  }
+  Index const* first;  // (patches + 1), elements
 };
 
 /// Whether patches of such a capacity have room for so much.
@@ -55,56 +55,130 @@ PLIANT_HOST_DEVICE bool holds(PatchCounts const& capacity, PatchCounts const& co
          counts.fans <= capacity.fans && counts.slots <= capacity.slots;
 }
 
-/// Counts what each patch has, the most of it into `most`, and plans the patch where there is room for it.
+/// A plan as kernels see it.
+template <class Unit>
+struct PlanView {
+  PatchCounts capacity;
+  int units_of_patch;
+  Unit* units;
+  PatchNode* nodes;
+  std::uint16_t* diagonals;
+  PatchCounts* counts;
+
+  __device__ Unit* units_of(Index patch) const {
+    return units + static_cast<std::ptrdiff_t>(patch) * units_of_patch;
+  }
+  __device__ PatchNode* nodes_of(Index patch) const {
+    return nodes + static_cast<std::ptrdiff_t>(patch) * capacity.nodes;
+  }
+  __device__ std::uint16_t* diagonals_of(Index patch) const {
+    return diagonals + static_cast<std::ptrdiff_t>(patch) * capacity.diagonals;
+  }
+  /// By one thread of a patch; the most of all into `most`.
+  __device__ void set_counts(Index patch, PatchCounts const& own, PatchCounts* most) const {
+    counts[patch] = own;
+    atomicMax(&most->nodes, own.nodes);
+    atomicMax(&most->diagonals, own.diagonals);
+    atomicMax(&most->fans, own.fans);
+    atomicMax(&most->slots, own.slots);
+  }
+};
+
+/// Counts what each patch of a list has, and plans it where there is room.
 template <class Planner>
 __global__ void __launch_bounds__(plan_threads)
-    plan_each_patch(PatchInput input, PatchCounts capacity, typename Planner::Unit* units,
-                    PatchNode* nodes, std::uint16_t* diagonals, PatchCounts* most) {
+    plan_each_patch(PatchInput input, Index const* list, PlanView<typename Planner::Unit> to,
+                    PatchCounts* most) {
   extern __shared__ __align__(16) char planner_memory[];
-  Index const first = static_cast<Index>(blockIdx.x) * input.patch_size;
+  Index const patch = list[blockIdx.x], first = input.first[patch];
   PlanMemory memory(planner_memory);
-  Planner planner(memory, plan_threads, input.patch_size, input.size(first));
+  Planner planner(memory, plan_threads, input.patch_size,
+                  static_cast<int>(input.first[patch + 1] - first));
   auto const counts = planner.count(
       BlockThreads{}, input.connectivity + std::int64_t{first} * input.width, input.width);
-  if (threadIdx.x == 0) {
-    atomicMax(&most->nodes, counts.nodes);
-    atomicMax(&most->diagonals, counts.diagonals);
-    atomicMax(&most->fans, counts.fans);
-    atomicMax(&most->slots, counts.slots);
-  }
-  if (!holds(capacity, counts)) return;
-  auto const patch = static_cast<std::int64_t>(blockIdx.x);
-  planner.plan(BlockThreads{}, capacity, units + patch * Planner::units(input.patch_size, capacity),
-               nodes + patch * capacity.nodes, diagonals + patch * capacity.diagonals);
+  if (threadIdx.x == 0) to.set_counts(patch, counts, most);
+  if (!holds(to.capacity, counts)) return;
+  planner.plan(BlockThreads{}, to.capacity, to.units_of(patch), to.nodes_of(patch),
+               to.diagonals_of(patch));
 }
 
-/// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `guess`: a capacity that may
-/// be right, as that before a change, so that most patches are planned while they are counted; else none.
+/// Takes patches from a plan of the same capacity. known: (patches), the patch there; −1: none.
+template <class Unit>
+__global__ void __launch_bounds__(plan_threads)
+    take_known_patches(Index const* known, PlanView<Unit> from, PlanView<Unit> to,
+                       PatchCounts* most) {
+  auto const patch = static_cast<Index>(blockIdx.x);
+  Index const before = known[patch];
+  if (before < 0) return;
+  auto const copy = [](auto const* source, auto* target, int count) {
+    for (int i = static_cast<int>(threadIdx.x); i < count; i += plan_threads) target[i] = source[i];
+  };
+  copy(from.units_of(before), to.units_of(patch), to.units_of_patch);
+  copy(from.nodes_of(before), to.nodes_of(patch), to.capacity.nodes);
+  copy(from.diagonals_of(before), to.diagonals_of(patch), to.capacity.diagonals);
+  if (threadIdx.x == 0) to.set_counts(patch, from.counts[before], most);
+}
+
+/// What a table was planned to before a change: the plan, and by the patch now the patch there, or −1.
+template <class Planner>
+struct KnownPatches {
+  PatchPlan<Planner> const* plan = nullptr;
+  std::vector<Index> patches{};
+};
+
+/// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `known`: a plan of patches of
+/// the same size, of which the capacity may be right, so that most patches are planned while they are counted, or taken
+/// from there.
 template <class Planner, class B, class Accepts>
-PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity,
-                                Index count, int width, int patch_size, PatchCounts const& guess,
-                                Accepts const& accepts) {
+PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity, int width,
+                                PatchCuts const& cuts, Index const* first,
+                                KnownPatches<Planner> const& known, Accepts const& accepts) {
+  using View = PlanView<typename Planner::Unit>;
   PatchPlan<Planner> plan;
-  if (count == 0) return plan;
+  Index const patches = cuts.count();
+  if (patches == 0) return plan;
   DeviceGuard const device(backend.device());
-  PatchInput const input{count, connectivity.data(), width, patch_size};
-  Index const patches = (count - 1) / patch_size + 1;
-  LaunchShape const shape{patches, plan_threads, plan_bytes<Planner>(patch_size)};
+  PatchInput const input{connectivity.data(), width, cuts.size(), first};
   auto most = backend.template array<PatchCounts>(1);
-  auto const plan_for = [&](PatchCounts const& capacity) {
+  auto const uploaded = [&](std::vector<Index> const& list) {
+    return backend.array(std::span<Index const>(list));
+  };
+  auto const view = [&](PatchPlan<Planner> const& of) {
+    return View{of.capacity,
+                Planner::units(cuts.size(), of.capacity),
+                const_cast<typename Planner::Unit*>(of.units.data()),
+                const_cast<PatchNode*>(of.nodes.data()),
+                const_cast<std::uint16_t*>(of.diagonals.data()),
+                const_cast<PatchCounts*>(of.counts.data())};
+  };
+  auto const plan_for = [&](PatchCounts const& capacity, std::vector<Index> const& taken) {
     auto const for_each = [&](int n) {
       return static_cast<std::size_t>(patches) * static_cast<std::size_t>(n);
     };
     plan.capacity = capacity;
     if (capacity.nodes > 0)
       plan.units = backend.template array<typename Planner::Unit>(
-          for_each(Planner::units(patch_size, capacity)));
+          for_each(Planner::units(cuts.size(), capacity)));
     plan.nodes = backend.template array<PatchNode>(for_each(capacity.nodes));
     plan.diagonals = backend.template array<std::uint16_t>(for_each(capacity.diagonals));
-    launch("plan patches", shape, backend.stream(), plan_each_patch<Planner>, input, capacity,
-           plan.units.data(), plan.nodes.data(), plan.diagonals.data(), most.data());
+    plan.counts = backend.template array<PatchCounts>(static_cast<std::size_t>(patches));
+    std::vector<Index> others;
+    for (Index p = 0; p < patches; ++p)
+      if (taken.empty() || taken[static_cast<std::size_t>(p)] < 0) others.push_back(p);
+    if (others.size() < static_cast<std::size_t>(patches)) {
+      auto const before = uploaded(taken);
+      launch("take patches", {patches, plan_threads}, backend.stream(),
+             take_known_patches<typename Planner::Unit>, before.data(), view(*known.plan),
+             view(plan), most.data());
+    }
+    if (others.empty()) return;
+    auto const list = uploaded(others);
+    launch("plan patches",
+           {static_cast<Index>(others.size()), plan_threads, plan_bytes<Planner>(cuts.size())},
+           backend.stream(), plan_each_patch<Planner>, input, list.data(), view(plan), most.data());
   };
-  plan_for(guess);
+  PatchCounts const guess = known.plan == nullptr ? PatchCounts{} : known.plan->capacity;
+  plan_for(guess, known.patches);
   PatchCounts counts;
   most.download({&counts, 1});
   // What a patch stages shares the memory of a multiprocessor with others: there is little room to spare.
@@ -116,7 +190,7 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
   PatchCounts const capacity{in_fours(counts.nodes), in_fours(counts.diagonals),
                              in_fours(counts.fans), in_fours(counts.slots)};
   plan.capacity = capacity;
-  if (accepts(capacity)) plan_for(capacity);
+  if (accepts(capacity)) plan_for(capacity, {});
   return plan;
 }
 

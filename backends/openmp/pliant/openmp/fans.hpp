@@ -29,13 +29,15 @@ struct FanRun {
 class Fans {
  public:
   Fans() = default;
-  /// Of patches of patch_size elements with the nodes connectivity[4 · elements]. `before` has the blocks that stay.
-  Fans(Index const* connectivity, Index elements, Index patch_size, Index nodes,
+  /// Of elements with the nodes connectivity[4 · elements], in patches: `bounds` has the first element of each, and how many
+  /// there are. `before` has the blocks that stay.
+  Fans(Index const* connectivity, std::vector<Index> const& bounds, Index nodes,
        ElementBlocks const& blocks = {}, Fans const* before = nullptr)
-      : patch_size_(patch_size),
-        blocks_(connectivity, elements, blocks, before == nullptr ? nullptr : &before->blocks_),
-        elements_(HostArray<Index>::unset(static_cast<std::size_t>(elements))) {
-    auto const patches = (elements + patch_size - 1) / patch_size;
+      : patches_(bounds),
+        blocks_(connectivity, bounds.back(), blocks,
+                before == nullptr ? nullptr : &before->blocks_),
+        elements_(HostArray<Index>::unset(static_cast<std::size_t>(bounds.back()))) {
+    auto const patches = static_cast<Index>(bounds.size()) - 1;
     first_.resize(static_cast<std::size_t>(patches) + 1);
     for_each_on_host(patches, few_patches, [&](Index p) {
       Index& corners = first_[static_cast<std::size_t>(p) + 1];
@@ -100,12 +102,13 @@ class Fans {
  private:
   static constexpr Index few_patches = 4;  // worth a thread
 
+  Index first_element(Index patch) const { return patches_[static_cast<std::size_t>(patch)]; }
+
   /// Calls whole(block, its first element) for each block that a patch has all of, and cut(block, its first element, run)
   /// for what it has of the fans of others; corners and elements of the run are the block's.
   template <class Whole, class Cut>
   void for_each_block(Index patch, Whole const& whole, Cut const& cut) const {
-    Index const begin = patch * patch_size_,
-                end = std::min(begin + patch_size_, static_cast<Index>(elements_.size()));
+    Index const begin = first_element(patch), end = first_element(patch + 1);
     blocks_.for_each_in(begin, end, [&](FanBlock const& block, Index first) {
       if (first >= begin && first + static_cast<Index>(block.elements.size()) <= end)
         return whole(block, first);
@@ -129,7 +132,7 @@ class Fans {
   }
   void fill(Index patch, Index const* connectivity) {
     Index* node = nodes_.data() + first_[static_cast<std::size_t>(patch)];
-    Index* element = elements_.data() + patch * patch_size_;
+    Index* element = elements_.data() + first_element(patch);
     auto& sizes = sizes_[static_cast<std::size_t>(patch)];
     for_each_block(
         patch,
@@ -155,7 +158,7 @@ class Fans {
 
   template <class Visit>
   void for_each_fan(Index patch, Visit const& visit) const {
-    Index corner = first_[static_cast<std::size_t>(patch)], element = patch * patch_size_;
+    Index corner = first_[static_cast<std::size_t>(patch)], element = first_element(patch);
     for (int const size : sizes_[static_cast<std::size_t>(patch)]) {
       visit(FanRun{corner, corner + 2, element, size});
       corner += size + 3;
@@ -164,9 +167,8 @@ class Fans {
   }
   template <class Visit>
   void for_each_run(Index patch, Tag const* tags, Visit const& visit) const {
-    Index const first = patch * patch_size_;
-    auto const size = std::min(patch_size_, static_cast<Index>(elements_.size()) - first);
-    if (are_alike(tags + first, size))
+    Index const first = first_element(patch);
+    if (are_alike(tags + first, first_element(patch + 1) - first))
       return for_each_fan(patch, [&](FanRun const& fan) { visit(int{tags[first]}, fan); });
     for_each_fan(patch, [&](FanRun const& fan) {
       Index const* const members = elements_.data() + fan.elements;
@@ -178,7 +180,7 @@ class Fans {
     });
   }
 
-  Index patch_size_ = 1;
+  std::vector<Index> patches_;  // (patches + 1), elements
   FanBlocks blocks_;
   std::vector<Index> first_;                       // (patches + 1), corners
   HostArray<Index> nodes_, elements_;              // (corners), (elements)

@@ -9,6 +9,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/check_nodes.hpp>
 #include <pliant/backend/host_array.hpp>
+#include <pliant/backend/patch_cuts.hpp>
 #include <pliant/openmp/fans.hpp>
 #include <pliant/openmp/patch_rows.hpp>
 
@@ -21,8 +22,6 @@ class Patches {
  public:
   static constexpr int nodes_per_element = Nodes;
   static constexpr bool may_have_fans = Nodes == 4;
-  /// Elements; swept by bench, flat from 1024 to 8192.
-  static constexpr Index patch_size() { return 2048; }
 
   Patches() = default;
   /// `before`: the table before a change, which has what was planned for the blocks that stay (see PlansByBlocks).
@@ -36,23 +35,26 @@ class Patches {
         tags_(std::span<Tag const>(tags)),
         ordered_tags_(std::span<Tag const>(tags)),
         tag_data_(tags_.data()),
+        cuts_(static_cast<Index>(tags.size()), largest_patch, blocks),
         order_(HostArray<Index>::unset(tags.size())) {
     check_nodes(given_, nodes);
     if (before != nullptr && blocks.some_stay()) carry(blocks, *before);
     if (has_fans_)
-      fans_ = Fans(all_nodes(), count(), patch_size(), nodes, blocks,
+      fans_ = Fans(all_nodes(), cuts_.first(), nodes, blocks,
                    before == nullptr ? nullptr : &before->fans_);
     else
       rows_ = PatchRows(
           {all_nodes(), tags.size() * Nodes}, patch_count(),
-          [&](Index p) { return std::ptrdiff_t{Nodes} * std::min(count(), p * patch_size()); },
-          nodes);
+          [&](Index p) { return std::ptrdiff_t{Nodes} * cuts_.first(p); }, nodes);
     bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
     for_each_on_host(patch_count(), few_patches, [&](Index p) { order(p); });
   }
 
   Index count() const { return static_cast<Index>(order_.size()); }
-  Index patch_count() const { return (count() + patch_size() - 1) / patch_size(); }
+  Index patch_size() const { return cuts_.size(); }
+  Index patch_count() const { return cuts_.count(); }
+  PatchRanges patches() const { return cuts_.ranges(); }
+  std::span<Index const> patch_bounds() const { return cuts_.first(); }
   PatchRows const& rows() const { return has_fans_ ? fans_.rows() : rows_; }
   Index scratch_nodes() const { return rows().scratch_nodes(); }
   HostArray<Tag>& tags() { return tags_; }
@@ -73,9 +75,7 @@ class Patches {
   /// order without a look.
   void regroup() {
     for (Index p = 0; p < patch_count(); ++p) {
-      auto const first = static_cast<std::size_t>(p * patch_size());
-      auto const size =
-          std::min(ordered_tags_.size() - first, static_cast<std::size_t>(patch_size()));
+      Index const first = cuts_.first(p), size = cuts_.first(p + 1) - first;
       if (std::equal(tag_data_ + first, tag_data_ + first + size, ordered_tags_.data() + first))
         continue;
       std::copy_n(tag_data_ + first, size, ordered_tags_.data() + first);
@@ -108,7 +108,7 @@ class Patches {
     given_ = {};
   }
   void order(Index patch) {
-    Index const first = patch * patch_size(), last = std::min(count(), first + patch_size());
+    Index const first = cuts_.first(patch), last = cuts_.first(patch + 1);
     Index* next = order_.data() + first;
     auto bound = bounds_.begin() + patch * (groups_ + 1);
     bool const alike = are_alike(tag_data_ + first, last - first);
@@ -125,6 +125,8 @@ class Patches {
     if (has_fans_) fans_.order(patch, tag_data_, groups_);
   }
 
+  /// Elements; swept by bench, flat from 1024 to 8192.
+  static constexpr Index largest_patch = 2048;
   static constexpr Index few_patches = 4;  // worth a thread
 
   int groups_ = 1;
@@ -136,8 +138,9 @@ class Patches {
   Fans fans_;
   HostArray<Tag> tags_, ordered_tags_;  // as they are, and as the order knows them
   Tag const* tag_data_ = nullptr;       // whoever owns them
-  HostArray<Index> order_;              // elements, ordered by group inside each patch
-  std::vector<Index> bounds_;           // (patches, groups + 1)
+  HostPatches cuts_;
+  HostArray<Index> order_;     // elements, ordered by group inside each patch
+  std::vector<Index> bounds_;  // (patches, groups + 1)
 };
 
 /// The rows that the elements of a patch add to, its nodes' or scratch rows.
@@ -145,7 +148,7 @@ template <int Nodes>
 class PatchTargets {
  public:
   PatchTargets(Patches<Nodes> const& elements, Index patch)
-      : first_(patch * elements.patch_size()) {
+      : first_(elements.patch_bounds()[static_cast<std::size_t>(patch)]) {
     if (!elements.has_fans()) {
       targets_ = elements.rows().targets() + std::ptrdiff_t{Nodes} * first_;
       return;
