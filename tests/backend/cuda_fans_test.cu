@@ -1,4 +1,3 @@
-#include <cstring>
 #include <random>
 
 #include <pliant/body/numbering.hpp>
@@ -10,7 +9,6 @@
 #include <pliant/reference.hpp>
 
 #include "support/catch.hpp"
-#include "support/plan_on_host.hpp"
 
 namespace pliant::test::cuda_fans_test {
 
@@ -227,55 +225,6 @@ TEST_CASE("patches with too many nodes for fans have none", "[cuda]") {
   CudaElements<double, 4> const apart(Cuda<double>{}, scene.table, tags, 4000, {768, 128},
                                       NodeOrder::any_even);
   CHECK_FALSE(apart.has_fans());
-}
-
-void compare_plan(Table const& table, int patch_size) {
-  using Planner = detail::FanPlanner;
-  auto const expected = plan_on_host<Planner>(table, patch_size);
-  Cuda<double> const backend;
-  std::vector<Index> flat;
-  for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
-  auto const connectivity = upload(backend, flat);
-  auto const same = [](auto const& array, auto const& list) {
-    using U = typename std::remove_cvref_t<decltype(list)>::value_type;
-    std::vector<U> values(array.size());
-    array.download(values);
-    return values.size() == list.size() &&
-           std::memcmp(values.data(), list.data(), values.size() * sizeof(U)) == 0;
-  };
-  auto const& right = expected.capacity;
-  detail::PatchCounts const too_few{right.nodes, right.diagonals, right.fans, right.slots - 4};
-  detail::PatchCounts const too_many{2 * right.nodes, 2 * right.diagonals, 2 * right.fans,
-                                     2 * right.slots};
-  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patch_size);
-  auto const first = upload(backend, cuts.first());
-  auto const planned = [&](detail::KnownPatches<Planner> const& known) {
-    return detail::plan_patches<Planner>(backend, connectivity, 4, cuts, first.data(), known,
-                                         [](auto const&) { return true; });
-  };
-  for (detail::PatchCounts const& guess : {detail::PatchCounts{}, right, too_few, too_many}) {
-    detail::PatchPlan<Planner> of_guess;
-    of_guess.capacity = guess;
-    auto const plan = planned({&of_guess});
-    CHECK(plan.capacity.nodes == right.nodes);
-    CHECK(plan.capacity.fans == right.fans);
-    CHECK(plan.capacity.slots == right.slots);
-    CHECK(same(plan.units, expected.units));
-    CHECK(same(plan.nodes, expected.nodes));
-    CHECK(same(plan.diagonals, expected.diagonals));
-  }
-}
-
-TEST_CASE("a GPU plans fans as one host thread does", "[cuda]") {
-  compare_plan(Scene(9).table, 768);
-  compare_plan(Scene(5).table, 100);
-  Table random;
-  std::mt19937 generator(5);
-  for (Index e = 0; e < 3000; ++e) {
-    random.emplace_back();
-    for (Index& node : random.back()) node = e / 5 + static_cast<Index>(generator() % 40);
-  }
-  compare_plan(random, 768);
 }
 
 }  // namespace pliant::test::cuda_fans_test

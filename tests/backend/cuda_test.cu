@@ -1,4 +1,3 @@
-#include <cstring>
 #include <random>
 
 #include <pliant/cuda.hpp>
@@ -10,7 +9,6 @@
 #include <pliant/reference.hpp>
 
 #include "support/catch.hpp"
-#include "support/plan_on_host.hpp"
 
 using namespace pliant;
 using pliant::test::Approx;
@@ -469,53 +467,6 @@ TEST_CASE("a recording keeps what its verbs use when the backend is gone", "[cud
   cudaDeviceSynchronize();
   CHECK(download<double>(sum)[0] == 8e5);
   CHECK(download<double>(taken) == std::vector<double>(detail::CudaContext::max_partials, 0));
-}
-
-/// The plan of a table on the device against that of one host thread.
-template <class Planner>
-void compare_plan(std::vector<std::array<Index, Planner::nodes>> const& table, int patch_size) {
-  auto const expected = test::plan_on_host<Planner>(table, patch_size);
-  Cuda<double> const backend;
-  std::vector<Index> flat;
-  for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
-  auto const connectivity = upload(backend, flat);
-  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patch_size);
-  auto const first = upload(backend, cuts.first());
-  auto const plan = detail::plan_patches<Planner>(backend, connectivity, Planner::nodes, cuts,
-                                                  first.data(), {}, [](auto const&) { return true; });
-  CHECK(plan.capacity.nodes == expected.capacity.nodes);
-  CHECK(plan.capacity.diagonals == expected.capacity.diagonals);
-  CHECK(plan.capacity.fans == expected.capacity.fans);
-  CHECK(plan.capacity.slots == expected.capacity.slots);
-  auto const same = [](auto const& array, auto const& list) {
-    using U = typename std::remove_cvref_t<decltype(list)>::value_type;
-    std::vector<U> values(array.size());
-    array.download(values);
-    return values.size() == list.size() &&
-           std::memcmp(values.data(), list.data(), values.size() * sizeof(U)) == 0;
-  };
-  CHECK(same(plan.units, expected.units));
-  CHECK(same(plan.nodes, expected.nodes));
-  CHECK(same(plan.diagonals, expected.diagonals));
-}
-
-template <int Nodes>
-void compare_plans(Index elements, int patch_size) {
-  std::mt19937 random(5);
-  std::vector<std::array<Index, Nodes>> table(static_cast<std::size_t>(elements));
-  for (Index e = 0; e < elements; ++e)
-    for (Index& node : table[static_cast<std::size_t>(e)])
-      node = e / 5 + static_cast<Index>(random() % 40);
-  compare_plan<detail::PatchPlanner<Nodes>>(table, patch_size);
-}
-
-TEST_CASE("a GPU plans patches as one host thread does", "[cuda]") {
-  compare_plans<4>(5000, 768);
-  compare_plans<4>(769, 768);
-  compare_plans<4>(100, 96);
-  compare_plans<3>(1000, 256);
-  compare_plans<8>(1000, 64);
-  compare_plans<10>(300, 64);
 }
 
 TEST_CASE("patches that a GPU has no room for are made smaller", "[cuda]") {

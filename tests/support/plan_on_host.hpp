@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <pliant/backend/patch_cuts.hpp>
 #include <pliant/cuda/fan_plan.hpp>
 #include <pliant/cuda/patch_plan.hpp>
 
@@ -23,22 +24,24 @@ struct HostPlan {
   std::size_t diagonal_capacity() const { return static_cast<std::size_t>(capacity.diagonals); }
 };
 
-/// What a GPU makes of a table, by one thread.
+/// What a GPU makes of a table, by one thread. `least`: a capacity that patches have at least.
 template <class Planner>
 HostPlan<Planner> plan_on_host(std::vector<std::array<Index, Planner::nodes>> const& table,
-                               int patch_size) {
+                               detail::PatchCuts const& cuts,
+                               detail::PatchCounts const& least = {}) {
   HostPlan<Planner> plan;
-  auto const count = static_cast<Index>(table.size());
+  plan.capacity = least;
+  int const patch_size = cuts.size();
   plan.patch_size = patch_size;
-  plan.patches = (count + patch_size - 1) / patch_size;
+  plan.patches = cuts.count();
   detail::PlanMemory needed;
   Planner const sizes(needed, 1, patch_size, 0);
   std::vector<Index> words(static_cast<std::size_t>(needed.most()) / sizeof(Index) + 1);
   auto const for_each_patch = [&](auto const& f) {
     for (Index p = 0; p < plan.patches; ++p) {
-      Index const first = p * patch_size;
+      Index const first = cuts.first(p);
       detail::PlanMemory memory(words.data());
-      Planner planner(memory, 1, patch_size, std::min(patch_size, count - first));
+      Planner planner(memory, 1, patch_size, cuts.first(p + 1) - first);
       auto const counts =
           planner.count(detail::OneThread{}, table[static_cast<std::size_t>(first)].data(),
                         static_cast<int>(Planner::nodes));
@@ -65,6 +68,13 @@ HostPlan<Planner> plan_on_host(std::vector<std::array<Index, Planner::nodes>> co
                  plan.diagonals.data() + p * plan.diagonal_capacity());
   });
   return plan;
+}
+
+template <class Planner>
+HostPlan<Planner> plan_on_host(std::vector<std::array<Index, Planner::nodes>> const& table,
+                               int patch_size) {
+  return plan_on_host<Planner>(table,
+                               detail::PatchCuts(static_cast<Index>(table.size()), patch_size));
 }
 
 template <int Nodes>

@@ -1,0 +1,137 @@
+#include <cstring>
+#include <random>
+
+#include <pliant/body/numbering.hpp>
+#include <pliant/cuda.hpp>
+#include <pliant/mesh/box.hpp>
+
+#include "support/catch.hpp"
+#include "support/plan_on_host.hpp"
+
+// What a GPU plans for the patches of a table, against what one host thread does.
+namespace pliant::test::cuda_plans_test {
+
+template <class Planner>
+using TableOf = std::vector<std::array<Index, Planner::nodes>>;
+
+/// A box of tetrahedra in the order of a body.
+std::vector<std::array<Index, 4>> box(int cells) {
+  auto const mesh = mesh::box<Tet4>({.size = {1, 1, 1}, .cells = {cells, cells, cells}});
+  return std::get<0>(Numbering<Tet4>(mesh).tables);
+}
+/// Elements of which near ones share nodes.
+template <int Nodes>
+std::vector<std::array<Index, Nodes>> random_table(Index elements) {
+  std::mt19937 random(5);
+  std::vector<std::array<Index, Nodes>> table(static_cast<std::size_t>(elements));
+  for (Index e = 0; e < elements; ++e)
+    for (Index& node : table[static_cast<std::size_t>(e)])
+      node = e / 5 + static_cast<Index>(random() % 40);
+  return table;
+}
+
+template <class Planner>
+void check_same(detail::PatchPlan<Planner> const& plan, HostPlan<Planner> const& expected) {
+  auto const same = [](auto const& array, auto const& list) {
+    using U = typename std::remove_cvref_t<decltype(list)>::value_type;
+    std::vector<U> values(array.size());
+    array.download(values);
+    return values.size() == list.size() &&
+           std::memcmp(values.data(), list.data(), values.size() * sizeof(U)) == 0;
+  };
+  CHECK(plan.capacity.nodes == expected.capacity.nodes);
+  CHECK(plan.capacity.fans == expected.capacity.fans);
+  CHECK(plan.capacity.slots == expected.capacity.slots);
+  CHECK(same(plan.units, expected.units));
+  CHECK(same(plan.nodes, expected.nodes));
+  CHECK(same(plan.diagonals, expected.diagonals));
+}
+
+/// Plans a table on the device.
+template <class Planner>
+detail::PatchPlan<Planner> planned(TableOf<Planner> const& table, detail::PatchCuts const& cuts,
+                                   detail::KnownPatches<Planner> const& known) {
+  Cuda<double> const backend;
+  std::vector<Index> flat;
+  for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
+  auto const connectivity = upload(backend, flat), first = upload(backend, cuts.first());
+  return detail::plan_patches<Planner>(backend, connectivity, Planner::nodes, cuts, first.data(),
+                                       known, [](auto const&) { return true; });
+}
+
+/// The plan of a table on the device against that of one host thread, whatever capacity it was thought to need.
+template <class Planner>
+void compare_plan(TableOf<Planner> const& table, int patch_size) {
+  auto const expected = plan_on_host<Planner>(table, patch_size);
+  auto const& right = expected.capacity;
+  detail::PatchCounts const too_few{right.nodes, right.diagonals, right.fans, right.slots - 4};
+  detail::PatchCounts const too_many{2 * right.nodes, 2 * right.diagonals, 2 * right.fans,
+                                     2 * right.slots};
+  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patch_size);
+  for (detail::PatchCounts const& guess : {detail::PatchCounts{}, right, too_few, too_many}) {
+    detail::PatchPlan<Planner> of_guess;
+    of_guess.capacity = guess;
+    check_same(planned<Planner>(table, cuts, {&of_guess}), expected);
+  }
+}
+
+/// Blocks of 40 elements, of which some stay where others get more elements in the middle of a table, or lose some.
+template <class Planner>
+void compare_changed_plan(int patch_size, bool grows) {
+  auto const few = random_table<4>(3000);
+  ElementBlocks blocks_of_few, blocks_of_many;
+  TableOf<Planner> many;
+  for (Index e = 0; e <= 3000; e += 40) {
+    blocks_of_few.first.push_back(e);
+    blocks_of_many.first.push_back(static_cast<Index>(many.size()));
+    if (e == 3000) break;
+    bool const other = e == 1000 || e == 1640;
+    blocks_of_few.stays.push_back(!other);
+    auto const begin = few.begin() + e;
+    many.insert(many.end(), begin, begin + 40);
+    if (other) many.insert(many.end(), begin, begin + 17);
+  }
+  blocks_of_many.stays = blocks_of_few.stays;
+  blocks_of_few.first_before = blocks_of_many.first;
+  blocks_of_many.first_before = blocks_of_few.first;
+  detail::PatchCuts const cuts_of_few(3000, patch_size, blocks_of_few),
+      cuts_of_many(static_cast<Index>(many.size()), patch_size, blocks_of_many);
+  auto const& before = grows ? few : many;
+  auto const& after = grows ? many : few;
+  auto const& cuts_before = grows ? cuts_of_few : cuts_of_many;
+  auto const& cuts_after = grows ? cuts_of_many : cuts_of_few;
+  auto const plan_before = planned<Planner>(before, cuts_before, {});
+  auto const known = cuts_after.known_from(cuts_before, grows ? blocks_of_many : blocks_of_few);
+  CHECK(std::ranges::count(known, -1) > 0);
+  CHECK(std::ranges::count(known, -1) < static_cast<std::ptrdiff_t>(known.size()));
+
+  auto const plan = planned<Planner>(after, cuts_after, {&plan_before, known});
+  check_same(plan, plan_on_host<Planner>(after, cuts_after, plan.capacity));
+  CHECK(plan.capacity.slots == plan_before.capacity.slots);  // else nothing is taken
+}
+
+TEST_CASE("patches that stay in a change keep their plans", "[cuda]") {
+  for (bool grows : {true, false})
+    for (int patch_size : {64, 100, 768}) {
+      INFO(patch_size << " elements in a patch, more of them: " << grows);
+      compare_changed_plan<detail::FanPlanner>(patch_size, grows);
+      compare_changed_plan<detail::PatchPlanner<4>>(patch_size, grows);
+    }
+}
+
+TEST_CASE("a GPU plans patches as one host thread does", "[cuda]") {
+  compare_plan<detail::PatchPlanner<4>>(random_table<4>(5000), 768);
+  compare_plan<detail::PatchPlanner<4>>(random_table<4>(769), 768);
+  compare_plan<detail::PatchPlanner<4>>(random_table<4>(100), 96);
+  compare_plan<detail::PatchPlanner<3>>(random_table<3>(1000), 256);
+  compare_plan<detail::PatchPlanner<8>>(random_table<8>(1000), 64);
+  compare_plan<detail::PatchPlanner<10>>(random_table<10>(300), 64);
+}
+
+TEST_CASE("a GPU plans fans as one host thread does", "[cuda]") {
+  compare_plan<detail::FanPlanner>(box(9), 768);
+  compare_plan<detail::FanPlanner>(box(5), 100);
+  compare_plan<detail::FanPlanner>(random_table<4>(3000), 768);
+}
+
+}  // namespace pliant::test::cuda_plans_test
