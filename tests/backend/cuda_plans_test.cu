@@ -71,7 +71,7 @@ void compare_plan(TableOf<Planner> const& table, int patch_size) {
   for (detail::PatchCounts const& guess : {detail::PatchCounts{}, right, too_few, too_many}) {
     detail::PatchPlan<Planner> of_guess;
     of_guess.capacity = guess;
-    check_same(planned<Planner>(table, cuts, {&of_guess}), expected);
+    check_same(planned<Planner>(table, cuts, {&of_guess, nullptr}), expected);
   }
 }
 
@@ -105,7 +105,8 @@ void compare_changed_plan(int patch_size, bool grows) {
   CHECK(std::ranges::count(known, -1) > 0);
   CHECK(std::ranges::count(known, -1) < static_cast<std::ptrdiff_t>(known.size()));
 
-  auto const plan = planned<Planner>(after, cuts_after, {&plan_before, known});
+  auto const first_before = upload(Cuda<double>{}, cuts_before.first());
+  auto const plan = planned<Planner>(after, cuts_after, {&plan_before, first_before.data(), known});
   check_same(plan, plan_on_host<Planner>(after, cuts_after, plan.capacity));
   CHECK(plan.capacity.slots == plan_before.capacity.slots);  // else nothing is taken
 }

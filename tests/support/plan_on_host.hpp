@@ -58,12 +58,15 @@ HostPlan<Planner> plan_on_host(std::vector<std::array<Index, Planner::nodes>> co
   auto const room = [&](int n) {
     return static_cast<std::size_t>(plan.patches) * static_cast<std::size_t>(n);
   };
-  auto const units = static_cast<std::size_t>(Planner::units(patch_size, plan.capacity));
-  plan.units.resize(static_cast<std::size_t>(plan.patches) * units);
+  auto const first_unit = [&](Index patch) {
+    return static_cast<std::size_t>(Planner::first_unit(patch, cuts.first(patch), plan.capacity));
+  };
+  plan.units.resize(first_unit(plan.patches));
   plan.nodes.resize(room(plan.capacity.nodes), detail::PatchNode{-2, -2});
   plan.diagonals.resize(room(plan.capacity.diagonals), 0xfffe);
   for_each_patch([&](std::size_t p, Planner& planner, detail::PatchCounts const&) {
-    planner.plan(detail::OneThread{}, plan.capacity, plan.units.data() + p * units,
+    planner.plan(detail::OneThread{}, plan.capacity,
+                 plan.units.data() + first_unit(static_cast<Index>(p)),
                  plan.nodes.data() + p * plan.node_capacity(),
                  plan.diagonals.data() + p * plan.diagonal_capacity());
   });

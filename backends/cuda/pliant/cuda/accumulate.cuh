@@ -31,12 +31,12 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
   // What does not depend on each other is loaded early: memory is far.
   Index const first = patches.first[patch], end = patches.first[patch + 1];
   using Places = Packed<PatchRow<Nodes>>;
-  Index unit = patch * patches.patch_size + thread;  // there are as many as threads, at least
-  Places places = Places::load(patches.units + unit);
   auto const first_nodes = nodes.batch<1>(thread);
-  patches.load_diagonals(patch, memory.diagonals);
   Index e = first + thread;
   PatchLoop loop(end - first, thread, threads);
+  Places places;
+  if (loop.has_rounds()) places = Places::load(patches.units + e);
+  patches.load_diagonals(patch, memory.diagonals);
   begin_after_previous_kernel();
   Tag const first_tag = loop.has_rounds() ? patches.tags[e] : Tag{0};
   nodes.load(memory.rows, first_nodes, fields...);
@@ -52,11 +52,10 @@ __global__ void __launch_bounds__(patch_tuning<T, Nodes>().max_threads,
     for (int a = 0; a < Nodes; ++a) memory.rows.load(own.unpacked().local[a], values[a]);
     Index const own_element = e;
     e += threads;
-    unit += threads;
     loop.next_round(own_tag < Groups);
     auto const load_next = [&] {
       if (!loop.has_rounds()) return;
-      places = Places::load(patches.units + unit);
+      places = Places::load(patches.units + e);
       loop.set_tag(patches.tags[e]);
     };
     if constexpr (tuning.prefetch) load_next();

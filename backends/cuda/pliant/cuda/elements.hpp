@@ -62,8 +62,8 @@ struct PatchView {
   Index const* first;  // (patches + 1), elements
   PatchCounts capacity;
   Tag const* tags;
-  Unit const* units;       // PatchRow (patches, elements), or FanVisit (patches, visits, fans)
-  PatchNode const* nodes;  // (patches, node capacity)
+  Unit const* units;               // PatchRow (elements), or FanVisit (patches, visits, fans)
+  PatchNode const* nodes;          // (patches, node capacity)
   std::uint16_t const* diagonals;  // (patches, diagonal capacity)
   ActiveList active;
 
@@ -194,7 +194,7 @@ class CudaElements {
     cut(backend, size, blocks);
     detail::KnownPatches<P> known;
     if (known_plan != nullptr && known_plan->units.size() > 0 && before->patch_size() == size)
-      known = {known_plan, cuts_.known_from(before->cuts_, blocks)};
+      known = {known_plan, before->first_.data(), cuts_.known_from(before->cuts_, blocks)};
     bool fits = true;
     plan = detail::plan_patches<P>(
         backend, connectivity_, View::width, cuts_, first_.data(), known,

@@ -30,8 +30,10 @@ class FanPlanner {
  public:
   static constexpr int nodes = 4;
   using Unit = FanVisit;  // of a plan
-  PLIANT_HOST_DEVICE static int units(int, PatchCounts const& capacity) {
-    return most_fan_visits * capacity.fans;
+  /// Where the units of a patch begin, of which the first element is given.
+  PLIANT_HOST_DEVICE static std::ptrdiff_t first_unit(Index patch, Index /* first_element */,
+                                                      PatchCounts const& capacity) {
+    return static_cast<std::ptrdiff_t>(patch) * (most_fan_visits * capacity.fans);
   }
 
   /// For patches of at most `patch_size` elements, FanSplitter::most_elements or fewer, and one of `size`.

@@ -22,7 +22,11 @@ class PatchPlanner {
  public:
   static constexpr int nodes = Nodes;
   using Unit = PatchRow<Nodes>;  // of a plan
-  PLIANT_HOST_DEVICE static int units(int patch_size, PatchCounts const&) { return patch_size; }
+  /// Where the units of a patch begin, of which the first element is given.
+  PLIANT_HOST_DEVICE static std::ptrdiff_t first_unit(Index /* patch */, Index first_element,
+                                                      PatchCounts const&) {
+    return first_element;
+  }
 
   /// For patches of at most `patch_size` elements, and one of `size`.
   PLIANT_HOST_DEVICE PatchPlanner(PlanMemory& memory, int threads, int patch_size, int size)

@@ -56,17 +56,18 @@ PLIANT_HOST_DEVICE bool holds(PatchCounts const& capacity, PatchCounts const& co
 }
 
 /// A plan as kernels see it.
-template <class Unit>
+template <class Planner>
 struct PlanView {
+  using Unit = typename Planner::Unit;
   PatchCounts capacity;
-  int units_of_patch;
+  Index const* first;  // (patches + 1), elements
   Unit* units;
   PatchNode* nodes;
   std::uint16_t* diagonals;
   PatchCounts* counts;
 
   __device__ Unit* units_of(Index patch) const {
-    return units + static_cast<std::ptrdiff_t>(patch) * units_of_patch;
+    return units + Planner::first_unit(patch, first[patch], capacity);
   }
   __device__ PatchNode* nodes_of(Index patch) const {
     return nodes + static_cast<std::ptrdiff_t>(patch) * capacity.nodes;
@@ -87,8 +88,7 @@ struct PlanView {
 /// Counts what each patch of a list has, and plans it where there is room.
 template <class Planner>
 __global__ void __launch_bounds__(plan_threads)
-    plan_each_patch(PatchInput input, Index const* list, PlanView<typename Planner::Unit> to,
-                    PatchCounts* most) {
+    plan_each_patch(PatchInput input, Index const* list, PlanView<Planner> to, PatchCounts* most) {
   extern __shared__ __align__(16) char planner_memory[];
   Index const patch = list[blockIdx.x], first = input.first[patch];
   PlanMemory memory(planner_memory);
@@ -103,9 +103,9 @@ __global__ void __launch_bounds__(plan_threads)
 }
 
 /// Takes patches from a plan of the same capacity. known: (patches), the patch there; −1: none.
-template <class Unit>
+template <class Planner>
 __global__ void __launch_bounds__(plan_threads)
-    take_known_patches(Index const* known, PlanView<Unit> from, PlanView<Unit> to,
+    take_known_patches(Index const* known, PlanView<Planner> from, PlanView<Planner> to,
                        PatchCounts* most) {
   auto const patch = static_cast<Index>(blockIdx.x);
   Index const before = known[patch];
@@ -113,16 +113,19 @@ __global__ void __launch_bounds__(plan_threads)
   auto const copy = [](auto const* source, auto* target, int count) {
     for (int i = static_cast<int>(threadIdx.x); i < count; i += plan_threads) target[i] = source[i];
   };
-  copy(from.units_of(before), to.units_of(patch), to.units_of_patch);
+  copy(from.units_of(before), to.units_of(patch),
+       static_cast<int>(to.units_of(patch + 1) - to.units_of(patch)));
   copy(from.nodes_of(before), to.nodes_of(patch), to.capacity.nodes);
   copy(from.diagonals_of(before), to.diagonals_of(patch), to.capacity.diagonals);
   if (threadIdx.x == 0) to.set_counts(patch, from.counts[before], most);
 }
 
-/// What a table was planned to before a change: the plan, and by the patch now the patch there, or −1.
+/// What a table was planned to before a change, with its patches as PatchRanges::first has them, and by the patch now the patch
+/// there, or −1.
 template <class Planner>
 struct KnownPatches {
   PatchPlan<Planner> const* plan = nullptr;
+  Index const* first = nullptr;
   std::vector<Index> patches{};
 };
 
@@ -133,7 +136,7 @@ template <class Planner, class B, class Accepts>
 PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity, int width,
                                 PatchCuts const& cuts, Index const* first,
                                 KnownPatches<Planner> const& known, Accepts const& accepts) {
-  using View = PlanView<typename Planner::Unit>;
+  using View = PlanView<Planner>;
   PatchPlan<Planner> plan;
   Index const patches = cuts.count();
   if (patches == 0) return plan;
@@ -143,9 +146,9 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
   auto const uploaded = [&](std::vector<Index> const& list) {
     return backend.array(std::span<Index const>(list));
   };
-  auto const view = [&](PatchPlan<Planner> const& of) {
+  auto const view = [](PatchPlan<Planner> const& of, Index const* first_of_patch) {
     return View{of.capacity,
-                Planner::units(cuts.size(), of.capacity),
+                first_of_patch,
                 const_cast<typename Planner::Unit*>(of.units.data()),
                 const_cast<PatchNode*>(of.nodes.data()),
                 const_cast<std::uint16_t*>(of.diagonals.data()),
@@ -158,7 +161,7 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
     plan.capacity = capacity;
     if (capacity.nodes > 0)
       plan.units = backend.template array<typename Planner::Unit>(
-          for_each(Planner::units(cuts.size(), capacity)));
+          static_cast<std::size_t>(Planner::first_unit(patches, cuts.first(patches), capacity)));
     plan.nodes = backend.template array<PatchNode>(for_each(capacity.nodes));
     plan.diagonals = backend.template array<std::uint16_t>(for_each(capacity.diagonals));
     plan.counts = backend.template array<PatchCounts>(static_cast<std::size_t>(patches));
@@ -167,15 +170,15 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
       if (taken.empty() || taken[static_cast<std::size_t>(p)] < 0) others.push_back(p);
     if (others.size() < static_cast<std::size_t>(patches)) {
       auto const before = uploaded(taken);
-      launch("take patches", {patches, plan_threads}, backend.stream(),
-             take_known_patches<typename Planner::Unit>, before.data(), view(*known.plan),
-             view(plan), most.data());
+      launch("take patches", {patches, plan_threads}, backend.stream(), take_known_patches<Planner>,
+             before.data(), view(*known.plan, known.first), view(plan, first), most.data());
     }
     if (others.empty()) return;
     auto const list = uploaded(others);
     launch("plan patches",
            {static_cast<Index>(others.size()), plan_threads, plan_bytes<Planner>(cuts.size())},
-           backend.stream(), plan_each_patch<Planner>, input, list.data(), view(plan), most.data());
+           backend.stream(), plan_each_patch<Planner>, input, list.data(), view(plan, first),
+           most.data());
   };
   PatchCounts const guess = known.plan == nullptr ? PatchCounts{} : known.plan->capacity;
   plan_for(guess, known.patches);
