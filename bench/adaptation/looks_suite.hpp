@@ -33,7 +33,9 @@ double patches_in_corner(TheBody& body, double size) {
       for (std::size_t k = 0; k < 3; ++k)
         middle[k] += mesh.nodes[static_cast<std::size_t>(node)][k] / 4;
     if (std::ranges::max(middle) < size)
-      patches.insert(static_cast<Index>(e) / table.elements.patch_size());
+      patches.insert(static_cast<Index>(
+          std::ranges::upper_bound(table.elements.patch_bounds(), static_cast<Index>(e)) -
+          table.elements.patch_bounds().begin()));
   }
   return static_cast<double>(patches.size()) / table.elements.patch_count();
 }

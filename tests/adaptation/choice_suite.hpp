@@ -683,9 +683,11 @@ TEST_CASE("under local steps a budget counts an element as often as its level is
       auto const& table = parts.layout.template table<Quad4>();
       auto const groups = of.template groups_of<Quad4>();
       std::pair<double, double> sums;  // with levels, and without
+      auto const bounds = table.elements.patch_bounds();
+      std::size_t patch = 0;
       for (std::size_t k = 0; k < groups.size(); ++k) {
         auto const e = static_cast<std::size_t>(table.user_elements()[k]);
-        auto const patch = k / static_cast<std::size_t>(table.elements.patch_size());
+        while (static_cast<std::size_t>(bounds[patch + 1]) <= k) ++patch;
         double const cost = some_costs[groups[e]] / some_costs[2];
         sums.first += std::ldexp(cost, parts.schedule->patch_levels[0][patch]);
         sums.second += cost;

@@ -296,10 +296,10 @@ template <class TheBody>
 std::vector<int> levels_of(TheBody const& body) {
   auto const& elements = body.parts().layout.template table<Quad4>().elements;
   std::vector<int> levels;
-  for (Index e = 0; e < elements.count(); ++e)
-    levels.push_back(
-        body.parts()
-            .schedule->patch_levels[0][static_cast<std::size_t>(e / elements.patch_size())]);
+  auto const bounds = elements.patch_bounds();
+  for (std::size_t p = 0; p + 1 < bounds.size(); ++p)
+    levels.resize(static_cast<std::size_t>(bounds[p + 1]),
+                  body.parts().schedule->patch_levels[0][p]);
   return levels;
 }
 /// By how much the step of some element is longer than it is stable by itself.

@@ -13,9 +13,11 @@ class SmallPatches : public Reference<T> {
     using Base = typename Reference<T>::template Elements<Nodes>;
 
    public:
-    using Base::Base;
-    static constexpr Index patch_size() { return Size; }
-    Index patch_count() const { return (this->count() + Size - 1) / Size; }
+    Elements() = default;
+    Elements(SmallPatches const& backend, std::vector<std::array<Index, Nodes>> connectivity,
+             int groups, std::vector<Tag> const& tags, Index nodes,
+             NodeOrder order = NodeOrder::as_given)
+        : Base(backend, std::move(connectivity), groups, tags, nodes, order, Size) {}
   };
 };
 

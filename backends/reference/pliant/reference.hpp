@@ -37,10 +37,11 @@ class Reference {
     static constexpr int nodes_per_element = Nodes;
     Elements() = default;
     Elements(Reference const&, std::vector<std::array<Index, Nodes>> connectivity, int,
-             std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given)
+             std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given,
+             Index patch_size = 512)
         : connectivity_(std::move(connectivity)),
           tags_(tags.size()),
-          patches_(static_cast<Index>(connectivity_.size()), 512) {
+          patches_(static_cast<Index>(connectivity_.size()), patch_size) {
       detail::check_nodes(connectivity_, nodes);
       tags_.upload(tags);
       tag_data_ = tags_.data();
