@@ -39,15 +39,16 @@ TEST_CASE("fans have each tetrahedron once, by its nodes in its orientation", "[
   for (auto const& elements : {mesh.elements<Tet4>(), shuffled(mesh.elements<Tet4>())}) {
     auto const count = static_cast<Index>(elements.size());
     REQUIRE(count > 2 * 2048);
-    detail::Fans const fans(elements[0].data(), count, 2048, static_cast<Index>(mesh.nodes.size()));
+    detail::Patches<4> const table(elements, 1, std::vector<Tag>(elements.size(), 0),
+                                   static_cast<Index>(mesh.nodes.size()), NodeOrder::any_even);
     std::vector<int> times(elements.size());
     bool oriented = true;
-    for (Index p = 0; p < (count + 2047) / 2048; ++p)
-      fans.for_each_element(p, [&](Index e, std::array<Index, 4> const& corners) {
+    for (Index p = 0; p < table.patch_count(); ++p)
+      table.fans(p).for_each_element([&](Index e, std::array<std::uint16_t, 4> const& corners) {
         CHECK(e / 2048 == p);
         ++times[static_cast<std::size_t>(e)];
         std::array<Index, 4> nodes;
-        for (std::size_t a = 0; a < 4; ++a) nodes[a] = fans.nodes()[corners[a]];
+        for (std::size_t a = 0; a < 4; ++a) nodes[a] = table.fans(p).nodes[corners[a]];
         oriented = oriented && have_one_orientation(elements[static_cast<std::size_t>(e)], nodes);
       });
     CHECK(oriented);

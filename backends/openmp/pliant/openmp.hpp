@@ -231,7 +231,7 @@ class OpenMP {
                 std::ptrdiff_t{node_stride} * (last - first), T(0));
     if constexpr (Elements<Nodes>::may_have_fans && SymmetricKernel<Kernel>)
       if (elements.has_fans())
-        return detail::accumulate_fans<Groups>(elements.fans(), patch, kernel, out, fields...);
+        return detail::accumulate_fans<Groups>(elements, patch, kernel, out, fields...);
     detail::PatchTargets<Nodes> const targets(elements, patch);
     detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
       detail::prefetch_next<Nodes>(elements, m, out, fields...);
@@ -239,7 +239,7 @@ class OpenMP {
           call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int a = 0; a < Nodes; ++a) {
         Index rows[Scalar::lanes];
-        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l])[a];
+        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l], a);
         typename Scalar::Register r[4] = {};
         for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
         detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
@@ -262,7 +262,7 @@ class OpenMP {
       auto const values =
           evaluate_at(visitor, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int l = 0; l < m.count; ++l) {
-        Gather<Nodes, Fields...> const again{elements.nodes(m.element[l]), {fields...}};
+        Gather<Nodes, Fields...> const again{elements.nodes(patch, m.element[l]), {fields...}};
         visitor.finish(group, m.element[l], detail::lane_of(values, l), again, tally);
       }
     });

@@ -15,7 +15,7 @@ class FanPack {
   static constexpr int lanes = Scalar::lanes;
   using Indices = Index[lanes];
 
-  FanPack(Fans const& fans, std::span<FanRun const> runs, std::size_t first)
+  FanPack(PatchFans const& fans, std::span<FanRun const> runs, std::size_t first)
       : fans_(fans), count_(static_cast<int>(std::min<std::size_t>(lanes, runs.size() - first))) {
     for (int l = 0; l < lanes; ++l) {
       FanRun const& run = runs[first + static_cast<std::size_t>(std::min(l, count_ - 1))];
@@ -26,28 +26,30 @@ class FanPack {
       sizes_.v[l] = static_cast<T>(run.size);
     }
   }
-  Fans const& fans() const { return fans_; }
   int most() const { return size_[0]; }
   int least() const { return size_[lanes - 1]; }
   /// Which lanes have an element k.
   typename Scalar::Mask has(int k) const { return Scalar(static_cast<T>(k)) < sizes_; }
 
-  /// The corners at one end of the edges, or the k-th around them; the last one of a fan stays.
-  void end(int which, Indices& corners) const {
-    for (int l = 0; l < lanes; ++l) corners[l] = ends_[l] + which;
+  /// The nodes at one end of the edges, or the k-th around them, as the patch numbers them; the last one of a fan stays.
+  void end(int which, Indices& nodes) const {
+    for (int l = 0; l < lanes; ++l) nodes[l] = fans_.corners[ends_[l] + which];
   }
-  void ring(int k, Indices& corners) const {
-    for (int l = 0; l < lanes; ++l) corners[l] = ring_[l] + std::min(k, size_[l]);
+  void ring(int k, Indices& nodes) const {
+    for (int l = 0; l < lanes; ++l) nodes[l] = fans_.corners[ring_[l] + std::min(k, size_[l])];
   }
   void members(int k, PackMembers<T>& m) const {
     m.count = count_;
     for (int l = 0; l < lanes; ++l)
-      m.element[l] = fans_.elements()[elements_[l] + std::min(k, size_[l] - 1)];
+      m.element[l] =
+          fans_.first_element +
+          fans_.list.elements[static_cast<std::size_t>(elements_[l] + std::min(k, size_[l] - 1))];
   }
   template <class U, int C>
-  Matrix<Scalar, 1, C> gather(NodeField<U, C> const& field, Indices const& corners) const {
+  PLIANT_INLINE Matrix<Scalar, 1, C> gather(NodeField<U, C> const& field,
+                                            Indices const& of_patch) const {
     Index nodes[lanes];
-    for (int l = 0; l < lanes; ++l) nodes[l] = fans_.nodes()[corners[l]];
+    for (int l = 0; l < lanes; ++l) nodes[l] = fans_.nodes[of_patch[l]];
     typename Scalar::Register r[4];
     gather_nodes<T, lanes>(field.data, nodes, r);
     Matrix<Scalar, 1, C> values;
@@ -55,17 +57,17 @@ class FanPack {
     return values;
   }
   template <int C>
-  void scatter(NodeField<T, C> const& out, Indices const& corners,
-               Scalar const (&values)[C]) const {
+  PLIANT_INLINE void scatter(NodeField<T, C> const& out, Indices const& of_patch,
+                             Scalar const (&values)[C]) const {
     Index rows[lanes];
-    for (int l = 0; l < lanes; ++l) rows[l] = fans_.targets()[corners[l]];
+    for (int l = 0; l < lanes; ++l) rows[l] = fans_.targets[of_patch[l]];
     typename Scalar::Register r[4] = {};
     for (int k = 0; k < C; ++k) r[k] = values[k].v;
     scatter_add_nodes<T, lanes>(out.data, rows, count_, r);
   }
 
  private:
-  Fans const& fans_;
+  PatchFans const& fans_;
   int count_;
   Indices ends_, ring_, elements_;
   int size_[lanes];
@@ -94,25 +96,6 @@ struct FanValues {
   }
 };
 
-/// Asks for what the k-th step of some fans reads and writes, so that it is in the caches by then.
-template <class T, int C, class... Fields>
-PLIANT_INLINE inline void prefetch(Fans const& fans, std::span<FanRun const> next, int k,
-                                   NodeField<T, C> out, Fields const&... fields) {
-  auto const corner = [&](Index c) PLIANT_INLINE {
-    auto const row = [&](Index r) PLIANT_INLINE { return std::ptrdiff_t{node_stride} * r; };
-    (__builtin_prefetch(fields.data + row(fans.nodes()[c])), ...);
-    __builtin_prefetch(out.data + row(fans.targets()[c]));
-  };
-  for (FanRun const& run : next) {
-    if (k == 0) {
-      corner(run.ends);
-      corner(run.ends + 1);
-      corner(run.ring);
-    }
-    if (k < run.size) corner(run.ring + k + 1);
-  }
-}
-
 /// To the next element of each fan, or of those that have one.
 template <class S, int C>
 PLIANT_INLINE inline void advance(Matrix<S, 4, C>& at) {
@@ -124,8 +107,8 @@ PLIANT_INLINE inline void advance(Matrix<S, 4, C>& at, typename S::Mask const& h
 }
 
 template <int Group, class T, class Kernel, int C, class... Fields>
-void accumulate_fan_pack(FanPack<T> const& pack, std::span<FanRun const> next_runs,
-                         Kernel const& kernel, NodeField<T, C> out, Fields const&... fields) {
+void accumulate_fan_pack(FanPack<T> const& pack, Kernel const& kernel, NodeField<T, C> out,
+                         Fields const&... fields) {
   using Scalar = Pack<T>;
   typename FanPack<T>::Indices end, other, ring;
   pack.end(0, end);
@@ -149,7 +132,6 @@ void accumulate_fan_pack(FanPack<T> const& pack, std::span<FanRun const> next_ru
             ((advance(v.at, has)), ...);
           }
           (v.set(3, pack.gather(fields, next)), ...);
-          prefetch(pack.fans(), next_runs, k, out, fields...);
           if constexpr (ReadsElements<Kernel>) pack.members(k, m);
           auto share = call(kernel, GroupNumber<Group>{}, m, v.at...);
           if (k >= pack.least()) {
@@ -175,18 +157,15 @@ void accumulate_fan_pack(FanPack<T> const& pack, std::span<FanRun const> next_ru
 
 /// kernel's shares of all elements of a patch.
 template <int Groups, class T, class Kernel, int C, class... Fields>
-void accumulate_fans(Fans const& fans, Index patch, Kernel const& kernel, NodeField<T, C> out,
-                     Fields const&... fields) {
+void accumulate_fans(Patches<4> const& elements, Index patch, Kernel const& kernel,
+                     NodeField<T, C> out, Fields const&... fields) {
+  PatchFans const fans = elements.fans(patch);
   [&]<int... G>(std::integer_sequence<int, G...>) {
     auto const accumulate_group = [&]<int Group>(GroupNumber<Group>) {
-      auto const runs = fans.runs(patch, Group);
+      auto const runs = elements.runs(patch, Group);
       constexpr std::size_t lanes = Pack<T>::lanes;
-      for (std::size_t first = 0; first < runs.size(); first += lanes) {
-        auto const after = runs.subspan(std::min(first + lanes, runs.size()));
-        accumulate_fan_pack<Group>(FanPack<T>(fans, runs, first),
-                                   after.first(std::min(lanes, after.size())), kernel, out,
-                                   fields...);
-      }
+      for (std::size_t first = 0; first < runs.size(); first += lanes)
+        accumulate_fan_pack<Group>(FanPack<T>(fans, runs, first), kernel, out, fields...);
     };
     (accumulate_group(GroupNumber<G>{}), ...);
   }(std::make_integer_sequence<int, Groups>());

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -41,42 +43,68 @@ struct FanBlock {
 class FanBlocks {
  public:
   FanBlocks() = default;
-  /// Of elements with the nodes connectivity[4 · elements]; blocks that stay are those `before` has.
-  FanBlocks(Index const* connectivity, Index elements, ElementBlocks const& cut,
+  /// Of so many elements; rows_of(e): the nodes of element e, behind which are those of the others of its block. Blocks that
+  /// stay are those `before` has.
+  template <class RowsOf>
+  FanBlocks(RowsOf const& rows_of, Index elements, ElementBlocks const& cut,
             FanBlocks const* before)
       : first_(cut.first) {
     if (first_.empty())
       for (Index e = 0; e < elements + FanBlock::size; e += FanBlock::size)
         first_.push_back(std::min(e, elements));
-    blocks_.resize(first_.size() - 1);
-    HostParts const parts(count(), few);
+    auto const count = static_cast<Index>(first_.size()) - 1;
+    groups_.resize(at((count + of_group - 1) / of_group));
+    HostParts const parts(static_cast<Index>(groups_.size()), few);
     parts([&](Index from, Index to, int) {
       HostFanSplitter splitter;
-      for (Index b = from; b < to; ++b) {
-        auto const k = static_cast<std::size_t>(b);
-        if (before != nullptr && !cut.stays.empty() && cut.stays[k] != 0)
-          blocks_[k] = before->blocks_[k];
-        else
-          blocks_[k] = std::make_shared<FanBlock>(connectivity + std::ptrdiff_t{4} * first_[k],
-                                                  first_[k + 1] - first_[k], splitter);
+      for (Index g = from; g < to; ++g) {
+        Index const begin = of_group * g, end = std::min(begin + of_group, count);
+        auto const stays = [&](Index b) {
+          return before != nullptr && !cut.stays.empty() && cut.stays[at(b)] != 0;
+        };
+        Index staying = 0;
+        for (Index b = begin; b < end; ++b) staying += stays(b) ? 1 : 0;
+        if (staying == of_group) {
+          groups_[at(g)] = before->groups_[at(g)];
+          continue;
+        }
+        auto const group = std::make_shared<Group>();
+        for (Index b = begin; b < end; ++b)
+          (*group)[at(b - begin)] =
+              stays(b) ? before->block(b)
+                       : made(rows_of, first_[at(b)], first_[at(b + 1)] - first_[at(b)], splitter);
+        groups_[at(g)] = group;
       }
     });
   }
 
-  Index count() const { return static_cast<Index>(blocks_.size()); }
   /// visit(block, number of its first element) for the blocks that have elements in [from, to).
   template <class Visit>
   void for_each_in(Index from, Index to, Visit const& visit) const {
-    auto b = std::ranges::upper_bound(first_, from) - first_.begin() - 1;
-    for (auto k = static_cast<std::size_t>(b); k < blocks_.size() && first_[k] < to; ++k)
-      if (first_[k + 1] > first_[k]) visit(*blocks_[k], first_[k]);
+    auto b = static_cast<Index>(std::ranges::upper_bound(first_, from) - first_.begin()) - 1;
+    for (; at(b) + 1 < first_.size() && first_[at(b)] < to; ++b)
+      if (first_[at(b + 1)] > first_[at(b)]) visit(*block(b), first_[at(b)]);
   }
 
  private:
-  static constexpr Index few = 16;  // worth a thread
+  static constexpr Index of_group = 16, few = 1;  // blocks; groups that are worth a thread
+  /// Consecutive blocks, which tables share at once where all of them stay.
+  using Group = std::array<std::shared_ptr<FanBlock const>, of_group>;
+
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  std::shared_ptr<FanBlock const> const& block(Index b) const {
+    return (*groups_[at(b / of_group)])[at(b % of_group)];
+  }
+
+  template <class RowsOf>
+  static std::shared_ptr<FanBlock const> made(RowsOf const& rows_of, Index first, Index count,
+                                              HostFanSplitter& splitter) {
+    Index const* const rows = count == 0 ? nullptr : rows_of(first);
+    return std::make_shared<FanBlock>(rows, count, splitter);
+  }
 
   std::vector<Index> first_;  // (blocks + 1), elements
-  std::vector<std::shared_ptr<FanBlock const>> blocks_;
+  std::vector<std::shared_ptr<Group const>> groups_;
 };
 
 }  // namespace pliant::detail

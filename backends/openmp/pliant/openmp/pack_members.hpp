@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -18,7 +19,8 @@ struct PackMembers {
   using Scalar = Pack<T>;
   Index element[Scalar::lanes];
   int count;
-  std::span<Index const> next;  // the elements of the pack that follows
+  Index patch, first;                   // the patch that has them, and its first element
+  std::span<std::uint16_t const> next;  // of the patch: the elements of the pack that follows
 
   /// The values of a field per element.
   template <class U, int C>
@@ -36,11 +38,13 @@ void for_each_pack_of(Patches<Nodes> const& elements, Index patch, F const& f) {
   auto const members = elements.members(patch, Group);
   for (std::size_t first = 0; first < members.size(); first += lanes) {
     PackMembers<T> m;
+    m.patch = patch;
+    m.first = elements.patch_bounds()[static_cast<std::size_t>(patch)];
     m.count = static_cast<int>(std::min<std::size_t>(lanes, members.size() - first));
     std::size_t const end = first + static_cast<std::size_t>(m.count);
     m.next = members.subspan(end, std::min<std::size_t>(lanes, members.size() - end));
     for (int l = 0; l < lanes; ++l)
-      m.element[l] = members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
+      m.element[l] = m.first + members[first + static_cast<std::size_t>(std::min(l, m.count - 1))];
     f(GroupNumber<Group>{}, m);
   }
 }
@@ -56,8 +60,8 @@ void for_each_pack(Patches<Nodes> const& elements, Index patch, F const& f) {
 template <int Nodes, class T, class... Fields>
 PLIANT_INLINE inline void prefetch_next(Patches<Nodes> const& elements, PackMembers<T> const& m,
                                         Fields const&... fields) {
-  for (Index e : m.next) {
-    Index const* const nodes = elements.nodes(e);
+  for (Index const e : m.next) {
+    Index const* const nodes = elements.nodes(m.patch, m.first + e);
     for (int a = 0; a < Nodes; ++a)
       (__builtin_prefetch(fields.data + std::ptrdiff_t{node_stride} * nodes[a]), ...);
   }
@@ -72,7 +76,7 @@ PLIANT_INLINE inline Matrix<Pack<T>, Nodes, C> gather_pack(Patches<Nodes> const&
   Matrix<Pack<T>, Nodes, C> values;
   for (int a = 0; a < Nodes; ++a) {
     Index nodes[lanes];
-    for (int l = 0; l < lanes; ++l) nodes[l] = elements.nodes(m.element[l])[a];
+    for (int l = 0; l < lanes; ++l) nodes[l] = elements.nodes(m.patch, m.element[l])[a];
     typename Pack<T>::Register r[4];
     gather_nodes<T, lanes>(field.data, nodes, r);
     for (int k = 0; k < C; ++k) values(a, k).v = r[k];

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,19 +21,21 @@ namespace pliant::detail {
 class PatchRows {
  public:
   PatchRows() = default;
-  /// Of places that have the nodes place_nodes; those of patch p are first_place(p) to first_place(p + 1).
-  template <class FirstPlace>
-  PatchRows(std::span<Index const> place_nodes, Index patches, FirstPlace const& first_place,
-            Index nodes)
-      : target_(HostArray<Index>::unset(place_nodes.size())) {
-    auto const for_each_place = [&](Index p, auto const& visit) {
-      for (std::ptrdiff_t k = first_place(p), last = first_place(p + 1); k < last; ++k) visit(k);
-    };
-    assign_targets(place_nodes.data(), patches, for_each_place, nodes);
+  /// Of patches with the nodes nodes_of(patch), each once, of `nodes` in all.
+  template <class NodesOf>
+  PatchRows(Index patches, NodesOf const& nodes_of, Index nodes) {
+    first_.reserve(static_cast<std::size_t>(patches) + 1);
+    for (Index p = 0; p < patches; ++p)
+      first_.push_back(first_.back() + static_cast<std::ptrdiff_t>(nodes_of(p).size()));
+    target_ = HostArray<Index>::unset(static_cast<std::size_t>(first_.back()));
+    fold(HostThreads::now() == 1 ? assign_in_order(nodes_of, nodes) : assign(nodes_of, nodes),
+         nodes);
   }
 
-  /// The row of each place: its node, or a scratch row.
-  Index const* targets() const { return target_.data(); }
+  /// The row of each node of a patch: the node's, or a scratch row.
+  Index const* targets(Index patch) const {
+    return target_.data() + first_[static_cast<std::size_t>(patch)];
+  }
   Index scratch_nodes() const { return static_cast<Index>(row_folds_.size()); }
   /// The scratch rows that a patch adds to: [first, last).
   std::pair<Index, Index> scratch_of(Index patch) const {
@@ -58,128 +62,108 @@ class PatchRows {
   }
 
  private:
-  static constexpr Index few_patches = 4;  // worth a thread
+  static constexpr Index few_patches = 4, few_rows = 16384;  // worth a thread
 
   Index first_row() const { return scratch_first_.front(); }
 
-  /// The first patch that has each node; −1: none.
-  template <class ForEachPlace>
-  static std::vector<Index> owners(Index const* node_of, Index patches,
-                                   ForEachPlace const& for_each_place, Index nodes) {
-    std::vector<Index> owner(static_cast<std::size_t>(nodes), -1);
-    HostParts const parts(patches, few_patches);
-    auto const own = [&](Index first, Index last, auto const& lower) {
-      for (Index p = first; p < last; ++p)
-        for_each_place(
-            p, [&](std::ptrdiff_t k) { lower(owner[static_cast<std::size_t>(node_of[k])], p); });
+  Index patches() const { return static_cast<Index>(first_.size()) - 1; }
+  Index* targets(Index patch) { return target_.data() + first_[static_cast<std::size_t>(patch)]; }
+
+  /// Assigns targets. Scratch rows are numbered patch by patch, as these have their nodes: gives their nodes.
+  template <class NodesOf>
+  std::vector<Index> assign_in_order(NodesOf const& nodes_of, Index nodes) {
+    std::vector<char> is_taken(static_cast<std::size_t>(nodes), 0);
+    std::vector<Index> foreign(target_.size());
+    Index rows = 0;
+    for (Index p = 0; p < patches(); ++p) {
+      scratch_first_.push_back(nodes + rows);
+      Index* target = targets(p);
+      for (Index const node : nodes_of(p)) {
+        char& taken = is_taken[static_cast<std::size_t>(node)];
+        *target++ = taken != 0 ? nodes + rows : node;  // without a branch
+        foreign[static_cast<std::size_t>(rows)] = node;
+        rows += taken;
+        taken = 1;
+      }
+    }
+    scratch_first_.push_back(nodes + rows);
+    foreign.resize(static_cast<std::size_t>(rows));
+    return foreign;
+  }
+  /// The same on several threads.
+  template <class NodesOf>
+  std::vector<Index> assign(NodesOf const& nodes_of, Index nodes) {
+    auto const owner = owners(nodes_of, nodes);
+    auto const is_own = [&](Index node, Index p) {
+      return owner[static_cast<std::size_t>(node)] == p;
     };
-    parts([&](Index first, Index last, int) {
-      if (parts.count() == 1)
-        return own(first, last, [](Index& kept, Index p) { kept = kept < 0 ? p : kept; });
-      own(first, last, [](Index& kept, Index p) {
-        std::atomic_ref shared(kept);
-        Index before = shared.load(std::memory_order_relaxed);
+    scratch_first_.resize(first_.size());
+    for_each_on_host(patches(), few_patches, [&](Index p) {
+      Index rows = 0;
+      for (Index const node : nodes_of(p)) rows += is_own(node, p) ? 0 : 1;
+      scratch_first_[static_cast<std::size_t>(p) + 1] = rows;
+    });
+    scratch_first_.front() = nodes;
+    for (std::size_t p = 1; p < scratch_first_.size(); ++p)
+      scratch_first_[p] += scratch_first_[p - 1];
+    std::vector<Index> foreign(static_cast<std::size_t>(scratch_first_.back() - nodes));
+    for_each_on_host(patches(), few_patches, [&](Index p) {
+      Index row = scratch_of(p).first;
+      Index* target = targets(p);
+      for (Index const node : nodes_of(p)) {
+        if (!is_own(node, p)) foreign[static_cast<std::size_t>(row - nodes)] = node;
+        *target++ = is_own(node, p) ? node : row++;
+      }
+    });
+    return foreign;
+  }
+  /// The first patch that has each node; −1: none.
+  template <class NodesOf>
+  std::vector<Index> owners(NodesOf const& nodes_of, Index nodes) const {
+    std::vector<Index> owner(static_cast<std::size_t>(nodes), -1);
+    for_each_on_host(patches(), few_patches, [&](Index p) {
+      for (Index const node : nodes_of(p)) {
+        std::atomic_ref kept(owner[static_cast<std::size_t>(node)]);
+        Index before = kept.load(std::memory_order_relaxed);
         while ((before < 0 || p < before) &&
-               !shared.compare_exchange_weak(before, p, std::memory_order_relaxed)) {
+               !kept.compare_exchange_weak(before, p, std::memory_order_relaxed)) {
         }
-      });
+      }
     });
     return owner;
   }
 
-  /// A node as a patch knows it that has it.
-  struct Known {
-    Index patch = -1;  // the last one that asked
-    Index target = 0;  // where it adds
-  };
-  template <class IsOwn>
-  PLIANT_SELDOM static void number_row(Index patch, Index begin, Known& known, Index node,
-                                       std::vector<Index>& foreign, IsOwn const& is_own) {
-    known.target = node;
-    if (!is_own(node, known)) {
-      known.target = begin + static_cast<Index>(foreign.size());
-      foreign.push_back(node);
-    }
-    known.patch = patch;
-  }
-
-  template <class ForEachPlace>
-  void assign_targets(Index const* node_of, Index patches, ForEachPlace const& for_each_place,
-                      Index nodes) {
-    std::vector<std::vector<Index>> foreign_of(static_cast<std::size_t>(patches));
-    Index const of_thread = patches / HostThreads::now();
-    HostParts const parts(patches, std::max(few_patches, of_thread));
-    bool const in_order =
-        parts.count() == 1;  // else each patch begins at `nodes`, until all are counted
-    std::vector<Index> owner;
-    if (!in_order) owner = owners(node_of, patches, for_each_place, nodes);
-    Index* const target = target_.data();
-    parts([&](Index first, Index last, int) {
-      std::vector<Known> known(static_cast<std::size_t>(nodes));
-      Index begin = nodes;
-      // Scratch rows are numbered as the places of the patch first have their nodes.
-      auto const number = [&](Index p, auto const& is_own) {
-        auto& foreign = foreign_of[static_cast<std::size_t>(p)];
-        for_each_place(p, [&](std::ptrdiff_t k) {
-          Known& own = known[static_cast<std::size_t>(node_of[k])];
-          if (own.patch != p) number_row(p, begin, own, node_of[k], foreign, is_own);
-          target[k] = own.target;
-        });
-        if (in_order) begin += static_cast<Index>(foreign.size());
-      };
-      for (Index p = first; p < last; ++p) {
-        if (in_order)
-          number(p, [](Index, Known const& own) { return own.patch < 0; });
-        else
-          number(p, [&](Index node, Known const&) {
-            return owner[static_cast<std::size_t>(node)] == p;
-          });
-      }
-    });
-    std::vector<Index> foreign;  // nodes, by scratch row
-    for (auto const& of_patch : foreign_of) {
-      scratch_first_.push_back(nodes + static_cast<Index>(foreign.size()));
-      foreign.insert(foreign.end(), of_patch.begin(), of_patch.end());
-    }
-    scratch_first_.push_back(nodes + static_cast<Index>(foreign.size()));
-    if (!in_order)
-      for_each_on_host(patches, few_patches, [&](Index p) {
-        Index const before = scratch_of(p).first - nodes;
-        for_each_place(p, [&](std::ptrdiff_t k) {
-          if (target[k] >= nodes) target[k] += before;
-        });
-      });
-    fold(foreign, nodes);
-    row_patches_.resize(foreign.size());
-    for (Index p = 0; p < patches; ++p)
-      for (auto [r, last] = scratch_of(p); r < last; ++r)
-        row_patches_[static_cast<std::size_t>(r - nodes)] = p;
-  }
-
-  /// Rows ascend with the patch, so inside a node too.
+  /// Rows ascend with the patch, so inside a node too. `foreign`: the nodes of scratch rows.
   void fold(std::vector<Index> const& foreign, Index nodes) {
-    auto const by_node = group_by_key(foreign, nodes);
-    std::size_t count = 0;  // without a branch for each node
-    folded_.resize(foreign.size() + 1);
-    fold_first_.resize(foreign.size() + 1);
-    for (Index node = 0; node < nodes; ++node) {
-      Index const first = by_node.first[static_cast<std::size_t>(node)];
-      folded_[count] = node;
-      fold_first_[count] = first;
-      if (first != by_node.first[static_cast<std::size_t>(node) + 1]) ++count;
-    }
-    folded_.resize(count);
-    fold_first_.resize(count + 1);
-    fold_first_.back() = static_cast<Index>(foreign.size());
-    fold_rows_ = by_node.order;
-    for (Index& fold_row : fold_rows_) fold_row += nodes;
+    std::vector<std::uint64_t> has_rows(static_cast<std::size_t>(nodes) / 64 + 1);  // a bit a node
+    for (Index const node : foreign)
+      has_rows[static_cast<std::size_t>(node) / 64] |= std::uint64_t{1} << (node % 64);
+    auto fold_of = HostArray<Index>::unset(static_cast<std::size_t>(nodes));  // by such nodes
+    folded_.reserve(foreign.size());
+    for (std::size_t word = 0; word < has_rows.size(); ++word)
+      for (auto left = has_rows[word]; left != 0; left &= left - 1) {
+        auto const node = static_cast<Index>(64 * word) + std::countr_zero(left);
+        fold_of.data()[node] = folded_count();
+        folded_.push_back(node);
+      }
     row_folds_.resize(foreign.size());
-    for (std::size_t k = 0; k < folded_.size(); ++k)
-      for (Index r : folded(static_cast<Index>(k)).rows)
-        row_folds_[static_cast<std::size_t>(r - nodes)] = static_cast<Index>(k);
+    for_each_on_host(scratch_nodes(), few_rows, [&](Index r) {
+      auto const row = static_cast<std::size_t>(r);
+      row_folds_[row] = fold_of.data()[foreign[row]];
+    });
+    auto by_fold = group_by_key(row_folds_, folded_count());
+    fold_first_ = std::move(by_fold.first);
+    fold_rows_ = std::move(by_fold.order);
+    for (Index& row : fold_rows_) row += nodes;
+    row_patches_.resize(foreign.size());
+    for_each_on_host(patches(), few_patches, [&](Index p) {
+      auto const [first, last] = scratch_of(p);
+      std::fill_n(row_patches_.begin() + (first - nodes), last - first, p);
+    });
   }
 
-  HostArray<Index> target_;                             // (places)
+  std::vector<std::ptrdiff_t> first_{0};  // (patches + 1), targets
+  HostArray<Index> target_;
   std::vector<Index> scratch_first_;                    // (patches + 1)
   std::vector<Index> folded_, fold_first_, fold_rows_;  // compressed rows
   std::vector<Index> row_folds_, row_patches_;          // (scratch rows)

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/check_nodes.hpp>
 #include <pliant/backend/host_array.hpp>
 #include <pliant/backend/patch_cuts.hpp>
-#include <pliant/openmp/fans.hpp>
+#include <pliant/openmp/fan_block.hpp>
+#include <pliant/openmp/patch_connectivity.hpp>
+#include <pliant/openmp/patch_order.hpp>
+#include <pliant/openmp/patch_plan.hpp>
 #include <pliant/openmp/patch_rows.hpp>
 
 namespace pliant::detail {
@@ -24,123 +30,120 @@ class Patches {
   static constexpr bool may_have_fans = Nodes == 4;
 
   Patches() = default;
-  /// `before`: the table before a change, which has what was planned for the blocks that stay (see PlansByBlocks).
+  /// `before`: the table before a change, with which this one shares what stays (see PlansByBlocks).
   Patches(std::vector<std::array<Index, Nodes>> connectivity, int groups,
           std::vector<Tag> const& tags, Index nodes, NodeOrder node_order,
           ElementBlocks const& blocks = {}, Patches const* before = nullptr)
       : groups_(groups),
         has_fans_(may_have_fans && node_order == NodeOrder::any_even),
-        given_(std::move(connectivity)),
-        nodes_(given_.data()),
         tags_(std::span<Tag const>(tags)),
-        ordered_tags_(std::span<Tag const>(tags)),
         tag_data_(tags_.data()),
-        cuts_(static_cast<Index>(tags.size()), largest_patch, blocks),
-        order_(HostArray<Index>::unset(tags.size())) {
-    check_nodes(given_, nodes);
-    if (before != nullptr && blocks.some_stay()) carry(blocks, *before);
+        cuts_(static_cast<Index>(tags.size()), PatchOrder::largest, blocks),
+        plans_(static_cast<std::size_t>(patch_count())),
+        orders_(plans_.size()) {
+    check_nodes(connectivity, nodes);
+    if (before != nullptr && blocks.some_stay()) {
+      auto const known = cuts_.known_from(before->cuts_, blocks);
+      for (std::size_t p = 0; p < known.size(); ++p)
+        if (known[p] >= 0) keep(p, *before, static_cast<std::size_t>(known[p]));
+      connectivity_ = {connectivity, cuts_, blocks, known, before->connectivity_, before->cuts_};
+    } else {
+      connectivity_ = {std::move(connectivity), cuts_};
+    }
     if (has_fans_)
-      fans_ = Fans(all_nodes(), cuts_.first(), nodes, blocks,
-                   before == nullptr ? nullptr : &before->fans_);
-    else
-      rows_ = PatchRows(
-          {all_nodes(), tags.size() * Nodes}, patch_count(),
-          [&](Index p) { return std::ptrdiff_t{Nodes} * cuts_.first(p); }, nodes);
-    bounds_.resize(static_cast<std::size_t>(patch_count()) * static_cast<std::size_t>(groups + 1));
+      fan_blocks_ = FanBlocks([&](Index e) { return this->nodes(e); }, count(), blocks,
+                              before == nullptr ? nullptr : &before->fan_blocks_);
+    plan();
+    rows_ = PatchRows(
+        patch_count(), [&](Index p) -> auto const& { return plan_of(p).nodes; }, nodes);
     for_each_on_host(patch_count(), few_patches, [&](Index p) { order(p); });
   }
 
-  Index count() const { return static_cast<Index>(order_.size()); }
+  Index count() const { return cuts_.first().back(); }
   Index patch_size() const { return cuts_.size(); }
   Index patch_count() const { return cuts_.count(); }
   PatchRanges patches() const { return cuts_.ranges(); }
   std::span<Index const> patch_bounds() const { return cuts_.first(); }
-  PatchRows const& rows() const { return has_fans_ ? fans_.rows() : rows_; }
-  Index scratch_nodes() const { return rows().scratch_nodes(); }
+  PatchRows const& rows() const { return rows_; }
+  Index scratch_nodes() const { return rows_.scratch_nodes(); }
   HostArray<Tag>& tags() { return tags_; }
   HostArray<Tag> const& tags() const { return tags_; }
   HostArray<Tag> take_tags() { return std::move(tags_); }
 
-  ElementRows rows_of_nodes() const { return {all_nodes(), Nodes}; }
-  Index const* nodes(Index e) const { return nodes_[static_cast<std::size_t>(e)].data(); }
+  ElementRows rows_of_nodes() const {
+    auto const* const rows = connectivity_.flat(cuts_);
+    return {rows == nullptr ? nullptr : rows->data(), Nodes};
+  }
+  Index const* nodes(Index e) const { return connectivity_.row(cuts_, e)->data(); }
+  /// Of an element of a patch.
+  Index const* nodes(Index patch, Index e) const {
+    return connectivity_.rows(patch)[e - cuts_.first(patch)].data();
+  }
+  PatchPlan const& plan_of(Index patch) const { return *plans_[static_cast<std::size_t>(patch)]; }
   bool has_fans() const { return has_fans_; }
-  Fans const& fans() const { return fans_; }
-  /// The elements of a patch that belong to a group, in ascending order.
-  std::span<Index const> members(Index patch, int group) const {
-    auto const at = static_cast<std::size_t>(patch * (groups_ + 1) + group);
-    return {order_.data() + bounds_[at], order_.data() + bounds_[at + 1]};
+  PatchFans fans(Index patch) const {
+    auto const& plan = plan_of(patch);
+    return {plan.fans, plan.places.data(), plan.nodes.data(), rows_.targets(patch),
+            cuts_.first(patch)};
+  }
+  /// What a patch has of a group, in ascending order; numbered in the patch.
+  std::span<std::uint16_t const> members(Index patch, int group) const {
+    return orders_[static_cast<std::size_t>(patch)].members(group);
+  }
+  /// The same of fans, long runs first.
+  std::span<FanRun const> runs(Index patch, int group) const {
+    return orders_[static_cast<std::size_t>(patch)].runs(group, plan_of(patch).fans);
   }
 
   /// Orders the elements of each patch by group, stably; patches whose tags did not change keep their
-  /// order without a look.
+  /// order.
   void regroup() {
-    for (Index p = 0; p < patch_count(); ++p) {
-      Index const first = cuts_.first(p), size = cuts_.first(p + 1) - first;
-      if (std::equal(tag_data_ + first, tag_data_ + first + size, ordered_tags_.data() + first))
-        continue;
-      std::copy_n(tag_data_ + first, size, ordered_tags_.data() + first);
-      order(p);
-    }
+    for_each_on_host(patch_count(), few_patches, [&](Index p) {
+      if (!orders_[static_cast<std::size_t>(p)].is_of(tag_data_ + cuts_.first(p), size_of(p)))
+        order(p);
+    });
   }
 
  private:
-  Index const* all_nodes() const { return count() == 0 ? nullptr : nodes(0); }
-  /// Puts what was given between the elements that stay.
-  void carry(ElementBlocks const& blocks, Patches const& before) {
-    auto const first_node = [](std::array<Index, Nodes> const* rows) {
-      return rows == nullptr ? nullptr : rows->data();
-    };
-    carried_ = HostArray<std::array<Index, Nodes>>::unset(order_.size());
-    auto const sources = sources_of(blocks);
-    CarryConnectivity<Nodes, Nodes> const carry{
-        blocks.first.data(),
-        sources.data(),
-        static_cast<Index>(sources.size()),
-        first_node(before.nodes_),
-        first_node(given_.data()),
-        carried_.size() == 0 ? nullptr : carried_.data()->data()};
-    constexpr Index few_blocks = 32;  // worth a thread
-    for_each_on_host(carry.blocks, few_blocks, [&](Index block) {
-      auto const b = static_cast<std::size_t>(block);
-      for (Index e = blocks.first[b]; e < blocks.first[b + 1]; ++e) carry.carry(block, e);
+  static_assert(PatchOrder::largest * Nodes <= 65536, "places of a patch have two bytes");
+  static constexpr Index few_patches = 4;  // worth a thread
+
+  Index size_of(Index patch) const { return cuts_.first(patch + 1) - cuts_.first(patch); }
+  void keep(std::size_t patch, Patches const& before, std::size_t known) {
+    plans_[patch] = before.plans_[known];
+    orders_[patch] = before.orders_[known];
+  }
+  void plan() {
+    std::vector<Index> patches;
+    for (Index p = 0; p < patch_count(); ++p)
+      if (plans_[static_cast<std::size_t>(p)] == nullptr) patches.push_back(p);
+    HostParts(static_cast<Index>(patches.size()), few_patches)([&](Index from, Index to, int) {
+      NodeNumbers numbers;
+      for (Index k = from; k < to; ++k) {
+        Index const p = patches[static_cast<std::size_t>(k)], first = cuts_.first(p);
+        auto const rows_of = [&](Index e) { return nodes(e); };
+        plans_[static_cast<std::size_t>(p)] = std::make_shared<PatchPlan const>(
+            has_fans_ ? plan_fans(fan_blocks_, first, cuts_.first(p + 1), rows_of, numbers)
+                      : plan_elements(rows_of(first), size_of(p), Nodes, numbers));
+      }
     });
-    nodes_ = carried_.data();
-    given_ = {};
   }
   void order(Index patch) {
-    Index const first = cuts_.first(patch), last = cuts_.first(patch + 1);
-    Index* next = order_.data() + first;
-    auto bound = bounds_.begin() + patch * (groups_ + 1);
-    bool const alike = are_alike(tag_data_ + first, last - first);
-    for (int g = 0; g < groups_; ++g) {
-      *bound++ = static_cast<Index>(next - order_.data());
-      if (alike && tag_data_[first] == g) {
-        std::iota(next, next + (last - first), first);
-        next += last - first;
-      }
-      for (Index e = first; !alike && e < last; ++e)
-        if (tag_data_[e] == g) *next++ = e;
-    }
-    *bound = static_cast<Index>(next - order_.data());
-    if (has_fans_) fans_.order(patch, tag_data_, groups_);
+    orders_[static_cast<std::size_t>(patch)].order(tag_data_ + cuts_.first(patch), size_of(patch),
+                                                   groups_,
+                                                   has_fans_ ? &plan_of(patch).fans : nullptr);
   }
-
-  /// Elements; swept by bench, flat from 1024 to 8192.
-  static constexpr Index largest_patch = 2048;
-  static constexpr Index few_patches = 4;  // worth a thread
 
   int groups_ = 1;
   bool has_fans_ = false;
-  std::vector<std::array<Index, Nodes>> given_;      // (elements), or none where they are
-  HostArray<std::array<Index, Nodes>> carried_;      // (elements)
-  std::array<Index, Nodes> const* nodes_ = nullptr;  // of one of these
-  PatchRows rows_;                                   // of the connectivity, where there are no fans
-  Fans fans_;
-  HostArray<Tag> tags_, ordered_tags_;  // as they are, and as the order knows them
-  Tag const* tag_data_ = nullptr;       // whoever owns them
+  HostArray<Tag> tags_;
+  Tag const* tag_data_ = nullptr;  // whoever owns them
   HostPatches cuts_;
-  HostArray<Index> order_;     // elements, ordered by group inside each patch
-  std::vector<Index> bounds_;  // (patches, groups + 1)
+  PatchConnectivity<Nodes> connectivity_;
+  FanBlocks fan_blocks_;
+  std::vector<std::shared_ptr<PatchPlan const>> plans_;  // (patches)
+  PatchRows rows_;                                       // of the nodes of plans
+  std::vector<PatchOrder> orders_;                       // (patches)
 };
 
 /// The rows that the elements of a patch add to, its nodes' or scratch rows.
@@ -148,27 +151,29 @@ template <int Nodes>
 class PatchTargets {
  public:
   PatchTargets(Patches<Nodes> const& elements, Index patch)
-      : first_(elements.patch_bounds()[static_cast<std::size_t>(patch)]) {
-    if (!elements.has_fans()) {
-      targets_ = elements.rows().targets() + std::ptrdiff_t{Nodes} * first_;
-      return;
-    }
+      : first_(elements.patch_bounds()[static_cast<std::size_t>(patch)]),
+        places_(elements.plan_of(patch).places.data()),
+        targets_(elements.rows().targets(patch)) {
+    if (!elements.has_fans()) return;
     of_fans_.resize(static_cast<std::size_t>(Nodes * elements.patch_size()));
-    targets_ = of_fans_.data();
-    auto const& fans = elements.fans();
-    fans.for_each_element(patch, [&](Index e, auto const& corners) {
+    auto const fans = elements.fans(patch);
+    fans.for_each_element([&](Index e, auto const& corners) {
       for (int a = 0; a < Nodes; ++a)
-        for (Index corner : corners)
-          if (fans.nodes()[corner] == elements.nodes(e)[a])
-            of_fans_[static_cast<std::size_t>(Nodes * (e - first_) + a)] = fans.targets()[corner];
+        for (auto const corner : corners)
+          if (fans.nodes[corner] == elements.nodes(patch, e)[a])
+            of_fans_[static_cast<std::size_t>(Nodes * (e - first_) + a)] = corner;
     });
+    places_ = of_fans_.data();
   }
-  Index const* of(Index e) const { return targets_ + std::ptrdiff_t{Nodes} * (e - first_); }
+  Index of(Index e, int node) const {
+    return targets_[places_[std::ptrdiff_t{Nodes} * (e - first_) + node]];
+  }
 
  private:
   Index first_;
-  Index const* targets_ = nullptr;
-  std::vector<Index> of_fans_;
+  std::uint16_t const* places_;
+  Index const* targets_;
+  std::vector<std::uint16_t> of_fans_;
 };
 
 }  // namespace pliant::detail
