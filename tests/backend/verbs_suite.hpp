@@ -457,6 +457,20 @@ TEST_CASE("loops over a list of patches pass over the elements of the others", "
   });
 }
 
+TEST_CASE("elements without tags are of the first group", "[backend]") {
+  on_each_backend<AllPairs>([]<class B>(B const& backend) {
+    Fan<B> fan(backend);
+    using Table = typename B::template Elements<3>;
+    Table const without{backend, fan.connectivity, 2, {}, fan.nodes};
+    Table const zero{backend, fan.connectivity, 2, std::vector<Tag>(fan.tags.size(), Tag{0}),
+                     fan.nodes};
+
+    CHECK(without.count() == fan.elements_count);
+    CHECK(download<Tag>(without.tags()) == download<Tag>(zero.tags()));
+    CHECK(sweep(backend, fan, without) == sweep(backend, fan, zero));
+  });
+}
+
 TEST_CASE("a recording of all verbs replays with what arrays then hold", "[backend]") {
   on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using T = typename B::scalar;

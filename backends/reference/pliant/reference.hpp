@@ -40,10 +40,10 @@ class Reference {
              std::vector<Tag> const& tags, Index nodes, NodeOrder = NodeOrder::as_given,
              Index patch_size = 512)
         : connectivity_(std::move(connectivity)),
-          tags_(tags.size()),
+          tags_(connectivity_.size()),
           patches_(static_cast<Index>(connectivity_.size()), patch_size) {
       detail::check_nodes(connectivity_, nodes);
-      tags_.upload(tags);
+      if (!tags.empty()) tags_.upload(tags);
       tag_data_ = tags_.data();
     }
     Index count() const { return static_cast<Index>(connectivity_.size()); }

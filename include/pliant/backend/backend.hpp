@@ -52,6 +52,7 @@
 // values of an ElementField at its element, Vector<S, Components>.
 //   Elements<Nodes>(backend, connectivity, groups, tags, nodes, order)
 //                              throws Error where an element has a node outside [0, nodes); order: see NodeOrder;
+//                              without tags, all elements are of group 0;
 //                              two more arguments where a backend plans by blocks: see backend/element_blocks.hpp
 //   .rows_of_nodes()           an ElementRows: the nodes of each element, where loops run
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by

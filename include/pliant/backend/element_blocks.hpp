@@ -20,6 +20,10 @@ struct ElementBlocks {
   std::vector<Index> first_before{};  ///< (blocks + 1), elements of that table; where blocks stay
 
   bool some_stay() const { return !stays.empty(); }
+  /// How many elements a table has, of which `given` were given.
+  Index count(std::size_t given) const {
+    return first.empty() ? static_cast<Index>(given) : first.back();
+  }
 };
 
 namespace detail {

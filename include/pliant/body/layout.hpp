@@ -212,7 +212,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       table.elements = {backend,
                         std::move(connectivity),
                         TableType::groups,
-                        std::vector<Tag>(table.numbers.size(), 0),
+                        std::vector<Tag>{},
                         rows,
                         node_order<typename TableType::element>,
                         planned...};

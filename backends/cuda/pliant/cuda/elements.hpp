@@ -146,10 +146,10 @@ class CudaElements {
   CudaElements(Cuda<T> const& backend, std::vector<std::array<Index, Nodes>> const& connectivity,
                std::vector<Tag> const& tags, Index nodes, ElementBlocks const& blocks = {},
                CudaElements const* before = nullptr)
-      : count_(static_cast<Index>(tags.size())) {
+      : count_(blocks.count(connectivity.size())) {
     detail::check_nodes(connectivity, nodes);
-    bool const all_of_first_group = std::ranges::all_of(tags, [](Tag tag) { return tag == 0; });
-    tags_ = all_of_first_group ? backend.template array<Tag>(tags.size()) : uploaded(backend, tags);
+    tags_ = tags.empty() ? backend.template array<Tag>(static_cast<std::size_t>(count_))
+                         : uploaded(backend, tags);
     tag_data_ = tags_.data();
     if (before != nullptr && blocks.some_stay())
       carry(backend, connectivity, blocks, *before);

@@ -36,9 +36,11 @@ class Patches {
           ElementBlocks const& blocks = {}, Patches const* before = nullptr)
       : groups_(groups),
         has_fans_(may_have_fans && node_order == NodeOrder::any_even),
-        tags_(std::span<Tag const>(tags)),
+        tags_(tags.empty()
+                  ? HostArray<Tag>(static_cast<std::size_t>(blocks.count(connectivity.size())))
+                  : HostArray<Tag>(std::span<Tag const>(tags))),
         tag_data_(tags_.data()),
-        cuts_(static_cast<Index>(tags.size()), PatchOrder::largest, blocks),
+        cuts_(blocks.count(connectivity.size()), PatchOrder::largest, blocks),
         plans_(static_cast<std::size_t>(patch_count())),
         orders_(plans_.size()) {
     check_nodes(connectivity, nodes);
