@@ -81,7 +81,7 @@ TEST_CASE("every element finds its patch", "[backend]") {
       for (; e < patches.first(p + 1); ++e) CHECK(ranges.patch_of(e) == p);
     }
     CHECK(patches.first(patches.count()) == 571);
-    for (Index run = 0; run < detail::PatchOfRun::count(571); ++run) {
+    for (Index run = 0; run < PatchRanges::runs(571); ++run) {
       std::vector<Index> of_run(static_cast<std::size_t>(run) + 1);
       detail::PatchOfRun{patches.first().data(), patches.count(), of_run.data()}(run);
       CHECK(of_run.back() == ranges.of_run[run]);

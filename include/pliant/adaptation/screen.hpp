@@ -2,37 +2,43 @@
 
 #include <cstdint>
 
+#include <pliant/backend/patch_ranges.hpp>
 #include <pliant/force/element_kernels.hpp>
 
-// Forces tell on their way which patches a look has to look at.
+// Forces tell on their way which elements a look has to look at.
 namespace pliant::detail {
 
-/// Some element of those that a kernel computes together; they are of one patch.
-template <class Own>
-PLIANT_HOST_DEVICE Index some_element(Own const& own) {
+/// f(element) for those that a kernel computes together.
+template <class Own, class F>
+PLIANT_HOST_DEVICE void for_each_element(Own const& own, F const& f) {
   if constexpr (requires { own.element[0]; })
-    return own.element[0];
+    for (int l = 0; l < own.count; ++l) f(own.element[l]);
   else
-    return own.element;
+    f(own.element);
 }
 
-/// Which patches of a table have elements that may act, by their squared displacement gradients H:H. What is noted is
+/// Which elements of a table are near some that may act, by their squared displacement gradients H:H. What is noted is
 /// the step of the look, so that nothing has to be cleared.
 template <class T, int Groups>
 struct Screen {
   T above[Groups], below[Groups];  // H:H between which elements of a group may act, if any
-  std::int64_t* noted;             // (patches)
+  std::int64_t* noted;             // (runs of elements, see PatchRanges)
   std::int64_t const* step;        // (1): of the look
-  PatchRanges patches;
 
-  /// Notes the patch of elements of group G if one of them may act; NaN does not.
+  /// Notes the runs of elements of group G if one of them may act; NaN does not.
   template <int G, class S, class Own>
   PLIANT_HOST_DEVICE void operator()(GroupNumber<G>, S const& squared, Own const& own) const {
     if (any_less(S(above[G]), select(S(below[G]) < squared, S(-1), squared)))
-      noted[patches.patch_of(some_element(own))] = *step;
+      for_each_element(own, [&](Index e) { noted[e / PatchRanges::run] = *step; });
   }
   PLIANT_HOST_DEVICE bool selects(Index element) const {
-    return noted[patches.patch_of(element)] == *step;
+    return noted[element / PatchRanges::run] == *step;
+  }
+  /// On the host: whether elements of [first, last) are selected.
+  bool selects_some(Index first, Index last) const {
+    for (Index e = first; e < last; e += PatchRanges::run - e % PatchRanges::run)
+      if (selects(e)) return true;
+    return false;
   }
 };
 

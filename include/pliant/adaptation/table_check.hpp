@@ -83,8 +83,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
                      (BoundedCriterion<decltype(Rules::criterion)> && ...));
   bool screens() const { return !ranks(); }
   Screen<T, Table::groups> screen() const {
-    Screen<T, Table::groups> made{
-        {}, {}, workspace().noted.data(), parts_.clock.data(), table_.elements.patches()};
+    Screen<T, Table::groups> made{{}, {}, workspace().noted.data(), parts_.clock.data()};
     [&]<int... G>(std::integer_sequence<int, G...>) {
       ((made.above[G] = range<G>()[0], made.below[G] = range<G>()[1]), ...);
     }(std::make_integer_sequence<int, Table::groups>());
@@ -95,11 +94,14 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (count == 0) {
       return false;
     } else {
-      auto const* noted = workspace().noted.data();
+      auto const screen = this->screen();
+      auto const bounds = table_.elements.patch_bounds();
       auto const awake = parts_.awake_in(table_);
       std::vector<Index> list{0};
       for (Index k = 0; k < awake.patch_count(); ++k)
-        if (noted[awake.patch(k)] == *parts_.clock.data()) list.push_back(awake.patch(k));
+        if (auto const p = static_cast<std::size_t>(awake.patch(k));
+            screen.selects_some(bounds[p], bounds[p + 1]))
+          list.push_back(awake.patch(k));
       list[0] = static_cast<Index>(list.size()) - 1;
       std::ranges::copy(list, workspace().flagged.data());
       return list[0] > 0;
@@ -161,7 +163,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (switches) room.hold_switching();
     if constexpr (can_screen && count > 0) {
       auto const patches = static_cast<std::size_t>(table_.elements.patch_count());
-      room.hold(workspace().noted, patches);
+      room.hold(workspace().noted, static_cast<std::size_t>(PatchRanges::runs(table_.count())));
       room.hold(workspace().flagged, patches + 1);
     }
     if constexpr (changes_mesh) {

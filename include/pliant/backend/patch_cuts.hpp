@@ -18,9 +18,6 @@ struct PatchOfRun {
   Index patches;
   Index* of_run;
 
-  static constexpr Index count(Index elements) {
-    return elements / PatchRanges::run + (elements % PatchRanges::run != 0);
-  }
   PLIANT_HOST_DEVICE void operator()(Index run) const {
     Index const e = PatchRanges::run * run;
     Index low = 0, high = patches;  // the patch is in [low, high), and not empty
@@ -91,7 +88,7 @@ class HostPatches : public PatchCuts {
   HostPatches() = default;
   HostPatches(Index elements, Index size, ElementBlocks const& blocks = {})
       : PatchCuts(elements, size, blocks),
-        of_run_(static_cast<std::size_t>(PatchOfRun::count(elements))) {
+        of_run_(static_cast<std::size_t>(PatchRanges::runs(elements))) {
     for (Index patch = 0, run = 0; run < static_cast<Index>(of_run_.size()); ++run) {
       while (first(patch + 1) <= PatchRanges::run * run) ++patch;
       of_run_[static_cast<std::size_t>(run)] = patch;

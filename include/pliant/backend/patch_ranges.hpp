@@ -7,6 +7,7 @@ namespace pliant {
 /// Which elements of a table each patch has: consecutive ones. Arrays are in the backend's memory.
 struct PatchRanges {
   static constexpr Index run = 32;  ///< elements
+  static constexpr Index runs(Index elements) { return elements / run + (elements % run != 0); }
 
   Index const* first = nullptr;   ///< (patches + 1), elements
   Index const* of_run = nullptr;  ///< (runs of elements): the patch of the first one

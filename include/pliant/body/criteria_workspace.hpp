@@ -87,8 +87,9 @@ struct CriteriaWorkspace {
   Array<std::uint8_t> patch_levels;  // (patches): of local steps, where a choice counts them
   Array<std::int64_t> histogram;     // (histogram_bins), zero between searches
   Array<Ranking<T>> rankings;        // (rules)
-  Array<std::int64_t> noted;         // (patches): the last look that had to look at it; see Screen
-  Array<Index> flagged;              // on the host: a list of these, for over()
+  Array<std::int64_t>
+      noted;             // (runs of elements): the last look that had to look at it; see Screen
+  Array<Index> flagged;  // on the host: a list of patches that have some, for over()
   /// Copies of what a check changes, to be put back when refinement throws.
   struct Kept {
     Array<Tag> tags;

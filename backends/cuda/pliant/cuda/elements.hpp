@@ -178,7 +178,7 @@ class CudaElements {
   void cut(Cuda<T> const& backend, int size, ElementBlocks const& blocks) {
     cuts_ = detail::PatchCuts(count_, size, blocks);
     first_ = uploaded(backend, cuts_.first());
-    auto const runs = detail::PatchOfRun::count(count_);
+    auto const runs = PatchRanges::runs(count_);
     of_run_ = backend.template array<Index>(static_cast<std::size_t>(runs));
     backend.for_each(runs, detail::PatchOfRun{first_.data(), cuts_.count(), of_run_.data()});
   }
