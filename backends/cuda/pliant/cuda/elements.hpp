@@ -47,11 +47,14 @@ struct ElementView {
 
   /// The i-th element of the active patches; negative where the last patch has none.
   __device__ __forceinline__ Index element(Index i) const {
-    if (active.list == nullptr) return i < count ? i : -1;
-    Index const patch = active.patch(i / patch_size);
-    if (patch < 0) return -1;
-    Index const e = first[patch] + i % patch_size;
-    return e < first[patch + 1] ? e : -1;
+    Index end = count;
+    if (active.list != nullptr) {
+      Index const patch = active.patch(i / patch_size);
+      if (patch < 0) return -1;
+      i = first[patch] + i % patch_size;
+      end = first[patch + 1];
+    }
+    return i < end ? i : -1;
   }
 };
 
