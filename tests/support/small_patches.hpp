@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <pliant/reference.hpp>
 
 namespace pliant::test {
@@ -8,6 +10,10 @@ namespace pliant::test {
 template <std::floating_point T, Index Size>
 class SmallPatches : public Reference<T> {
  public:
+  static char const* name() {
+    static std::string const own = "Reference, patches of " + std::to_string(Size);
+    return own.c_str();
+  }
   template <int Nodes>
   class Elements : public Reference<T>::template Elements<Nodes> {
     using Base = typename Reference<T>::template Elements<Nodes>;
