@@ -44,7 +44,7 @@ Description described(Elements const& elements, int groups) {
         add("nodes", elements.nodes(e)[a]);
         add("nodes by the patch", elements.nodes(p, e)[a]);
         add("nodes one after another", flat[e][a]);
-        add("targets of elements", targets.of(e, a));
+        add("targets of elements", targets.of(e)[a]);
       }
     auto const [first, last] = rows.scratch_of(p);
     add("scratch rows", first, last);
@@ -85,7 +85,7 @@ void check(Elements const& elements, int groups) {
     auto const [begin, end] = elements.rows().scratch_of(p);
     for (Index e = first; e < elements.patch_bounds()[static_cast<std::size_t>(p) + 1]; ++e)
       for (int a = 0; a < nodes; ++a) {
-        Index const row = targets.of(e, a), node = elements.nodes(e)[a];
+        Index const row = targets.of(e)[a], node = elements.nodes(e)[a];
         right = right && (row == node || (begin <= row && row < end &&
                                           elements.rows().folded_of_row(row).node == node));
       }

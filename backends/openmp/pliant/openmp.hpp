@@ -239,7 +239,7 @@ class OpenMP {
           call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int a = 0; a < Nodes; ++a) {
         Index rows[Scalar::lanes];
-        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l], a);
+        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l])[a];
         typename Scalar::Register r[4] = {};
         for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
         detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);

@@ -58,6 +58,7 @@ class Patches {
     plan();
     rows_ = PatchRows(
         patch_count(), [&](Index p) -> auto const& { return plan_of(p).nodes; }, nodes);
+    if (!has_fans_) find_targets();
     for_each_on_host(patch_count(), few_patches, [&](Index p) { order(p); });
   }
 
@@ -81,6 +82,8 @@ class Patches {
   Index const* nodes(Index patch, Index e) const {
     return connectivity_.rows(patch)[e - cuts_.first(patch)].data();
   }
+  /// Of a table without fans: the rows that its elements' shares are added to, (elements, nodes).
+  Index const* targets() const { return targets_.data(); }
   PatchPlan const& plan_of(Index patch) const { return *plans_[static_cast<std::size_t>(patch)]; }
   bool has_fans() const { return has_fans_; }
   PatchFans fans(Index patch) const {
@@ -130,6 +133,13 @@ class Patches {
       }
     });
   }
+  void find_targets() {
+    targets_ = HostArray<Index>::unset(static_cast<std::size_t>(count()) * Nodes);
+    for_each_on_host(patch_count(), few_patches, [&](Index p) {
+      Index* target = targets_.data() + std::ptrdiff_t{Nodes} * cuts_.first(p);
+      for (auto const place : plan_of(p).places) *target++ = std::as_const(rows_).targets(p)[place];
+    });
+  }
   void order(Index patch) {
     orders_[static_cast<std::size_t>(patch)].order(tag_data_ + cuts_.first(patch), size_of(patch),
                                                    groups_,
@@ -145,6 +155,7 @@ class Patches {
   FanBlocks fan_blocks_;
   std::vector<std::shared_ptr<PatchPlan const>> plans_;  // (patches)
   PatchRows rows_;                                       // of the nodes of plans
+  HostArray<Index> targets_;                             // (elements, nodes); empty with fans
   std::vector<PatchOrder> orders_;                       // (patches)
 };
 
@@ -153,29 +164,27 @@ template <int Nodes>
 class PatchTargets {
  public:
   PatchTargets(Patches<Nodes> const& elements, Index patch)
-      : first_(elements.patch_bounds()[static_cast<std::size_t>(patch)]),
-        places_(elements.plan_of(patch).places.data()),
-        targets_(elements.rows().targets(patch)) {
-    if (!elements.has_fans()) return;
+      : first_(elements.patch_bounds()[static_cast<std::size_t>(patch)]) {
+    if (!elements.has_fans()) {
+      targets_ = elements.targets() + std::ptrdiff_t{Nodes} * first_;
+      return;
+    }
     of_fans_.resize(static_cast<std::size_t>(Nodes * elements.patch_size()));
+    targets_ = of_fans_.data();
     auto const fans = elements.fans(patch);
     fans.for_each_element([&](Index e, auto const& corners) {
       for (int a = 0; a < Nodes; ++a)
         for (auto const corner : corners)
           if (fans.nodes[corner] == elements.nodes(patch, e)[a])
-            of_fans_[static_cast<std::size_t>(Nodes * (e - first_) + a)] = corner;
+            of_fans_[static_cast<std::size_t>(Nodes * (e - first_) + a)] = fans.targets[corner];
     });
-    places_ = of_fans_.data();
   }
-  Index of(Index e, int node) const {
-    return targets_[places_[std::ptrdiff_t{Nodes} * (e - first_) + node]];
-  }
+  Index const* of(Index e) const { return targets_ + std::ptrdiff_t{Nodes} * (e - first_); }
 
  private:
   Index first_;
-  std::uint16_t const* places_;
-  Index const* targets_;
-  std::vector<std::uint16_t> of_fans_;
+  Index const* targets_ = nullptr;
+  std::vector<Index> of_fans_;
 };
 
 }  // namespace pliant::detail
