@@ -21,7 +21,18 @@ struct Histogram : Whole {
   void histogram() const;
 };
 struct Select : Whole {
-  void select() const;
+  template <class F>
+  void select(Index, F const&, Index*, Index*) const;
+};
+struct SelectTo : Whole {
+  template <class F>
+  std::vector<Index> select(Index, F const&) const;
+};
+struct Scan : Whole {
+  void scan() const;
+};
+struct Sort : Whole {
+  void sort() const;
 };
 struct Maximum : Whole {
   void maximum() const;
@@ -67,6 +78,9 @@ TEST_CASE("what lacks one verb is no backend", "[backend]") {
   STATIC_REQUIRE_FALSE(Backend<lacking::Histogram>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Maximum>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Select>);
+  STATIC_REQUIRE_FALSE(Backend<lacking::SelectTo>);
+  STATIC_REQUIRE_FALSE(Backend<lacking::Scan>);
+  STATIC_REQUIRE_FALSE(Backend<lacking::Sort>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Arrays>);
   STATIC_REQUIRE_FALSE(Backend<lacking::Record>);
   STATIC_REQUIRE_FALSE(Backend<lacking::TimerOfSeconds>);

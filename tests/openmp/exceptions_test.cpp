@@ -22,6 +22,12 @@ struct RefuseNodes {
     return 1;
   }
 };
+struct RefuseNumbers {
+  Index operator()(Index i) const {
+    refuse(i);
+    return 1;
+  }
+};
 /// The first component of a node is its number.
 struct RefuseElements {
   static constexpr int counters = 1;
@@ -70,6 +76,7 @@ TEST_CASE("an exception thrown inside a verb leaves it as from a serial loop", "
     INFO(threads << " threads");
     OpenMP<double> const backend{{.threads = threads}};
     OpenMP<double>::Elements<2> const elements{backend, connectivity, 1, tags, count + 1};
+    HostArray<Index> list(2 * count + 1);
     HostArray<double> x(node_stride * (count + 1)), counters(1),
         out(node_stride * static_cast<std::size_t>(count + 1 + elements.scratch_nodes()));
     for (Index i = 0; i <= count; ++i) x.data()[node_stride * i] = i;
@@ -81,6 +88,9 @@ TEST_CASE("an exception thrown inside a verb leaves it as from a serial loop", "
       CHECK_THROWS_WITH(backend.for_each(count, RefuseNodes{}), first);
       CHECK_THROWS_WITH(backend.sum(count, RefuseNodes{}), first);
       CHECK_THROWS_WITH(backend.maximum(count, RefuseNodes{}), first);
+      CHECK_THROWS_WITH(backend.scan(2 * count, RefuseNumbers{}, list.data()), first);
+      CHECK_THROWS_WITH(backend.select(2 * count, RefuseNumbers{}, list.data(), list.data()),
+                        first);
       CHECK_THROWS_WITH(backend.accumulate<1>(elements, RefuseElements{}, sums, field), first);
       CHECK_THROWS_WITH(backend.sum_elements<1>(elements, RefuseEnergies{}, field), first);
       CHECK_THROWS_WITH(backend.visit<1>(elements, RefuseElements{}, counters, field), first);

@@ -21,8 +21,10 @@
 #include <pliant/cuda/point_rows.cuh>
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
+#include <pliant/cuda/scan.cuh>
 #include <pliant/cuda/scatter.cuh>
 #include <pliant/cuda/select.cuh>
+#include <pliant/cuda/sort.cuh>
 #include <pliant/cuda/timer.hpp>
 #include <pliant/cuda/visit.cuh>
 
@@ -107,6 +109,17 @@ class Cuda {
     launch("select", {blocks(n, detail::node_threads), detail::node_threads},
            detail::mark_selected<F>, n, f, words.data());
     return detail::numbers_of_bits(download<std::uint32_t>(words));
+  }
+  template <class F>
+  void select(Index n, F const& f, Index* to, Index* count) const {
+    detail::select_list(*context_, n, f, to, count);
+  }
+  template <class F>
+  void scan(Index n, F const& f, Index* to) const {
+    detail::scan_list(*context_, n, f, to);
+  }
+  void sort(Index n, std::uint64_t* keys, Index* values, int bits) const {
+    if (n > 1 && bits > 0) detail::sort_list(*context_, n, detail::KeyList{keys, values}, bits);
   }
 
   template <int Groups, class Table, class Kernel, int C, class... Fields>

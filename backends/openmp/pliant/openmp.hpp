@@ -11,6 +11,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/dispatch.hpp>
+#include <pliant/backend/host_lists.hpp>
 #include <pliant/backend/host_recording.hpp>
 #include <pliant/backend/host_timer.hpp>
 #include <pliant/backend/kernel.hpp>
@@ -134,6 +135,17 @@ class OpenMP {
     for (auto const& [first, own] : of_parts) found.insert(found.end(), own.begin(), own.end());
     return found;
   }
+  template <class F>
+  void select(Index n, F const& f, Index* to, Index* count) const {
+    detail::select_in_parts(list_parts(n), f, to, count);
+  }
+  template <class F>
+  void scan(Index n, F const& f, Index* to) const {
+    detail::scan_in_parts(list_parts(n), f, to);
+  }
+  void sort(Index n, std::uint64_t* keys, Index* values, int bits) const {
+    detail::sort_in_parts(list_parts(n), keys, values, bits);
+  }
   template <class U>
   Array<U> array(std::size_t count) const {
     return Array<U>(count);
@@ -211,6 +223,8 @@ class OpenMP {
   using Values = Matrix<Scalar, Nodes, Field::components>;
 
   using PackMembers = detail::PackMembers<T>;
+
+  detail::ListParts list_parts(Index n) const { return {HostTasks(*this), n, small_loop}; }
 
   /// Patches that are passed over add nothing.
   template <int Nodes, int C>

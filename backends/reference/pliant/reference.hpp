@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -95,6 +97,32 @@ class Reference {
     for (Index i = 0; i < n; ++i)
       if (f(i)) found.push_back(i);
     return found;
+  }
+  template <class F>
+  void select(Index n, F const& f, Index* to, Index* count) const {
+    auto const found = select(n, f);
+    std::copy(found.begin(), found.end(), to);
+    *count = static_cast<Index>(found.size());
+  }
+  template <class F>
+  void scan(Index n, F const& f, Index* to) const {
+    Index sum = 0;
+    for (Index i = 0; i < n; ++i) {
+      Index const value = f(i);
+      to[i] = sum;
+      sum += value;
+    }
+    to[n] = sum;
+  }
+  void sort(Index n, std::uint64_t* keys, Index* values, int) const {
+    std::vector<std::pair<std::uint64_t, Index>> sorted;
+    for (Index i = 0; i < n; ++i) sorted.emplace_back(keys[i], values[i]);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](auto const& a, auto const& b) { return a.first < b.first; });
+    for (auto const& [key, value] : sorted) {
+      *keys++ = key;
+      *values++ = value;
+    }
   }
   template <class U>
   Array<U> array(std::size_t count) const {

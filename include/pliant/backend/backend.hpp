@@ -34,6 +34,14 @@
 //   histogram(n, f, bins)      adds f(i).weight to bins[f(i).number], an array of at most 256 integers
 //                              in the backend's memory; a negative number: nowhere
 //   select(n, f)               std::vector<Index>; the i for which f(i), a bool, ascending
+//   select(n, f, to, count)    the same numbers to `to`, which has room for them, and how many to *count
+//   scan(n, f, to)             to[i] = the sum of f(j), an Index, over j < i, for i <= n: to[n] is the total. Sums have 32 bits, and
+//                              have to fit them. f(i) may read to[i], and no other of `to`
+//   sort(n, keys, values, bits)  keys ascending in place, std::uint64_t of which no other bits than the lowest `bits` are set;
+//                              values, an Index for each, go with them, those of equal keys in the order they had.
+//                              These three read and write the backend's memory, and wait for nothing. Of sorted keys
+//                              select finds the first of each, where f(i) tells whether keys[i] differs from
+//                              keys[i - 1], and scan of the same f numbers them
 //   for_each_task(n, f) threads()   of backends that have threads on the host, not asked of others: f(k) there,
 //                              in no order, each call worth a thread (backend/host_tasks.hpp)
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
@@ -122,6 +130,9 @@ struct NodeProbe {
 struct SelectProbe {
   PLIANT_HOST_DEVICE bool operator()(Index) const { return false; }
 };
+struct CountProbe {
+  PLIANT_HOST_DEVICE Index operator()(Index) const { return 0; }
+};
 struct BinProbe {
   PLIANT_HOST_DEVICE Bin operator()(Index) const { return {0, 0}; }
 };
@@ -184,12 +195,15 @@ concept Backend =
     std::copy_constructible<B> && std::floating_point<typename B::scalar> &&
     BackendArray<typename B::template Array<typename B::scalar>, typename B::scalar> &&
     requires(B const& b, Index n, detail::NodeProbe f, detail::SelectProbe wanted,
-             detail::BinProbe bin, std::int64_t* bins, typename B::Recording const& recording,
-             typename B::Timer timer) {
+             detail::CountProbe number, detail::BinProbe bin, std::int64_t* bins, Index* to,
+             std::uint64_t* keys, typename B::Recording const& recording, typename B::Timer timer) {
       b.for_each(n, f);
       { b.sum(n, f) } -> std::same_as<double>;
       { b.maximum(n, f) } -> std::same_as<double>;
       { b.select(n, wanted) } -> std::same_as<std::vector<Index>>;
+      { b.select(n, wanted, to, to) } -> std::same_as<void>;
+      { b.scan(n, number, to) } -> std::same_as<void>;
+      { b.sort(n, keys, to, 1) } -> std::same_as<void>;
       b.add_sum(n, f, static_cast<double*>(nullptr));
       b.histogram(n, bin, bins);
       { b.record(f) } -> std::same_as<typename B::Recording>;

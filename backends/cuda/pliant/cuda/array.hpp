@@ -80,14 +80,8 @@ class DeviceArray {
   void allocate() {
     std::size_t const bytes = detail::array_bytes<U>(size_);
     cudaError_t const status = stream_->allocate(&data_, bytes);
-    if (status != cudaErrorMemoryAllocation) return detail::check(status, "cudaMalloc");
-    cudaGetLastError();
-    data_ = nullptr;
-    std::size_t free = 0, total = 0;
-    cudaMemGetInfo(&free, &total);
-    throw Error("CUDA: out of memory: an array of ", bytes, " bytes was asked for, and ", free,
-                " of ", total,
-                " bytes are free; use a coarser mesh, single precision, or a larger GPU");
+    if (status != cudaSuccess) data_ = nullptr;
+    detail::check_memory(status, bytes);
   }
   void copy(void* to, void const* from, std::size_t count, cudaMemcpyKind kind) const {
     if (count > size_)

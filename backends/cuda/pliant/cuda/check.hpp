@@ -2,6 +2,7 @@
 
 #include <cuda_runtime.h>
 
+#include <cstddef>
 #include <string>
 
 #include <pliant/error.hpp>
@@ -34,6 +35,17 @@ inline void check(cudaError_t status, char const* call) {
   }
   throw Error("CUDA: ", call, " failed: ", cudaGetErrorString(status), " (",
               cudaGetErrorName(status), ")", advice);
+}
+
+/// Throws Error when so many bytes were not to be had from the current device.
+inline void check_memory(cudaError_t status, std::size_t bytes) {
+  if (status != cudaErrorMemoryAllocation) return check(status, "cudaMalloc");
+  cudaGetLastError();
+  std::size_t free = 0, total = 0;
+  cudaMemGetInfo(&free, &total);
+  throw Error("CUDA: out of memory: an array of ", bytes, " bytes was asked for, and ", free,
+              " of ", total,
+              " bytes are free; use a coarser mesh, single precision, or a larger GPU");
 }
 
 }  // namespace pliant::detail

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <pliant/cuda/array.hpp>
+#include <pliant/cuda/scratch.hpp>
 
 namespace pliant::detail {
 
-/// What all copies of one backend share: a stream, and room for reductions.
+/// What all copies of one backend share: a stream, and room for reductions and lists.
 class CudaContext {
  public:
   explicit CudaContext(CudaOptions const& options)
-      : stream_(std::make_shared<DeviceStream const>(options)), partials_(stream_, max_partials) {
+      : stream_(std::make_shared<DeviceStream const>(options)),
+        partials_(stream_, max_partials),
+        scratch_(stream_) {
     auto const device = stream_->enter();
     check(cudaMallocHost(&result_, sizeof(double)), "cudaMallocHost");
   }
@@ -20,12 +23,14 @@ class CudaContext {
 
   SharedStream const& stream() const { return stream_; }
   double* partials() { return partials_.data(); }
+  DeviceScratch& scratch() { return scratch_; }
   /// In host memory that kernels can write to.
   double* result() const { return result_; }
 
  private:
   SharedStream stream_;
   DeviceArray<double> partials_;
+  DeviceScratch scratch_;
   double* result_ = nullptr;
 };
 

@@ -11,6 +11,11 @@ inline constexpr int warp_size = 32;
 inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 128,
                      scatter_threads = 128;
 
+/// Loops over lists (scan.cuh, sort.cuh): threads per block, the most blocks, keys that a thread sorts at once, and how long a
+/// list one block takes alone, in one launch.
+inline constexpr int list_threads = 256, most_list_blocks = 1024, sort_keys = 8;
+inline constexpr Index short_list = 4096;
+
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
 /// where an element computes much per node; patches are faster elsewhere, and where there are no
 /// vector adds (double precision).
