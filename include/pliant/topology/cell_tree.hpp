@@ -51,7 +51,7 @@ class CellTree {
       if (has != CellNodes::corners) lists_.edges.edit(at(edge)).middle = nodes[next++];
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto const side = TreeLists::side_of(cell, s);
+      auto const side = TreeView::side_of(cell, s);
       auto key = side.nodes;
       std::ranges::sort(key);
       auto const [number, is_new] = initial_sides_.find_or_add(key);

@@ -86,16 +86,17 @@ class ElementNodes {
   /// is missing.
   template <class Visit>
   void visit(Index k, Visit const& visit) {
-    auto& cell = lists_.cells.edit(at(cells_[at(k)]));
+    auto const tree = lists_.view();
+    auto& cell = tree.cells[at(cells_[at(k)])];
     auto const& p = cell.pattern();
     if (cell.has == CellNodes::corners) return;
     std::size_t i = 0;
     for (std::size_t e = 0; e < at(p.edges); ++e)
-      visit(i++, lists_.edges.edit(at(cell.edges[e])).middle, p.edge[e], std::size_t{2});
+      visit(i++, tree.edges[at(cell.edges[e])].middle, p.edge[e], std::size_t{2});
     if (cell.has != CellNodes::all) return;
     for (std::size_t s = 0; s < at(p.sides); ++s)
       if (p.side_centre[s] >= 0)
-        visit(i++, lists_.sides.edit(at(cell.sides[s])).centre, p.side[s], std::size_t{4});
+        visit(i++, tree.sides[at(cell.sides[s])].centre, p.side[s], std::size_t{4});
     constexpr std::array<int, RefinementPattern::most_corners> all{0, 1, 2, 3, 4, 5, 6, 7};
     if (p.centre >= 0) visit(i, cell.centre, all, at(p.corners));
   }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include <pliant/config.hpp>
 #include <pliant/element/cell.hpp>
 #include <pliant/topology/pattern_maker.hpp>
 #include <pliant/topology/refinement_pattern.hpp>
@@ -29,13 +30,28 @@ inline constexpr std::array split_patterns_of_pyramids{&pattern<Pyramid, Divisio
 }  // namespace detail
 
 /// By which a cell is divided, in a way that its kind can be.
-constexpr RefinementPattern const& pattern_of(CellKind kind,
-                                              Division division = Division::refined) {
+PLIANT_HOST_DEVICE RefinementPattern const& pattern_of(CellKind kind,
+                                                       Division division = Division::refined) {
+  auto const split = static_cast<std::size_t>(division) - 1;
+#ifdef __CUDA_ARCH__  // which has no addresses of what is on the host
+  static constexpr RefinementPattern refined[]{
+      detail::pattern<Triangle>,   detail::pattern<Quadrilateral>, detail::pattern<Tetrahedron>,
+      detail::pattern<Hexahedron>, detail::pattern<Wedge>,         detail::pattern<Pyramid>};
+  static constexpr RefinementPattern splits[]{
+      detail::pattern<Quadrilateral, Division::diagonal_0>,
+      detail::pattern<Quadrilateral, Division::diagonal_1>,
+      detail::pattern<Quadrilateral, Division::four_triangles>,
+      detail::pattern<Hexahedron, Division::six_pyramids>,
+      detail::pattern<Pyramid, Division::diagonal_0>,
+      detail::pattern<Pyramid, Division::diagonal_1>};
+  if (division == Division::refined) return refined[static_cast<std::size_t>(kind)];
+  return splits[split + (kind == CellKind::pyramid ? 4 : 0)];
+#else
   if (division == Division::refined)
     return *detail::refinement_patterns[static_cast<std::size_t>(kind)];
-  auto const split = static_cast<std::size_t>(division) - 1;
   return kind == CellKind::pyramid ? *detail::split_patterns_of_pyramids[split]
                                    : *detail::split_patterns[split];
+#endif
 }
 
 /// Where a point of a child's element, on a `Child`, lies on its parent's. `mirrored`: whether the parent is.

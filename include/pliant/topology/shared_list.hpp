@@ -7,16 +7,16 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/host_threads.hpp>
+#include <pliant/topology/pages.hpp>
 
 namespace pliant {
 
-/// A list in blocks that its copies share until one of them changes: to copy it takes as long as to copy a pointer per
-/// block, and what a change costs is in proportion to the blocks that it touches. Copies may be used in several threads.
+/// A list in pages that its copies share until one of them changes: to copy it takes as long as to copy a pointer per
+/// page, and what a change costs is in proportion to the pages that it touches. Copies may be used in several threads.
 template <class V>
 class SharedList {
  public:
@@ -41,13 +41,21 @@ class SharedList {
   };
 
   SharedList() = default;
-  explicit SharedList(std::vector<V> const& values) : size_(values.size()) {
-    for (std::size_t first = 0; first < size_; first += per_block) {
-      auto const& block = blocks_.emplace_back(std::make_shared<Block>());
+  explicit SharedList(std::vector<V> const& values) {
+    extend(values.size());
+    for (std::size_t first = 0; first < size_; first += per_page)
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first),
-                  std::min(per_block, size_ - first), block->values.begin());
-    }
+                  std::min(per_page, size_ - first), table_[first / per_page]->values);
   }
+  SharedList(SharedList const& other) : table_(other.table_), size_(other.size_) {
+    for (Page<V>* page : table_) OwnedPage::of(page).owners.fetch_add(1, std::memory_order_relaxed);
+  }
+  SharedList(SharedList&& other) noexcept { swap(other); }
+  SharedList& operator=(SharedList other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~SharedList() { shrink(0); }
   friend bool operator==(SharedList const& one, SharedList const& other) {
     return std::ranges::equal(one, other);
   }
@@ -55,44 +63,55 @@ class SharedList {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] Iterator begin() const { return {*this, 0}; }
   [[nodiscard]] Iterator end() const { return {*this, size_}; }
-  V const& operator[](std::size_t i) const { return blocks_[i / per_block]->values[i % per_block]; }
+  V const& operator[](std::size_t i) const { return pages()[i]; }
+  /// The list as loops see it, until its size changes or a page becomes its own.
+  [[nodiscard]] Pages<V> pages() const { return {table_.data()}; }
   /// An entry to be changed: one's own, whoever shared it. In a loop of several threads it has to be one's own already.
   V& edit(std::size_t i) {
-    assert(!HostThreads::in_loop() || blocks_[i / per_block].use_count() == 1);
-    return own(i / per_block).values[i % per_block];
+    assert(!HostThreads::in_loop() || !OwnedPage::of(table_[i / per_page]).is_shared());
+    return own(i / per_page).values[i % per_page];
   }
   /// An entry that was edited since the last copy was made: several threads may ask for theirs at once.
-  V& edited(std::size_t i) { return blocks_[i / per_block]->values[i % per_block]; }
+  V& edited(std::size_t i) { return pages()[i]; }
 
   void push_back(V const& value) {
-    if (size_ % per_block == 0) blocks_.push_back(std::make_shared<Block>());
-    own(size_ / per_block).values[size_ % per_block] = value;
+    if (size_ % per_page == 0) {
+      auto page = std::make_unique<OwnedPage>();
+      table_.push_back(page.get());
+      page.release();
+    }
+    own(size_ / per_page).values[size_ % per_page] = value;
     ++size_;
   }
   /// Appends entries that have no value until they are edited.
   void extend(std::size_t count) {
-    auto const first_new = blocks_.size();
-    if (size_ % per_block != 0) own(first_new - 1);
+    auto const first_new = table_.size();
+    if (size_ % per_page != 0) own(first_new - 1);
+    table_.resize((size_ + count + per_page - 1) / per_page, nullptr);
+    try {
+      for_each_page(first_new, [&](std::size_t p) { table_[p] = OwnedPage::make(); });
+    } catch (...) {
+      shrink(size_);
+      throw;
+    }
     size_ += count;
-    blocks_.resize((size_ + per_block - 1) / per_block);
-    for_each_block(first_new, [&](std::size_t b) { blocks_[b] = std::make_shared<Block>(); });
   }
   /// Which entries are to be edited, for `own`: several threads may add to it at once.
   class Touched {
    public:
-    explicit Touched(SharedList const& list) : blocks_(list.blocks_.size()) {}
-    void add(std::size_t i) { blocks_[i / per_block].store(true, std::memory_order_relaxed); }
+    explicit Touched(SharedList const& list) : pages_(list.table_.size()) {}
+    void add(std::size_t i) { pages_[i / per_page].store(true, std::memory_order_relaxed); }
 
    private:
     friend SharedList;
-    std::vector<std::atomic<bool>> blocks_;
+    std::vector<std::atomic<bool>> pages_;
   };
   /// Makes these entries one's own, whoever shared them: then several threads may edit them at once, each another one.
   void own(Touched const& touched) {
     std::vector<std::size_t> found;
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
-      if (touched.blocks_[b].load(std::memory_order_relaxed)) found.push_back(b);
-    detail::for_each_on_host(static_cast<Index>(found.size()), few_blocks,
+    for (std::size_t p = 0; p < table_.size(); ++p)
+      if (touched.pages_[p].load(std::memory_order_relaxed)) found.push_back(p);
+    detail::for_each_on_host(static_cast<Index>(found.size()), few_pages,
                              [&](Index k) { own(found[static_cast<std::size_t>(k)]); });
   }
   /// edit(entry, k) for the entry of the k-th of the numbers, which are different ones, on the threads of the host.
@@ -112,23 +131,25 @@ class SharedList {
   /// Puts `count` entries in the place of those from `first` on: make(k), which may read the list as it was.
   template <class Make>
   void replace_from(std::size_t first, std::size_t count, Make const& make) {
-    SharedList others;
-    auto const kept = first / per_block;
-    others.size_ = first + count;
-    others.blocks_.resize((others.size_ + per_block - 1) / per_block);
-    std::copy_n(blocks_.begin(), std::min(kept, others.blocks_.size()), others.blocks_.begin());
-    others.for_each_block(kept, [&](std::size_t b) {
-      auto block = std::make_shared<Block>();
-      for (std::size_t i = b * per_block; i < std::min((b + 1) * per_block, others.size_); ++i)
-        block->values[i % per_block] = i < first ? (*this)[i] : make(i - first);
-      others.blocks_[b] = std::move(block);
+    SharedList others = *this;
+    auto const kept = first / per_page;
+    others.shrink(std::min(kept * per_page, size_));
+    others.table_.resize((first + count + per_page - 1) / per_page, nullptr);
+    others.for_each_page(kept, [&](std::size_t p) {
+      auto* const page = others.table_[p] = OwnedPage::make();
+      for (std::size_t i = p * per_page; i < std::min((p + 1) * per_page, first + count); ++i)
+        page->values[i % per_page] = i < first ? (*this)[i] : make(i - first);
     });
-    *this = std::move(others);
+    others.size_ = first + count;
+    swap(others);
   }
   /// Takes the entries from this one on away.
   void shrink(std::size_t size) {
     size_ = size;
-    blocks_.resize((size + per_block - 1) / per_block);
+    while (table_.size() > (size + per_page - 1) / per_page) {
+      if (table_.back() != nullptr) OwnedPage::release(table_.back());
+      table_.pop_back();
+    }
   }
   void clear() { shrink(0); }
   /// Takes those entries from `first` on away for which not stays(place); the others move up.
@@ -144,28 +165,43 @@ class SharedList {
   }
 
  private:
-  static constexpr std::size_t per_block = 256;
-  static constexpr Index few_blocks = 16;  // worth a thread
-  static_assert(std::is_trivially_copyable_v<V>);
-  union Block {  // without values, at first
-    Block() {}
-    Block(Block const& other) : values(other.values) {}
-    std::array<V, per_block> values;
+  static constexpr std::size_t per_page = Page<V>::entries;
+  static constexpr Index few_pages = 16;  // worth a thread
+
+  /// A page that knows how many lists have it.
+  struct OwnedPage : Page<V> {
+    std::atomic<int> owners{1};
+
+    static OwnedPage& of(Page<V>* page) { return *static_cast<OwnedPage*>(page); }
+    static Page<V>* make() { return new OwnedPage; }
+    static void release(Page<V>* page) {
+      if (of(page).owners.fetch_sub(1, std::memory_order_acq_rel) == 1) delete &of(page);
+    }
+    [[nodiscard]] bool is_shared() const { return owners.load(std::memory_order_acquire) > 1; }
   };
 
-  /// Of blocks from this one on, on the threads of the host.
-  template <class F>
-  void for_each_block(std::size_t first, F const& f) const {
-    auto const count = blocks_.size() - std::min(first, blocks_.size());
-    detail::for_each_on_host(static_cast<Index>(count), few_blocks,
-                             [&](Index b) { f(first + static_cast<std::size_t>(b)); });
+  void swap(SharedList& other) noexcept {
+    table_.swap(other.table_);
+    std::swap(size_, other.size_);
   }
-  Block& own(std::size_t b) {
-    if (blocks_[b].use_count() > 1) blocks_[b] = std::make_shared<Block>(*blocks_[b]);
-    return *blocks_[b];
+  /// Of pages from this one on, on the threads of the host.
+  template <class F>
+  void for_each_page(std::size_t first, F const& f) const {
+    auto const count = table_.size() - std::min(first, table_.size());
+    detail::for_each_on_host(static_cast<Index>(count), few_pages,
+                             [&](Index p) { f(first + static_cast<std::size_t>(p)); });
+  }
+  Page<V>& own(std::size_t p) {
+    Page<V>*& page = table_[p];
+    if (OwnedPage::of(page).is_shared()) {
+      auto* const copy = OwnedPage::make();
+      std::copy_n(page->values, per_page, copy->values);
+      OwnedPage::release(std::exchange(page, copy));
+    }
+    return *page;
   }
 
-  std::vector<std::shared_ptr<Block>> blocks_;
+  std::vector<Page<V>*> table_;
   std::size_t size_ = 0;
 };
 

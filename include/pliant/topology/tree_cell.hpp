@@ -31,12 +31,20 @@ struct TreeCell {
   std::array<Index, 6> sides{-1, -1, -1, -1, -1, -1};  ///< in 3D
 
   /// Of its edges and sides, and of refinement.
-  [[nodiscard]] RefinementPattern const& pattern() const { return pattern_of(kind); }
+  [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern() const {
+    return pattern_of(kind);
+  }
   /// Of its children.
-  [[nodiscard]] RefinementPattern const& divided() const { return pattern_of(kind, division); }
+  [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& divided() const {
+    return pattern_of(kind, division);
+  }
   /// Whether it is divided between its corners: then its children have its edges and sides in its place.
-  [[nodiscard]] bool is_split() const { return first_child >= 0 && division != Division::refined; }
-  [[nodiscard]] std::size_t corners() const { return static_cast<std::size_t>(pattern().corners); }
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_split() const {
+    return first_child >= 0 && division != Division::refined;
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE std::size_t corners() const {
+    return static_cast<std::size_t>(pattern().corners);
+  }
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -94,13 +102,17 @@ struct TreeSide {
       -1;  ///< of three in a triangle, four in a quadrilateral, or the diagonal
   int level = 0;
 
-  [[nodiscard]] std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
+  [[nodiscard]] PLIANT_HOST_DEVICE std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
   /// One of its cells; −1 where it has none.
-  [[nodiscard]] Index any_cell() const { return cells[0] >= 0 ? cells[0] : cells[1]; }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index any_cell() const {
+    return cells[0] >= 0 ? cells[0] : cells[1];
+  }
   /// Which of its cells one is. Parts of the side have that one's children at the same place.
-  [[nodiscard]] std::size_t place_of(Index cell) const { return cells[0] == cell ? 0 : 1; }
+  [[nodiscard]] PLIANT_HOST_DEVICE std::size_t place_of(Index cell) const {
+    return cells[0] == cell ? 0 : 1;
+  }
   /// Its outline as a plane cell.
-  [[nodiscard]] RefinementPattern const& pattern() const {
+  [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern() const {
     return pattern_of(corners() == 3 ? CellKind::triangle : CellKind::quadrilateral);
   }
 
@@ -123,8 +135,8 @@ struct CellNodeList {
   std::size_t count = 0;
   auto begin() const { return nodes.begin(); }
   auto end() const { return nodes.begin() + static_cast<std::ptrdiff_t>(count); }
-  Index operator[](std::size_t a) const { return nodes[a]; }
-  void push_back(Index node) { nodes[count++] = node; }
+  PLIANT_HOST_DEVICE Index operator[](std::size_t a) const { return nodes[a]; }
+  PLIANT_HOST_DEVICE void push_back(Index node) { nodes[count++] = node; }
 };
 
 /// How many of each there are.

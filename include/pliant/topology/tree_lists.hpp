@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -10,7 +9,7 @@
 #include <pliant/config.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/shared_list.hpp>
-#include <pliant/topology/tree_cell.hpp>
+#include <pliant/topology/tree_view.hpp>
 
 namespace pliant {
 
@@ -45,20 +44,10 @@ struct TreeLists {
     return detail::each_once(std::move(list), sides.size());
   }
 
-  /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
-  [[nodiscard]] CellNodeList nodes_of(Index c) const {
-    auto const& cell = cells[at(c)];
-    auto const& p = cell.pattern();
-    CellNodeList list;
-    for (std::size_t a = 0; a < at(p.corners); ++a) list.push_back(cell.nodes[a]);
-    if (cell.has == CellNodes::corners) return list;
-    for (std::size_t e = 0; e < at(p.edges); ++e) list.push_back(edges[at(cell.edges[e])].middle);
-    if (cell.has != CellNodes::all) return list;
-    for (std::size_t s = 0; s < at(p.sides); ++s)
-      if (p.side_centre[s] >= 0) list.push_back(sides[at(cell.sides[s])].centre);
-    if (p.centre >= 0) list.push_back(cell.centre);
-    return list;
-  }
+  /// The lists as loops see them, until one of them changes its size or makes entries its own.
+  [[nodiscard]] TreeView view() const { return {cells.pages(), edges.pages(), sides.pages()}; }
+  /// See TreeView.
+  [[nodiscard]] CellNodeList nodes_of(Index c) const { return view().nodes_of(c); }
 
   /// Which cells, edges and sides are to be edited, for `own`: several threads may add to it at once.
   class Touched {
@@ -103,31 +92,14 @@ struct TreeLists {
     sides.own(touched.sides_);
   }
 
-  /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
+  /// Counts a leaf at its edges, which become the tree's own, or with `by` = −1 no more.
   void count_leaf(TreeCell const& cell, int by) {
-    for_each_edge(cell, [&](TreeEdge& edge, auto const& add) {
-      add(edge.leaves, by);
-      if (cell.has == CellNodes::corners) add(edge.linear, by);
-    });
-  }
-  /// The same for a refined cell. Split ones count by their children.
-  void count_refined(TreeCell const& cell, int by) {
-    for_each_edge(cell, [&](TreeEdge& edge, auto const& add) { add(edge.refined, by); });
+    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) edges.edit(at(cell.edges[e]));
+    view().count_leaf(cell, by);
   }
   /// Counts so many leaves with these nodes in all.
   void count_leaves(CellNodes has, Index by) {
     (has == CellNodes::corners ? linear_leaves : quadratic_leaves) += by;
-  }
-
-  /// Side s of a cell, as the cell sees it.
-  static TreeSide side_of(TreeCell const& cell, std::size_t s) {
-    auto const& p = cell.pattern();
-    TreeSide side{.level = cell.level};
-    for (std::size_t k = 0; k < at(p.corners_of_side(static_cast<int>(s))); ++k) {
-      side.nodes[k] = cell.nodes[at(p.side[s][k])];
-      side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
-    }
-    return side;
   }
 
   template <class Visit, class... R>
@@ -145,20 +117,6 @@ struct TreeLists {
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-  /// visit(edge, add): add(number, by) for a number of the edge, which several threads may count at once.
-  template <class Visit>
-  void for_each_edge(TreeCell const& cell, Visit const& visit) {
-    bool const shared = HostThreads::in_loop();
-    auto const add = [shared](int& number, int by) {
-      if (shared)
-        std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
-      else
-        number += by;
-    };
-    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-      visit(edges.edit(at(cell.edges[e])), add);
-  }
 };
 
 }  // namespace pliant

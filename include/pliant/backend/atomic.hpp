@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+
+#include <pliant/backend/host_threads.hpp>
+#include <pliant/config.hpp>
+
+// Numbers that several calls of a loop change at once, on the host and on a device. None of these orders other accesses: what
+// a loop has changed is there when it has ended.
+namespace pliant::detail {
+
+PLIANT_HOST_DEVICE Index atomic_load(Index& number) {
+#ifdef __CUDA_ARCH__
+  return *static_cast<Index volatile*>(&number);
+#else
+  return std::atomic_ref(number).load(std::memory_order_relaxed);
+#endif
+}
+PLIANT_HOST_DEVICE void atomic_store(Index& number, Index value) {
+#ifdef __CUDA_ARCH__
+  *static_cast<Index volatile*>(&number) = value;
+#else
+  std::atomic_ref(number).store(value, std::memory_order_relaxed);
+#endif
+}
+PLIANT_HOST_DEVICE void atomic_add(Index& number, Index by) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(&number, by);
+#else
+  if (HostThreads::in_loop())
+    std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
+  else
+    number += by;
+#endif
+}
+/// number = value where it is `seen` still; otherwise seen = number, and false.
+PLIANT_HOST_DEVICE bool atomic_exchange(Index& number, Index& seen, Index value) {
+#ifdef __CUDA_ARCH__
+  Index const before = atomicCAS(&number, seen, value);
+  bool const done = before == seen;
+  seen = before;
+  return done;
+#else
+  if (HostThreads::in_loop())
+    return std::atomic_ref(number).compare_exchange_weak(seen, value, std::memory_order_relaxed);
+  number = value;
+  return true;
+#endif
+}
+
+}  // namespace pliant::detail

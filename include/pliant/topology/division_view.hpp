@@ -1,0 +1,257 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <pliant/config.hpp>
+#include <pliant/topology/divided_sides.hpp>
+#include <pliant/topology/tree_claims.hpp>
+#include <pliant/topology/tree_view.hpp>
+
+namespace pliant::detail {
+
+/// What a leaf makes when it is divided, for others too: how many of each, and from which number on; edges, and sides, by a
+/// bit each.
+struct LeafParts {
+  std::uint16_t middles = 0, halves = 0;  // of edges
+  std::uint8_t centres = 0, parts = 0;    // of sides
+  std::uint8_t second = 0;                // sides of which it is the second cell
+  Index nodes = 0, edges = 0, sides = 0, cells = 0;
+  Index node = 0, edge = 0, side = 0, cell = 0;  // the first of them
+};
+
+/// Leaves of a tree that are divided, each once, as loops over them see them: one call of each function for each leaf, which
+/// is told by its place in the list. First all claim, then all count; with numbers for what is new, and room for it, come
+/// edges, then sides, then children.
+struct DivisionView {
+  TreeView tree;
+  CellSplit const* leaves;
+  LeafParts* parts;
+  Index first_node = 0;        // that is new
+  PlacedNode* made = nullptr;  // by nodes, from that on
+
+  [[nodiscard]] PLIANT_HOST_DEVICE Index leaf(Index r) const { return leaves[r].cell; }
+  [[nodiscard]] PLIANT_HOST_DEVICE TreeCell& cell(Index r) const { return tree.cells[at(leaf(r))]; }
+  [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern(Index r) const {
+    return pattern_of(cell(r).kind, leaves[r].division);
+  }
+  static PLIANT_HOST_DEVICE bool is_divided(RefinementPattern const& p, std::size_t side) {
+    return p.halves || static_cast<int>(side) == p.halved_side;
+  }
+  /// Into how many parts a side is divided, and edges between these.
+  static PLIANT_HOST_DEVICE std::array<Index, 2> parts_of(RefinementPattern const& p,
+                                                          std::size_t side) {
+    if (!p.halves) return {2, 1};
+    return {4, p.corners_of_side(static_cast<int>(side))};
+  }
+
+  /// Claims what the leaf needs on its edges and sides, and others may need too, as far as it is missing.
+  PLIANT_HOST_DEVICE void claim_shared(Index r) const {
+    visit_shared(r, [&](Index& number) { claim(number, r); });
+  }
+  /// Takes the claims on these back.
+  PLIANT_HOST_DEVICE void give_up_claims(Index r) const {
+    visit_shared(r, [](Index& number) { give_up_claim(number); });
+  }
+  /// Finds what the leaf makes; numbers are not known yet.
+  PLIANT_HOST_DEVICE void find_parts(Index r) const {
+    auto const& own_cell = cell(r);
+    auto const& p = pattern(r);
+    LeafParts own{.edges = p.inner_edges, .sides = p.inner_sides, .cells = p.children};
+    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
+      auto const& edge = tree.edges[at(own_cell.edges[e])];
+      own.middles |= static_cast<std::uint16_t>(makes(r, edge.middle) << e);
+      own.halves |= static_cast<std::uint16_t>(makes(r, edge.first_half) << e);
+    }
+    for (std::size_t s = 0; s < at(p.sides); ++s) {
+      auto const& side = tree.sides[at(own_cell.sides[s])];
+      own.second |= static_cast<std::uint8_t>(side.place_of(leaf(r)) << s);
+      if (!is_divided(p, s)) continue;
+      own.centres |= static_cast<std::uint8_t>(makes(r, side.centre) << s);
+      if (!makes(r, side.first_child)) continue;
+      own.parts |= static_cast<std::uint8_t>(1 << s);
+      auto const counts = parts_of(p, s);
+      own.sides += counts[0];
+      own.edges += counts[1];
+    }
+    own.edges += 2 * std::popcount(own.halves);
+    own.nodes = std::popcount(own.middles) + std::popcount(own.centres);
+    if (p.centre >= 0 && own_cell.centre < 0) ++own.nodes;
+    parts[r] = own;
+  }
+
+  /// Middles and halves of edges.
+  PLIANT_HOST_DEVICE void make_on_edges(Index r) const {
+    auto const& own_cell = cell(r);
+    auto const& p = pattern(r);
+    auto const& own = parts[r];
+    for (std::size_t e = 0; e < at(p.edges); ++e) {
+      if (!has(own.middles, e) && !has(own.halves, e)) continue;
+      Index const number = own_cell.edges[e];
+      auto& edge = tree.edges[at(number)];
+      if (has(own.middles, e)) {
+        edge.middle = own.node + rank(own.middles, e);
+        place(r, edge.middle, p.corners + static_cast<int>(e));
+      }
+      if (!has(own.halves, e)) continue;
+      edge.first_half = own.edge + 2 * rank(own.halves, e);
+      TreeEdge half{.parent = number, .level = edge.level + 1};
+      half.nodes = {edge.nodes[0], edge.middle};
+      tree.edges[at(edge.first_half)] = half;
+      half.nodes = {edge.middle, edge.nodes[1]};
+      tree.edges[at(edge.first_half + 1)] = half;
+    }
+  }
+  /// Centres and parts of sides, whose edges have all of theirs.
+  PLIANT_HOST_DEVICE void make_on_sides(Index r) const {
+    auto const& own_cell = cell(r);
+    auto const& p = pattern(r);
+    auto const& own = parts[r];
+    Index edge = own.edge + 2 * std::popcount(own.halves), part = own.side;
+    for (std::size_t s = 0; s < at(p.sides); ++s) {
+      auto& side = tree.sides[at(own_cell.sides[s])];
+      if (has(own.centres, s)) {
+        side.centre = own.node + std::popcount(own.middles) + rank(own.centres, s);
+        place(r, side.centre, p.side_centre[s]);
+      }
+      if (!has(own.parts, s)) continue;
+      side.first_child = part;
+      side.first_inner_edge = edge;
+      if (p.halves)
+        divide_side(tree, own_cell.sides[s]);
+      else
+        halve_side(tree, own_cell.sides[s], own_cell.nodes[at(p.child[0][0])]);
+      auto const counts = parts_of(p, s);
+      part += counts[0];
+      edge += counts[1];
+    }
+  }
+  /// The cell's own node and edges, and its children, between what is on its edges and sides.
+  PLIANT_HOST_DEVICE void make_children(Index r) const {
+    Index const c = leaf(r);
+    auto& parent = tree.cells[at(c)];
+    auto const& p = pattern(r);
+    auto const& own = parts[r];
+    parent.division = leaves[r].division;
+    parent.first_child = own.cell;
+    if (p.centre >= 0 && parent.centre < 0) {
+      parent.centre = own.node + own.nodes - 1;
+      place(r, parent.centre, p.centre);
+    }
+    std::array<Index, RefinementPattern::most_points> point;
+    find_points(parent, p, point);
+    Index const inner_edge = own.edge + own.edges - p.inner_edges;
+    int const level = parent.level + (p.halves ? 1 : 0);
+    for (std::size_t i = 0; i < at(p.inner_edges); ++i)
+      tree.edges[at(inner_edge) + i] = {
+          .nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
+          .cell = c,
+          .level = level};
+    Index next_inner_side = own.side + own.sides - p.inner_sides;
+    std::array<Index, RefinementPattern::most_inner_sides> inner_side;
+    for (Index& number : inner_side) number = -1;
+    for (std::size_t i = 0; i < at(p.children); ++i) {
+      Index const number = own.cell + static_cast<Index>(i);
+      TreeCell child{.kind = p.child_kind[i],
+                     .has = parent.has,
+                     .mirrored = parent.mirrored != p.mirrored[i],
+                     .level = level,
+                     .parent = c};
+      auto const& shape = child.pattern();
+      for (std::size_t a = 0; a < at(shape.corners); ++a) child.nodes[a] = point[at(p.child[i][a])];
+      for (std::size_t e = 0; e < at(shape.edges); ++e)
+        child.edges[e] = edge_of_child(parent, p, child, e, p.child_edge[i][e], inner_edge);
+      for (std::size_t s = 0; s < at(shape.sides); ++s) {
+        auto const& of_parent = p.child_side[i][s];
+        auto const k = at(of_parent.number);
+        if (of_parent.home == RefinementPattern::Home::side) {
+          Index const whole = parent.sides[k];
+          child.sides[s] =
+              is_divided(p, k) ? part_of_side(tree, whole, TreeView::side_of(child, s)) : whole;
+          tree.sides[at(child.sides[s])].cells[has(own.second, k) ? 1 : 0] = number;
+          continue;
+        }
+        bool const is_new = inner_side[k] < 0;
+        if (is_new) {
+          inner_side[k] = next_inner_side++;
+          tree.sides[at(inner_side[k])] = TreeView::side_of(child, s);
+        }
+        child.sides[s] = inner_side[k];
+        tree.sides[at(child.sides[s])].cells[is_new ? 0 : 1] = number;
+      }
+      tree.cells[at(number)] = child;
+    }
+  }
+  /// The parent is no leaf any more, and its children are.
+  PLIANT_HOST_DEVICE void count_uses(Index r) const {
+    auto const& parent = cell(r);
+    tree.count_leaf(parent, -1);
+    if (pattern(r).halves) tree.count_refined(parent, 1);
+    for (Index k = 0; k < parts[r].cells; ++k)
+      tree.count_leaf(tree.cells[at(parent.first_child + k)], 1);
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  template <class Bits>
+  static PLIANT_HOST_DEVICE bool has(Bits bits, std::size_t k) {
+    return (bits >> k & 1) != 0;
+  }
+  /// How many bits are set below the k-th.
+  template <class Bits>
+  static PLIANT_HOST_DEVICE Index rank(Bits bits, std::size_t k) {
+    return std::popcount(static_cast<unsigned>(bits) & ((1u << k) - 1));
+  }
+
+  /// visit(number) for what a leaf needs on its edges and sides, and others may need too: −1 where it is missing.
+  template <class Visit>
+  PLIANT_HOST_DEVICE void visit_shared(Index r, Visit const& visit) const {
+    auto const& own_cell = cell(r);
+    auto const& p = pattern(r);
+    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
+      auto& edge = tree.edges[at(own_cell.edges[e])];
+      visit(edge.middle);
+      visit(edge.first_half);
+    }
+    for (std::size_t s = 0; s < at(p.sides); ++s) {
+      if (!is_divided(p, s)) continue;
+      auto& side = tree.sides[at(own_cell.sides[s])];
+      if (p.halves && p.side_centre[s] >= 0) visit(side.centre);
+      visit(side.first_child);
+    }
+  }
+  PLIANT_HOST_DEVICE void place(Index r, Index node, int point) const {
+    made[node - first_node] = {node, leaf(r), cell(r).has, pattern(r).place[at(point)]};
+  }
+  /// The nodes at the points of a leaf's pattern, as far as children have them for corners.
+  PLIANT_HOST_DEVICE void find_points(
+      TreeCell const& own_cell, RefinementPattern const& p,
+      std::array<Index, RefinementPattern::most_points>& point) const {
+    for (std::size_t a = 0; a < at(p.corners); ++a) point[a] = own_cell.nodes[a];
+    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e)
+      point[at(p.corners) + e] = tree.edges[at(own_cell.edges[e])].middle;
+    for (std::size_t s = 0; p.halves && s < at(p.sides); ++s)
+      if (p.side_centre[s] >= 0)
+        point[at(p.side_centre[s])] = tree.sides[at(own_cell.sides[s])].centre;
+    if (p.centre >= 0) point[at(p.centre)] = own_cell.centre;
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index edge_of_child(TreeCell const& parent,
+                                                       RefinementPattern const& p,
+                                                       TreeCell const& child, std::size_t e,
+                                                       RefinementPattern::Part part,
+                                                       Index first_inner_edge) const {
+    if (part.home == RefinementPattern::Home::inside) return first_inner_edge + part.number;
+    auto const& shape = child.pattern();
+    Index const a = child.nodes[at(shape.edge[e][0])], b = child.nodes[at(shape.edge[e][1])];
+    if (part.home == RefinementPattern::Home::side)
+      return inner_edge_of_side(tree, parent.sides[at(part.number)], a, b);
+    Index const whole = parent.edges[at(part.number)];
+    if (!p.halves) return whole;
+    auto const& ends = tree.edges[at(whole)].nodes;
+    return half_at(tree, whole, a == ends[0] || a == ends[1] ? a : b);
+  }
+};
+
+}  // namespace pliant::detail

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/config.hpp>
+#include <pliant/topology/pages.hpp>
+#include <pliant/topology/tree_cell.hpp>
+
+namespace pliant {
+
+/// The lists of a CellTree as loops see them, on the host or on a device.
+struct TreeView {
+  Pages<TreeCell> cells;
+  Pages<TreeEdge> edges;
+  Pages<TreeSide> sides;
+
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_leaf(Index c) const {
+    return cells[at(c)].first_child < 0;
+  }
+
+  /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
+  [[nodiscard]] PLIANT_HOST_DEVICE CellNodeList nodes_of(Index c) const {
+    auto const& cell = cells[at(c)];
+    auto const& p = cell.pattern();
+    CellNodeList list;
+    for (std::size_t a = 0; a < at(p.corners); ++a) list.push_back(cell.nodes[a]);
+    if (cell.has == CellNodes::corners) return list;
+    for (std::size_t e = 0; e < at(p.edges); ++e) list.push_back(edges[at(cell.edges[e])].middle);
+    if (cell.has != CellNodes::all) return list;
+    for (std::size_t s = 0; s < at(p.sides); ++s)
+      if (p.side_centre[s] >= 0) list.push_back(sides[at(cell.sides[s])].centre);
+    if (p.centre >= 0) list.push_back(cell.centre);
+    return list;
+  }
+
+  /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
+  PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
+    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+      auto& edge = edges[at(cell.edges[e])];
+      detail::atomic_add(edge.leaves, by);
+      if (cell.has == CellNodes::corners) detail::atomic_add(edge.linear, by);
+    }
+  }
+  /// The same for a refined cell. Split ones count by their children.
+  PLIANT_HOST_DEVICE void count_refined(TreeCell const& cell, int by) const {
+    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
+      detail::atomic_add(edges[at(cell.edges[e])].refined, by);
+  }
+
+  /// Side s of a cell, as the cell sees it.
+  static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) {
+    auto const& p = cell.pattern();
+    TreeSide side{.level = cell.level};
+    for (std::size_t k = 0; k < at(p.corners_of_side(static_cast<int>(s))); ++k) {
+      side.nodes[k] = cell.nodes[at(p.side[s][k])];
+      side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
+    }
+    return side;
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+};
+
+}  // namespace pliant
