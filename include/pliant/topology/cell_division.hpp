@@ -38,25 +38,11 @@ class CellDivision {
       for (Index k = 0; parent.has != CellNodes::corners && k < children; ++k)
         quadratic.push_back(parent.first_child + k);
     }
-    ElementNodes::make(
-        lists_, quadratic,
-        [&](Index k) { return placement(quadratic[static_cast<std::size_t>(k)]); }, made);
+    make_element_nodes(lists_, quadratic, true, made);
     return made;
   }
 
  private:
-  /// Where the corners of a child lie on its parent.
-  [[nodiscard]] CellPlacement placement(Index c) const {
-    auto const& child = lists_.cells[static_cast<std::size_t>(c)];
-    auto const& parent = lists_.cells[static_cast<std::size_t>(child.parent)];
-    auto const& p = parent.divided();
-    CellPlacement place{.cell = child.parent, .had = parent.has};
-    auto const& points = p.child[static_cast<std::size_t>(c - parent.first_child)];
-    for (std::size_t a = 0; a < child.corners(); ++a)
-      place.corners[a] = p.place[static_cast<std::size_t>(points[a])];
-    return place;
-  }
-
   TreeLists& lists_;
   DivisionPlan& plan_;
 };

@@ -144,15 +144,7 @@ class CellTree {
       convert(to);
       cells.push_back(to.cell);
     }
-    detail::ElementNodes::make(
-        lists_, cells,
-        [&](Index k) {
-          auto const& cell = lists_.cells[at(cells[at(k)])];
-          detail::CellPlacement place{.cell = cells[at(k)]};
-          std::copy_n(cell.pattern().place.begin(), cell.corners(), place.corners.begin());
-          return place;
-        },
-        made);
+    detail::make_element_nodes(lists_, cells, false, made);
     forget_old_conversions();
   }
 

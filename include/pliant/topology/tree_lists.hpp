@@ -54,32 +54,15 @@ struct TreeLists {
    public:
     explicit Touched(TreeLists const& lists)
         : lists_(lists), cells_(lists.cells), edges_(lists.edges), sides_(lists.sides) {}
-    /// A cell with its edges and sides, and the parts that these have: children of the cell use them.
+    /// See TreeView::visit_parts.
     void add(Index c) {
-      cells_.add(at(c));
-      auto const& cell = lists_.cells[at(c)];
-      auto const& p = cell.pattern();
-      for (std::size_t e = 0; e < at(p.edges); ++e) {
-        edges_.add(at(cell.edges[e]));
-        add_some(edges_, lists_.edges[at(cell.edges[e])].first_half, 2);
-      }
-      for (std::size_t s = 0; s < at(p.sides); ++s) {
-        auto const& side = lists_.sides[at(cell.sides[s])];
-        bool const is_halved =
-            side.first_child >= 0 && lists_.sides[at(side.first_child)].level == side.level;
-        sides_.add(at(cell.sides[s]));
-        add_some(sides_, side.first_child, is_halved ? 2 : 4);
-        add_some(edges_, side.first_inner_edge, is_halved ? 1 : side.corners());
-      }
+      lists_.view().visit_parts(
+          c, [&](Index cell) { cells_.add(at(cell)); }, [&](Index edge) { edges_.add(at(edge)); },
+          [&](Index side) { sides_.add(at(side)); });
     }
 
    private:
     friend TreeLists;
-    /// So many from `first` on; none where that is −1.
-    template <class Entries>
-    static void add_some(Entries& entries, Index first, std::size_t count) {
-      for (std::size_t k = 0; first >= 0 && k < count; ++k) entries.add(at(first) + k);
-    }
     TreeLists const& lists_;
     SharedList<TreeCell>::Touched cells_;
     SharedList<TreeEdge>::Touched edges_;

@@ -34,6 +34,31 @@ struct TreeView {
     return list;
   }
 
+  /// What a change of a cell may edit: cell(c), and edge(e) and side(s) for its edges and sides and the parts that these
+  /// have, which children of the cell use.
+  template <class Cell, class Edge, class Side>
+  PLIANT_HOST_DEVICE void visit_parts(Index c, Cell const& visit_cell, Edge const& visit_edge,
+                                      Side const& visit_side) const {
+    auto const visit_some = [](auto const& visit, Index first, std::size_t count) {
+      for (std::size_t k = 0; first >= 0 && k < count; ++k) visit(first + static_cast<Index>(k));
+    };
+    auto const& cell = cells[at(c)];
+    auto const& p = cell.pattern();
+    visit_cell(c);
+    for (std::size_t e = 0; e < at(p.edges); ++e) {
+      visit_edge(cell.edges[e]);
+      visit_some(visit_edge, edges[at(cell.edges[e])].first_half, 2);
+    }
+    for (std::size_t s = 0; s < at(p.sides); ++s) {
+      auto const& side = sides[at(cell.sides[s])];
+      bool const is_halved =
+          side.first_child >= 0 && sides[at(side.first_child)].level == side.level;
+      visit_side(cell.sides[s]);
+      visit_some(visit_side, side.first_child, is_halved ? 2 : 4);
+      visit_some(visit_edge, side.first_inner_edge, is_halved ? 1 : side.corners());
+    }
+  }
+
   /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
   PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
     for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
