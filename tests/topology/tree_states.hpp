@@ -9,6 +9,11 @@
 // States of refinement trees, to be compared, and random leaves of theirs.
 namespace pliant::test {
 
+/// Looks at nothing.
+struct Ignore {
+  void operator()(auto const&...) const {}
+};
+
 /// All numbers of lists of cells, edges, sides, nodes or points.
 template <class... Lists>
 std::vector<Index> listed(Lists const&... lists) {
@@ -19,7 +24,7 @@ std::vector<Index> listed(Lists const&... lists) {
       numbers.push_back(static_cast<Index>(1e6 * value));
     else if constexpr (std::is_enum_v<V> || std::is_arithmetic_v<V>)
       numbers.push_back(static_cast<Index>(value));
-    else if constexpr (requires { V::for_each_member([](auto const&...) {}, value); })
+    else if constexpr (requires { V::for_each_member(Ignore{}, value); })
       V::for_each_member([&](char const*, auto const& own) { self(self, own); }, value);
     else
       for (auto const& own : value) self(self, own);

@@ -2,7 +2,6 @@
 
 #include <atomic>
 
-#include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
 
 // Numbers that several calls of a loop change at once, on the host and on a device. None of these orders other accesses: what
@@ -23,14 +22,12 @@ PLIANT_HOST_DEVICE void atomic_store(Index& number, Index value) {
   std::atomic_ref(number).store(value, std::memory_order_relaxed);
 #endif
 }
-PLIANT_HOST_DEVICE void atomic_add(Index& number, Index by) {
+/// Gives what the number was.
+PLIANT_HOST_DEVICE Index atomic_add(Index& number, Index by) {
 #ifdef __CUDA_ARCH__
-  atomicAdd(&number, by);
+  return atomicAdd(&number, by);
 #else
-  if (HostThreads::in_loop())
-    std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
-  else
-    number += by;
+  return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
 #endif
 }
 /// number = value where it is `seen` still; otherwise seen = number, and false.
@@ -41,10 +38,7 @@ PLIANT_HOST_DEVICE bool atomic_exchange(Index& number, Index& seen, Index value)
   seen = before;
   return done;
 #else
-  if (HostThreads::in_loop())
-    return std::atomic_ref(number).compare_exchange_weak(seen, value, std::memory_order_relaxed);
-  number = value;
-  return true;
+  return std::atomic_ref(number).compare_exchange_strong(seen, value, std::memory_order_relaxed);
 #endif
 }
 

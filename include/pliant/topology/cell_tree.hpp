@@ -77,6 +77,7 @@ class CellTree {
     lists_.initial = {size(lists_.cells), size(lists_.edges), size(lists_.sides), lists_.nodes};
   }
 
+  [[nodiscard]] TreeLists const& lists() const { return lists_; }
   [[nodiscard]] SharedList<TreeCell> const& cells() const { return lists_.cells; }
   [[nodiscard]] SharedList<TreeEdge> const& edges() const { return lists_.edges; }
   [[nodiscard]] SharedList<TreeSide> const& sides() const { return lists_.sides; }

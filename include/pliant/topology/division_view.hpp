@@ -49,7 +49,7 @@ struct DivisionView {
 
   /// Claims what the leaf needs on its edges and sides, and others may need too, as far as it is missing.
   PLIANT_HOST_DEVICE void claim_shared(Index r) const {
-    visit_shared(r, [&](Index& number) { claim(number, r); });
+    visit_shared(r, [&](Index& number) { claim(number, r, tree.shared); });
   }
   /// Takes the claims on these back.
   PLIANT_HOST_DEVICE void give_up_claims(Index r) const {

@@ -31,7 +31,7 @@ struct ElementNodesView {
   PlacedNode* made = nullptr;  // by nodes, from that on
 
   PLIANT_HOST_DEVICE void claim_nodes(Index k) const {
-    visit(k, [&](int, Index& node, auto const&...) { claim(node, k); });
+    visit(k, [&](int, Index& node, auto const&...) { claim(node, k, tree.shared); });
   }
   PLIANT_HOST_DEVICE void find_nodes(Index k) const {
     std::uint32_t bits = 0;

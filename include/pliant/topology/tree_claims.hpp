@@ -7,11 +7,16 @@
 // it is made, the number of what is missing, −1, is that cell's claim: −2 − its place in the list.
 namespace pliant::detail {
 
-/// For the cell at a place of the list: several threads may claim at once.
-PLIANT_HOST_DEVICE void claim(Index& number, Index place) {
+/// For the cell at a place of the list. `shared`: whether several threads claim at once.
+PLIANT_HOST_DEVICE void claim(Index& number, Index place, bool shared) {
   Index const mine = -2 - place;
+  auto const is_free = [&](Index seen) { return seen == -1 || seen < mine; };
+  if (!shared) {
+    if (is_free(number)) number = mine;
+    return;
+  }
   Index seen = atomic_load(number);
-  while ((seen == -1 || seen < mine) && !atomic_exchange(number, seen, mine)) {
+  while (is_free(seen) && !atomic_exchange(number, seen, mine)) {
   }
 }
 /// Whether it is that cell which makes it.

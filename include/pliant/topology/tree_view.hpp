@@ -14,6 +14,7 @@ struct TreeView {
   Pages<TreeCell> cells;
   Pages<TreeEdge> edges;
   Pages<TreeSide> sides;
+  bool shared = true;  ///< whether several threads may change an entry at once
 
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_leaf(Index c) const {
     return cells[at(c)].first_child < 0;
@@ -63,14 +64,14 @@ struct TreeView {
   PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
     for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
       auto& edge = edges[at(cell.edges[e])];
-      detail::atomic_add(edge.leaves, by);
-      if (cell.has == CellNodes::corners) detail::atomic_add(edge.linear, by);
+      add(edge.leaves, by);
+      if (cell.has == CellNodes::corners) add(edge.linear, by);
     }
   }
   /// The same for a refined cell. Split ones count by their children.
   PLIANT_HOST_DEVICE void count_refined(TreeCell const& cell, int by) const {
     for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-      detail::atomic_add(edges[at(cell.edges[e])].refined, by);
+      add(edges[at(cell.edges[e])].refined, by);
   }
 
   /// Side s of a cell, as the cell sees it.
@@ -85,6 +86,12 @@ struct TreeView {
   }
 
  private:
+  PLIANT_HOST_DEVICE void add(Index& number, Index by) const {
+    if (shared)
+      detail::atomic_add(number, by);
+    else
+      number += by;
+  }
   static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 };
 

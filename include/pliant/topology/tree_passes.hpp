@@ -1,0 +1,200 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/config.hpp>
+#include <pliant/topology/cells_at_edges.hpp>
+#include <pliant/topology/division_view.hpp>
+#include <pliant/topology/element_nodes.hpp>
+
+// Passes over cells of a tree, for loops of a backend.
+namespace pliant::detail {
+
+/// Cells that a loop lists, each once: those of which the stamp is not `now` yet.
+struct ListOnce {
+  Index* stamps;  // by cell
+  Index now;
+  Index* list;
+  Index* count;
+
+  PLIANT_HOST_DEVICE void operator()(Index c) const {
+    Index seen = atomic_load(stamps[c]);
+    while (seen != now)
+      if (atomic_exchange(stamps[c], seen, now)) {
+        list[atomic_add(*count, 1)] = c;
+        return;
+      }
+  }
+};
+
+/// Lists marked leaves below a level.
+struct ListMarked {
+  TreeView tree;
+  Index const* marked;
+  int max_level;
+  ListOnce list;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = tree.cells[static_cast<std::size_t>(marked[k])];
+    if (cell.first_child < 0 && cell.level < max_level) list(marked[k]);
+  }
+};
+
+/// Lists the leaves that are coarser across one of the edges or sides of a cell of the list. Each part of a side has an
+/// edge that lies between parts, so that edges tell of coarser neighbours across sides too.
+struct ListCoarser {
+  CellsAtEdgesView at_edges;
+  Index from;  // of the list: those before were looked at
+  ListOnce list;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    TreeView const& tree = at_edges.tree;
+    auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+    auto const want = [&](Index c) {
+      if (c >= 0 && tree.is_leaf(c)) list(c);
+    };
+    auto const& cell = tree.cells[at(list.list[from + k])];
+    Index const edges = cell.pattern().edges;
+    for (Index e = 0; e < edges; ++e) {
+      Index coarse = cell.edges[at(e)], whole = coarse;
+      do {
+        whole = coarse;
+        coarse = tree.edges[at(coarse)].parent;
+      } while (coarse >= 0 && tree.edges[at(coarse)].leaves == 0);
+      if (coarse >= 0) {
+        at_edges(coarse, want);
+      } else if (Index const side = tree.edges[at(whole)].side; side >= 0) {
+        // a leaf on the other side of a divided side may have none of it for an edge
+        want(tree.sides[at(side)].cells[0]);
+        want(tree.sides[at(side)].cells[1]);
+      }
+    }
+  }
+};
+
+/// Keys by which listed cells are sorted: coarser ones first, then ascending.
+struct LevelKeys {
+  TreeView tree;
+  Index const* list;
+  std::uint64_t* keys;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const level = tree.cells[static_cast<std::size_t>(list[k])].level;
+    keys[k] = static_cast<std::uint64_t>(level) << 32 | static_cast<std::uint32_t>(list[k]);
+  }
+};
+struct ListLeaves {
+  Index const* list;
+  CellSplit* leaves;
+  PLIANT_HOST_DEVICE void operator()(Index k) const { leaves[k] = {list[k], Division::refined}; }
+};
+
+/// Marks the pages that a division of leaves edits: of cells, of edges, and of sides, a byte each.
+struct MarkPages {
+  DivisionView division;
+  std::array<std::uint8_t*, 3> touched;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const mark = [](std::uint8_t* pages, Index i, std::size_t entries) {
+      pages[static_cast<std::size_t>(i) / entries] = 1;
+    };
+    division.tree.visit_parts(
+        division.leaf(r), [&](Index c) { mark(touched[0], c, Page<TreeCell>::entries); },
+        [&](Index e) { mark(touched[1], e, Page<TreeEdge>::entries); },
+        [&](Index s) { mark(touched[2], s, Page<TreeSide>::entries); });
+  }
+};
+
+/// How much of one sort each leaf makes.
+template <Index LeafParts::*Count>
+struct CountOf {
+  LeafParts const* parts;
+  PLIANT_HOST_DEVICE Index operator()(Index r) const { return parts[r].*Count; }
+};
+/// Numbers for what each leaf makes, by how many of each sort come before.
+struct NumberParts {
+  LeafParts* parts;
+  std::array<Index const*, 4> before;  // nodes, edges, sides, cells; their totals behind them
+  TreeSizes first;
+  Index leaves;
+  Index* totals;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    if (r == leaves) {
+      for (std::size_t k = 0; k < 4; ++k) totals[k] = before[k][leaves];
+      return;
+    }
+    parts[r].node = first.nodes + before[0][r];
+    parts[r].edge = first.edges + before[1][r];
+    parts[r].side = first.sides + before[2][r];
+    parts[r].cell = first.cells + before[3][r];
+  }
+};
+
+/// The functions of a DivisionView, for each leaf.
+struct ClaimShared {
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.claim_shared(r); }
+};
+struct FindParts {
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.find_parts(r); }
+};
+struct MakeOnEdges {
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_on_edges(r); }
+};
+struct MakeOnSides {
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_on_sides(r); }
+};
+struct MakeChildren {
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_children(r); }
+};
+struct CountUses {
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.count_uses(r); }
+};
+
+/// How many children of a leaf have nodes between their corners, and a list of them.
+struct CountQuadratic {
+  DivisionView division;
+  PLIANT_HOST_DEVICE Index operator()(Index r) const {
+    return division.cell(r).has == CellNodes::corners ? 0 : division.parts[r].cells;
+  }
+};
+struct ListQuadratic {
+  CountQuadratic count;
+  Index const* before;
+  Index* list;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    for (Index k = 0; k < count(r); ++k) list[before[r] + k] = count.division.parts[r].cell + k;
+  }
+};
+/// The functions of an ElementNodesView, for each cell.
+struct ClaimNodes {
+  ElementNodesView nodes;
+  PLIANT_HOST_DEVICE void operator()(Index k) const { nodes.claim_nodes(k); }
+};
+struct FindNodes {
+  ElementNodesView nodes;
+  PLIANT_HOST_DEVICE void operator()(Index k) const { nodes.find_nodes(k); }
+};
+struct CountNodes {
+  CellNodesMade const* own;
+  PLIANT_HOST_DEVICE Index operator()(Index k) const { return std::popcount(own[k].bits); }
+};
+struct MakeNodes {
+  ElementNodesView nodes;
+  Index const* before;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    nodes.own[k].first = nodes.first_node + before[k];
+    nodes.make_nodes(k);
+  }
+};
+
+}  // namespace pliant::detail

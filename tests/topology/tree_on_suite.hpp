@@ -1,0 +1,148 @@
+#pragma once
+
+#include <pliant/topology/hierarchy.hpp>
+#include <pliant/topology/tree_on.hpp>
+
+#include "support/formulations.hpp"
+#include "support/catch.hpp"
+#include "support/meshes.hpp"
+#include "topology/tree_states.hpp"
+
+// Trees in a backend's memory are refined as on the host.
+namespace pliant::test::tree_on_suite {
+
+template <Backend B>
+struct RefinedOn {
+  B backend;
+  TreeOn<B> tree;
+
+  template <int Dim>
+  RefinedOn(B const& on, Hierarchy<Dim> const& like)
+      : backend(on), tree(backend, like.tree().lists(), *like.tree().cells_at_edges()) {}
+
+  auto refine(std::vector<Index> const& marked, RefinementLimits const& limits = {}) {
+    auto const list = upload(backend, marked);
+    return tree.refine(list.data(), static_cast<Index>(marked.size()), limits);
+  }
+  /// Values that a refinement gave, on the host.
+  template <class V>
+  std::vector<V> taken(V const* values, Index count) {
+    auto array = zeros<V>(backend, static_cast<std::size_t>(count));
+    detail::copy_values(backend, values, array.data(), static_cast<std::size_t>(count));
+    return download<V>(array);
+  }
+};
+
+template <class B, int Dim>
+void check_same(TreeOn<B>& tree, Hierarchy<Dim> const& host) {
+  auto const& like = host.tree();
+  CHECK(listed(tree.cells()) == listed(like.cells()));
+  CHECK(listed(tree.edges()) == listed(like.edges()));
+  CHECK(listed(tree.sides()) == listed(like.sides()));
+  CHECK(tree.sizes().nodes == like.node_count());
+  CHECK(tree.leaves() == static_cast<Index>(host.leaf_count()));
+}
+
+template <class V>
+std::vector<Index> numbers_of(std::vector<V> const& list, Index V::*number) {
+  std::vector<Index> numbers;
+  for (auto const& own : list) numbers.push_back(own.*number);
+  return numbers;
+}
+
+template <int Dim>
+std::vector<Index> some_leaves(Hierarchy<Dim> const& tree, std::size_t one_in, Random& random) {
+  auto leaves = tree.leaves();
+  std::erase_if(leaves, [&](Index) { return random.below(one_in) != 0; });
+  return leaves;
+}
+
+/// Refines leaves at random, several times, here and on the host.
+template <class B, class M>
+void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int rounds) {
+  Hierarchy<M::dim> host(mesh);
+  RefinedOn<B> on(backend, host);
+  check_same(on.tree, host);
+  Random random(3);
+  for (int round = 0; round < rounds; ++round) {
+    auto marked = some_leaves(host, one_in, random);
+    random.shuffle(marked);
+    marked.push_back(marked.front());
+    auto const done = on.refine(marked);
+    auto const wanted = host.refine(marked);
+    REQUIRE(done.leaves == static_cast<Index>(wanted.parents.size()));
+    CHECK(done.leaves >= static_cast<Index>(marked.size()) - 1);
+    CHECK(numbers_of(on.taken(done.cells, done.leaves), &CellSplit::cell) == wanted.parents);
+    REQUIRE(done.new_nodes == static_cast<Index>(wanted.new_nodes.size()));
+    check_same(on.tree, host);
+    if (round == 1) {  // another refinement, and back
+      on.tree.keep();
+      on.refine(some_leaves(host, 2, random));
+      on.tree.take_back();
+      check_same(on.tree, host);
+    }
+    on.tree.keep();
+  }
+  CHECK(std::ranges::any_of(host.leaves(), [&](Index c) { return host.cell(c).level > 1; }));
+}
+
+TEST_CASE("trees of every cell are refined in a backend's memory", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_rounds(backend, regular_mesh<Tri3>(5), 4, 4);
+    check_rounds(backend, regular_mesh<Quad4>(5), 4, 4);
+    check_rounds(backend, regular_mesh<Tet4>(2), 5, 4);
+    check_rounds(backend, regular_mesh<Hex8>(3), 5, 3);
+    check_rounds(backend, regular_mesh<Wedge6>(3), 5, 3);
+    check_rounds(backend, regular_mesh<Pyramid5>(2), 5, 3);
+    check_rounds(backend, mixed_mesh(4), 4, 4);
+  });
+}
+
+TEST_CASE("trees of quadratic elements are refined in a backend's memory", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_rounds(backend, mesh::raised<Tri6>(regular_mesh<Tri3>(4)), 4, 3);
+    check_rounds(backend, mesh::raised<Quad9>(regular_mesh<Quad4>(4)), 4, 3);
+    check_rounds(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(2)), 6, 3);
+    check_rounds(backend, mesh::raised<Hex27>(regular_mesh<Hex8>(2)), 4, 3);
+  });
+}
+
+TEST_CASE("a tree whose refinement would exceed a limit is as it was", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<3> host(mesh::raised<Tet10>(regular_mesh<Tet4>(2)));
+    RefinedOn<B> on(backend, host);
+    std::vector<Index> const marked{0, 7, 9};
+    auto const more = Hierarchy<3>(host).refine(marked).new_nodes.size();
+    RefinementLimits limits{.nodes = host.points().size() + more - 1};
+    CHECK_THROWS_AS(on.refine(marked, limits), Error);
+    check_same(on.tree, host);
+    limits = {.leaves = host.leaf_count() + 3 * 7 - 1};
+    CHECK_THROWS_AS(on.refine(marked, limits), Error);
+    check_same(on.tree, host);
+    ++limits.leaves;
+    limits.nodes = host.points().size() + more;
+    on.refine(marked, limits);
+    host.refine(marked);
+    check_same(on.tree, host);
+    CHECK(on.refine({0}).leaves == 0);  // it is no leaf any more
+    CHECK(on.refine({static_cast<Index>(host.cells().size()) - 1}, {.max_level = 1}).leaves == 0);
+    check_same(on.tree, host);
+  });
+}
+
+TEST_CASE("memory of a tree in a backend is used again", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<3> host(regular_mesh<Tet4>(4));
+    RefinedOn<B> on(backend, host);
+    std::size_t bytes = 0;
+    for (int round = 0; round < 20; ++round) {
+      on.refine({round, 2 * round, 100 + round});
+      if (round == 0) bytes = on.tree.bytes();
+      on.tree.take_back();
+      CHECK(on.tree.bytes() == bytes);
+    }
+    check_same(on.tree, host);
+  });
+}
+
+}  // namespace pliant::test::tree_on_suite
