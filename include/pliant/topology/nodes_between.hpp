@@ -81,9 +81,10 @@ std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index>
     }
   };
   std::vector<Index> first(at(tree.node_count() - initial), -1);  // claims of places in the list
+  bool const shared = HostThreads::now() > 1;
   for_each_on_host(cells, few, [&](Index k) {
     visit_nodes(k, [&](Index node, auto const&) {
-      if (node >= initial) claim(first[at(node - initial)], k);
+      if (node >= initial) claim(first[at(node - initial)], k, shared);
     });
   });
   Index count = 0;
