@@ -1,0 +1,149 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/grown_array.hpp>
+#include <pliant/body/cell_order.hpp>
+#include <pliant/topology/element_types.hpp>
+#include <pliant/topology/tree_on.hpp>
+
+// The order of elements that a body keeps, in a backend's memory.
+namespace pliant {
+
+namespace detail {
+
+/// The element type of cells of a kind with some of the nodes; −1 where a mesh has none.
+struct TypeTable {
+  std::array<std::array<std::int8_t, 3>, 6> types;
+
+  template <class M>
+  static TypeTable of() {
+    TypeTable table;
+    for (auto& own : table.types) own.fill(-1);
+    for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
+      table.types[static_cast<std::size_t>(kind_of<typename E::cell>)]
+                 [static_cast<std::size_t>(nodes_on_cell<E>)] = static_cast<std::int8_t>(type);
+    });
+    return table;
+  }
+  PLIANT_HOST_DEVICE int operator()(TreeCell const& cell) const {
+    return types[static_cast<std::size_t>(cell.kind)][static_cast<std::size_t>(cell.has)];
+  }
+};
+
+/// Notes where leaves were divided, by their places: into how many.
+struct MarkDivided {
+  CellSplit const* leaves;
+  LeafParts const* parts;
+  Index const* places;
+  std::uint8_t* into;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    into[places[leaves[r].cell]] = static_cast<std::uint8_t>(parts[r].cells);
+  }
+};
+/// How many leaves stand in the place of one.
+struct LeavesInPlace {
+  std::uint8_t const* into;
+  PLIANT_HOST_DEVICE Index operator()(Index i) const { return into[i] == 0 ? 1 : Index{into[i]}; }
+};
+/// Puts leaves, or the children in their place, where they stand now.
+struct PutLeaves {
+  TreeView tree;
+  std::uint8_t const* into;
+  Index const* before;  // leaves, by their places
+  Index const* start;   // their places now
+  Index* leaves;
+  Index* places;  // by cell
+  Index* from;    // by the place now: that before, of a child its parent's
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const cell = before[i];
+    if (into[i] == 0) return put(start[i], cell, i);
+    Index const first = tree.cells[static_cast<std::size_t>(cell)].first_child;
+    for (Index k = 0; k < Index{into[i]}; ++k) put(start[i] + k, first + k, i);
+  }
+
+ private:
+  PLIANT_HOST_DEVICE void put(Index place, Index cell, Index old) const {
+    leaves[place] = cell;
+    places[cell] = place;
+    from[place] = old;
+  }
+};
+struct PutPlaces {
+  Index const* leaves;
+  Index* places;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { places[leaves[i]] = i; }
+};
+/// numbers[k] = of[numbers[k]]
+struct LookUp {
+  Index const* of;
+  Index* numbers;
+  PLIANT_HOST_DEVICE void operator()(Index k) const { numbers[k] = of[numbers[k]]; }
+};
+
+}  // namespace detail
+
+/// The leaves of a tree in a backend's memory, in the order that a body keeps (see CellOrder): children stand in the place of
+/// their parents.
+template <Backend B>
+class LeafOrderOn {
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+ public:
+  /// Of a tree of which nothing is divided.
+  LeafOrderOn(B const& backend, CellOrder const& first)
+      : backend_(backend), leaves_(upload(backend, first.cells)), count_(first.count()) {
+    detail::grow(backend_, places_, first.cells.size());
+    backend_.for_each(count_, detail::PutPlaces{leaves_.data(), places_.data()});
+    std::vector<Index> blocks;
+    for (Index c = 0; c < first.count(); c += cells_per_block) blocks.push_back(c);
+    blocks.push_back(first.count());
+    blocks_ = static_cast<Index>(blocks.size()) - 1;
+    first_ = upload(backend, blocks);
+  }
+
+  [[nodiscard]] Index count() const { return count_; }
+  /// The leaves by their places, and places by cell, of those that are leaves.
+  [[nodiscard]] Index const* leaves() const { return leaves_.data(); }
+  [[nodiscard]] Index const* places() const { return places_.data(); }
+  /// By the place: that before the last change, of a child its parent's.
+  [[nodiscard]] Index const* from() const { return from_.data(); }
+  /// The place of the first leaf of each block, and behind the last one.
+  [[nodiscard]] Index const* first_of_block() const { return first_.data(); }
+  [[nodiscard]] Index blocks() const { return blocks_; }
+
+  /// Puts the children of refined leaves in the place of these.
+  void refine(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
+    auto const before = static_cast<std::size_t>(count_);
+    Index const after = tree.leaves();
+    auto into = zeros<std::uint8_t>(backend_, before);
+    detail::grow(backend_, start_, before + 1);
+    detail::grow(backend_, others_, static_cast<std::size_t>(after));
+    detail::grow(backend_, from_, static_cast<std::size_t>(after));
+    detail::grow_keeping(backend_, places_, places_.size(),
+                         static_cast<std::size_t>(tree.sizes().cells));
+    backend_.for_each(refined.leaves, detail::MarkDivided{refined.cells, refined.parts,
+                                                          places_.data(), into.data()});
+    backend_.scan(count_, detail::LeavesInPlace{into.data()}, start_.data());
+    backend_.for_each(count_,
+                      detail::PutLeaves{tree.view(), into.data(), leaves_.data(), start_.data(),
+                                        others_.data(), places_.data(), from_.data()});
+    backend_.for_each(blocks_ + 1, detail::LookUp{start_.data(), first_.data()});
+    std::swap(leaves_, others_);
+    count_ = after;
+  }
+
+ private:
+  B backend_;
+  Array<Index> leaves_, others_;  // others: those before a change, or room
+  Array<Index> places_, from_, start_, first_;
+  Index count_ = 0, blocks_ = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/grown_array.hpp>
+#include <pliant/body/leaf_order_on.hpp>
+#include <pliant/body/node_row_passes.hpp>
+#include <pliant/body/node_rows.hpp>
+
+namespace pliant {
+
+/// NodeRows in a backend's memory. New nodes get rows near those of others that are made for near leaves.
+template <Backend B>
+class NodeRowsOn {
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+ public:
+  /// Of a first mesh, or of any other.
+  NodeRowsOn(B const& backend, NodeRows const& rows)
+      : backend_(backend), nodes_(static_cast<Index>(rows.of_node.size())) {
+    auto padded = rows;
+    pages_ = (rows.count() + NodeRows::page - 1) / NodeRows::page;
+    padded.node.resize(static_cast<std::size_t>(pages_ * NodeRows::page), -1);
+    padded.region.resize(static_cast<std::size_t>(pages_), -2);
+    of_node_ = upload(backend, padded.of_node);
+    node_ = upload(backend, padded.node);
+    region_ = upload(backend, padded.region);
+  }
+
+  [[nodiscard]] Index nodes() const { return nodes_; }
+  /// How many rows there are.
+  [[nodiscard]] Index count() const { return pages_ * NodeRows::page; }
+  /// By the user's number of a node.
+  [[nodiscard]] Index const* of_node() const { return of_node_.data(); }
+  /// The user's numbers of nodes by the row; −1: the row is free.
+  [[nodiscard]] Index const* node() const { return node_.data(); }
+  /// A copy on the host.
+  [[nodiscard]] NodeRows download_all() const {
+    NodeRows rows{std::vector<Index>(at(nodes_)), std::vector<Index>(at(count())),
+                  std::vector<Index>(at(pages_))};
+    of_node_.download(rows.of_node);
+    node_.download(rows.node);
+    region_.download(rows.region);
+    return rows;
+  }
+
+  /// Gives rows to the nodes that a refinement made; `order`: of the leaves after it.
+  void refine(TreeOn<B> const& tree, LeafOrderOn<B> const& order,
+              typename TreeOn<B>::Refined const& refined) {
+    Index const n = refined.new_nodes;
+    if (n == 0) return;
+    need(keys_, n);
+    need(order_, n);
+    need(found_, n);
+    backend_.for_each(n, detail::KeysOfNodes{tree.view(), refined.nodes, order.places(),
+                                             keys_.data(), order_.data()});
+    backend_.sort(n, keys_.data(), order_.data(), 32);
+
+    need(partial_, pages_);
+    need(free_pages_, pages_);
+    need(counters_, 2);
+    backend_.for_each(pages_, detail::FreePages{node_.data(), region_.data()});
+    backend_.select(pages_, detail::IsFreePage{region_.data()}, free_pages_.data(),
+                    counters_.data());
+    backend_.select(pages_, detail::HasFreeRows{node_.data(), region_.data()}, partial_.data(),
+                    counters_.data() + 1);
+    auto const [free, partial] = counted<2>();
+    need(page_keys_, partial);
+    need(free_before_, partial + 1);
+    backend_.for_each(partial,
+                      detail::KeysOfPages{region_.data(), partial_.data(), page_keys_.data()});
+    backend_.sort(partial, page_keys_.data(), partial_.data(), 32);
+    backend_.scan(partial, detail::FreeRowsIn{node_.data(), partial_.data()}, free_before_.data());
+
+    Index const regions = (order.blocks() + blocks_of_region - 1) / blocks_of_region;
+    detail::NewRows const rows{n,
+                               partial,
+                               regions,
+                               keys_.data(),
+                               page_keys_.data(),
+                               free_before_.data(),
+                               order.first_of_block(),
+                               order.blocks(),
+                               blocks_of_region};
+    need(before_, regions + 1);
+    backend_.scan(regions, detail::PagesNeeded{rows}, before_.data());
+    backend_.for_each(1, detail::CopyValue<Index>{before_.data() + regions, counters_.data()});
+    Index const more = counted<1>()[0];
+    Index const in_all = std::max(pages_, pages_ + more - free);
+    detail::grow_keeping(backend_, node_, at(count()), at(in_all * NodeRows::page));
+    detail::grow_keeping(backend_, region_, at(pages_), at(in_all));
+    detail::grow_keeping(backend_, of_node_, at(nodes_), at(nodes_ + n));
+    detail::PageAt const page_at{free_pages_.data(), free, pages_};
+    backend_.for_each(
+        more, detail::TakePages{page_at, before_.data(), regions, region_.data(), node_.data()});
+    backend_.for_each(n, detail::FindRows{rows, node_.data(), partial_.data(), page_at,
+                                          before_.data(), found_.data()});
+    backend_.for_each(n, detail::TakeFoundRows{found_.data(), order_.data(), refined.nodes,
+                                          of_node_.data(), node_.data()});
+    pages_ = in_all;
+    nodes_ += n;
+  }
+
+ private:
+  static constexpr Index blocks_of_region = 16;
+
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
+  template <std::size_t N>
+  std::array<Index, N> counted() {
+    std::array<Index, N> counts;
+    counters_.download(counts);
+    return counts;
+  }
+
+  B backend_;
+  Array<Index> of_node_, node_, region_;
+  Index nodes_ = 0, pages_ = 0;
+  // Of a change.
+  Array<std::uint64_t> keys_, page_keys_;
+  Array<Index> order_, found_, partial_, free_pages_, counters_, free_before_, before_;
+};
+
+}  // namespace pliant
