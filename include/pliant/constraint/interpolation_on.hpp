@@ -1,12 +1,13 @@
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/constraint/interpolation.hpp>
-#include <pliant/math/group_by_key.hpp>
 
 namespace pliant {
 
@@ -48,6 +49,52 @@ struct ClearRow {
   Index const* node;
   PLIANT_HOST_DEVICE void operator()(Index k) const { field.set(node[k], Vector<T, C>::zero()); }
 };
+
+/// Keys by which the entries of rows are sorted for rows in the other direction.
+struct KeysOfEntries {
+  Index const* other;
+  std::uint64_t* keys;
+  Index* entries;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    keys[i] = static_cast<std::uint64_t>(other[i]);
+    entries[i] = i;
+  }
+};
+/// Whether a sorted entry is the first of its key.
+struct IsFirstOfKey {
+  std::uint64_t const* keys;
+  PLIANT_HOST_DEVICE Index operator()(Index i) const {
+    return i == 0 || keys[i] != keys[i - 1] ? 1 : 0;
+  }
+};
+/// Fills rows with the n sorted entries of `count` rows in the other direction.
+template <class T>
+struct TransposeRows {
+  Index n;
+  std::uint64_t const* keys;
+  Index const* entries;
+  Index const* row;  // by the sorted entry: how many rows began before it
+  Index count;
+  Index const *node_before, *first_before;
+  T const* weight_before;
+  Index *node, *first, *other;
+  T* weight;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (row[i + 1] != row[i]) {
+      node[row[i]] = static_cast<Index>(keys[i]);
+      first[row[i]] = i;
+    }
+    if (i == n - 1) first[row[n]] = n;
+    Index low = 0, high = count;  // the entry's row is in [low, high), and none is empty
+    while (high - low > 1) {
+      Index const middle = low + (high - low) / 2;
+      (first_before[middle] <= entries[i] ? low : high) = middle;
+    }
+    other[i] = node_before[low];
+    weight[i] = weight_before[entries[i]];
+  }
+};
 }  // namespace detail
 
 /// An Interpolation in the memory of a backend: compressed rows in both directions, so that values go
@@ -64,9 +111,9 @@ class InterpolationOn {
   template <class Number>
   InterpolationOn(B const& backend, Interpolation const& host, Number const& number)
       : magnitude_(host.magnitude()) {
-    auto const by_slave = rows_by_slave(host.slaves(), number);
-    to_slaves_ = Rows(backend, by_slave);
-    to_masters_ = Rows(backend, rows_by_master(by_slave));
+    if (host.empty()) return;
+    to_slaves_ = Rows(backend, rows_by_slave(host.slaves(), number));
+    to_masters_ = transposed(backend, to_slaves_);
   }
 
   bool empty() const { return to_slaves_.count == 0; }
@@ -165,28 +212,28 @@ class InterpolationOn {
     });
     return rows;
   }
-  static HostRows rows_by_master(HostRows const& by_slave) {
-    std::vector<Index> slave(by_slave.other.size());
-    for (std::size_t k = 0; k < by_slave.node.size(); ++k)
-      std::fill(slave.begin() + by_slave.first[k], slave.begin() + by_slave.first[k + 1],
-                by_slave.node[k]);
-    auto const& master = by_slave.other;
-    auto const last = std::ranges::max_element(master);
-    auto const grouped = detail::group_by_key(master, last == master.end() ? 0 : *last + 1);
-    HostRows rows;
-    for (std::size_t k = 0; k + 1 < grouped.first.size(); ++k) {
-      if (grouped.first[k] == grouped.first[k + 1]) continue;
-      rows.node.push_back(static_cast<Index>(k));
-      rows.first.push_back(grouped.first[k + 1]);
-    }
-    rows.other.resize(master.size());
-    rows.weight.resize(master.size());
-    detail::for_each_on_host(static_cast<Index>(master.size()), few, [&](Index k) {
-      auto const entry = at(grouped.order[at(k)]);
-      rows.other[at(k)] = slave[entry];
-      rows.weight[at(k)] = by_slave.weight[entry];
-    });
-    return rows;
+  /// The same entries by the other node, ascending; those of one in the order in which they were.
+  static Rows transposed(B const& backend, Rows const& rows) {
+    auto const entries = rows.other.size();
+    auto const n = static_cast<Index>(entries);
+    auto keys = zeros<std::uint64_t>(backend, entries);
+    auto order = zeros<Index>(backend, entries), row = zeros<Index>(backend, entries + 1);
+    backend.for_each(n, detail::KeysOfEntries{rows.other.data(), keys.data(), order.data()});
+    backend.sort(n, keys.data(), order.data(), std::numeric_limits<Index>::digits);
+    backend.scan(n, detail::IsFirstOfKey{keys.data()}, row.data());
+    Rows by_other;
+    by_other.node = zeros<Index>(backend, entries);
+    by_other.first = zeros<Index>(backend, entries + 1);
+    by_other.other = zeros<Index>(backend, entries);
+    by_other.weight = zeros<T>(backend, entries);
+    backend.for_each(n, detail::TransposeRows<T>{
+                            n, keys.data(), order.data(), row.data(), rows.count, rows.node.data(),
+                            rows.first.data(), rows.weight.data(), by_other.node.data(),
+                            by_other.first.data(), by_other.other.data(), by_other.weight.data()});
+    auto count = zeros<Index>(backend, 1);
+    backend.for_each(1, detail::CopyValue<Index>{row.data() + entries, count.data()});
+    by_other.count = download<Index>(count)[0];
+    return by_other;
   }
 
   Rows to_slaves_, to_masters_;
