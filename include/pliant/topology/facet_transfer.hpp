@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <pliant/error.hpp>
+#include <pliant/math/short_list.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/mesh/sides.hpp>
 #include <pliant/topology/facet_table.hpp>
@@ -19,7 +20,7 @@ namespace pliant {
 template <int Dim>
 struct DividedFacet {
   Facet<Dim> whole;
-  std::vector<Facet<Dim>> parts;
+  ShortList<Facet<Dim>, 4> parts;
 };
 
 /// What becomes of facets of the boundary when a mesh changes.

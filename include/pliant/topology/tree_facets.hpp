@@ -87,7 +87,6 @@ class TreeFacets {
   }
   DividedFacet<Dim> divided(Index s) const {
     DividedFacet<Dim> facet{facet_of(s), {}};
-    facet.parts.reserve(Dim == 2 ? 2 : 4);
     Index const first = first_part(s);
     for (Index part = first; part < first + (Dim == 2 ? 2 : 4); ++part)
       facet.parts.push_back(facet_of(part));
