@@ -41,7 +41,7 @@ struct ChangedCells {
   std::shared_ptr<Hierarchy<Dim>> tree;
   Coarsening<Dim> coarsening;
   Refinement<Dim> refinement;
-  std::vector<NewNode> added;    // by raising and splitting
+  WeightedNodes added;           // by raising and splitting
   std::vector<Index> converted;  // cells of another degree, by their old numbers, ascending
   std::vector<Index> split;      // by their new numbers
   std::size_t raised = 0;
@@ -94,7 +94,7 @@ ChangedCells<Dim> change_cells(Hierarchy<Dim> const& before, CellChanges const& 
     split.push_back({c, division});
     changed.split.push_back(c);
   }
-  std::ranges::move(tree.split(split, limits).new_nodes, std::back_inserter(changed.added));
+  changed.added.append(tree.split(split, limits).new_nodes);
   return changed;
 }
 

@@ -62,7 +62,7 @@ class HangingNodes {
   }
 
  private:
-  using Masters = std::vector<std::pair<Index, double>>;
+  using Masters = detail::ShapeWeights;
   /// Hanging nodes by the level of the coarser element, each level's on edges before those on sides.
   using Found = std::vector<std::vector<Slave>>;
 
@@ -83,7 +83,7 @@ class HangingNodes {
     std::ranges::sort(masters);
     auto const place = 2 * static_cast<std::size_t>(level) + (on_side ? 1 : 0);
     if (found.size() <= place) found.resize(place + 1);
-    found[place].push_back({node, std::move(masters)});
+    found[place].push_back({node, {masters.begin(), masters.end()}});
   }
 
   /// The nodes on a whole edge of a leaf that is bisected for others, unless it lies on such an edge itself.

@@ -227,8 +227,8 @@ class Hierarchy {
     }
   }
   /// Divides leaves, and gives the nodes that it takes. Throws Error where that is more than a limit.
-  std::vector<NewNode> divide(char const* verb, std::vector<CellSplit> const& leaves,
-                              RefinementLimits const& limits) {
+  WeightedNodes divide(char const* verb, std::vector<CellSplit> const& leaves,
+                       RefinementLimits const& limits) {
     auto plan = tree_.plan_division(leaves);
     auto const check = [&](char const* what, std::size_t in_all, std::size_t limit) {
       if (in_all > limit)
@@ -256,15 +256,14 @@ class Hierarchy {
   }
 
   /// Gives new nodes their points.
-  std::vector<NewNode> add_points(std::vector<PlacedNode> const& made) {
-    std::vector<NewNode> nodes(made.size());
+  WeightedNodes add_points(std::vector<PlacedNode> const& made) {
     auto const first = points_.size();
     points_.extend(made.size());
-    detail::for_each_on_host(static_cast<Index>(made.size()), 1024, [&](Index k) {
-      nodes[at(k)] = interpolated(made[at(k)]);
-      points_.edit(first + at(k)) = mean_of_parents(nodes[at(k)]);
+    return WeightedNodes::made_on_host(size(made), 1024, [&](Index k, WeightedNodes& nodes) {
+      auto const weights = weights_at(made[at(k)]);
+      nodes.push_back(made[at(k)].node, weights);
+      points_.edit(first + at(k)) = mean_of(weights);
     });
-    return nodes;
   }
   void keep_points(Renumbering const& renumbered) {
     std::vector<Index> kept;
@@ -273,22 +272,21 @@ class Hierarchy {
     points_.replace_from(at(renumbered.first_node), kept.size(),
                          [&](std::size_t k) { return points_[at(kept[k])]; });
   }
-  NewNode interpolated(PlacedNode const& node) const {
-    auto const& parent = cell(node.cell);
-    return {node.node, detail::shape_weights<Dim>(parent.kind, node.had, tree_.nodes_of(node.cell),
-                                                  node.place)};
+  detail::ShapeWeights weights_at(PlacedNode const& node) const {
+    return detail::shape_weights<Dim>(cell(node.cell).kind, node.had, tree_.nodes_of(node.cell),
+                                      node.place);
   }
-  Point<Dim> mean_of_parents(NewNode const& n) const {
+  Point<Dim> mean_of(detail::ShapeWeights const& parents) const {
     // Equal weights as a sum and a division: the mean does not depend on how the sum is rounded.
     Point<Dim> sum{};
-    double const first = n.parents[0].second;
+    double const first = parents[0].second;
     bool const equal =
-        std::ranges::all_of(n.parents, [&](auto const& parent) { return parent.second == first; });
-    for (auto const& [parent, weight] : n.parents)
+        std::ranges::all_of(parents, [&](auto const& parent) { return parent.second == first; });
+    for (auto const& [parent, weight] : parents)
       for (std::size_t d = 0; d < Dim; ++d)
         sum[d] += (equal ? 1.0 : weight) * points_[at(parent)][d];
     if (equal)
-      for (double& x : sum) x /= static_cast<double>(n.parents.size());
+      for (double& x : sum) x /= static_cast<double>(parents.size());
     return sum;
   }
 

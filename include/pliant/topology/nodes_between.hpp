@@ -38,8 +38,8 @@ inline std::array<std::array<double, 8>, 27> places_of(TreeCell const& cell) {
 /// the cells, and those between the corners of leaves: each once, ascending, without those of the initial mesh. Where several
 /// cells have one, the first of the list tells.
 template <int Dim>
-std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index> const& lowered,
-                                   std::vector<Index> const& parents) {
+WeightedNodes nodes_between(CellTree<Dim> const& tree, std::vector<Index> const& lowered,
+                            std::vector<Index> const& parents) {
   constexpr Index few = 512;  // cells that are worth a thread
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };
   Index const initial = tree.initial_nodes();
@@ -47,7 +47,7 @@ std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index>
   auto const cell_at = [&](Index k) {
     return at(k) < lowered.size() ? lowered[at(k)] : parents[at(k) - lowered.size()];
   };
-  // visit(node, parents) for the nodes between those of a cell; parents() gives what it lies between.
+  // visit(node, weights) for the nodes between those of a cell; weights() gives those of the nodes that it lies between.
   auto const visit_nodes = [&](Index k, auto const& visit) {
     Index const c = cell_at(k);
     auto const& own = tree[c];
@@ -56,10 +56,10 @@ std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index>
       auto const places = places_of(own);
       for (std::size_t a = own.corners(); a < nodes.count; ++a)
         visit(nodes[a], [&] {
-          NewNode node{nodes[a], {}};
+          ShapeWeights weights;
           for (std::size_t b = 0; b < own.corners(); ++b)
-            if (places[a][b] != 0) node.parents.emplace_back(nodes[b], places[a][b]);
-          return node;
+            if (places[a][b] != 0) weights.push_back({nodes[b], places[a][b]});
+          return weights;
         });
       return;
     }
@@ -75,7 +75,7 @@ std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index>
           for (std::size_t b = 0; b < tree[child].corners(); ++b)
             for (std::size_t d = 0; d < 3; ++d)
               place[d] += places[a][b] * p.place[at(corners[b])][d];
-          return NewNode{list[a], shape_weights<Dim>(own.kind, own.has, nodes, place)};
+          return shape_weights<Dim>(own.kind, own.has, nodes, place);
         });
       }
     }
@@ -93,15 +93,31 @@ std::vector<NewNode> nodes_between(CellTree<Dim> const& tree, std::vector<Index>
     places[node] = count;
     count += first[node] < -1 ? 1 : 0;
   }
-  std::vector<NewNode> found(at(count));
-  for_each_on_host(cells, few, [&](Index k) {
-    visit_nodes(k, [&](Index node, auto const& between) {
-      if (node < initial || !makes(k, first[at(node - initial)])) return;
-      auto& own = found[at(places[at(node - initial)])];
-      if (own.node < 0) own = between();
-    });
+  struct Found {
+    int part = -1;  // its list
+    std::size_t place = 0;
+  };
+  std::vector<Found> found(at(count));
+  HostParts const parts(cells, few);
+  std::vector<WeightedNodes> lists(at(parts.count()));
+  parts([&](Index from, Index to, int part) {
+    WeightedNodes list;
+    for (Index k = from; k < to; ++k)
+      visit_nodes(k, [&](Index node, auto const& weights) {
+        if (node < initial || !makes(k, first[at(node - initial)])) return;
+        auto& own = found[at(places[at(node - initial)])];
+        if (own.part >= 0) return;
+        own = {part, list.size()};
+        list.push_back(node, weights());
+      });
+    lists[at(part)] = std::move(list);
   });
-  return found;
+  auto const node_at = [&](Found const& own) { return lists[at(own.part)][own.place]; };
+  std::vector<std::size_t> sizes(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) sizes[i] = node_at(found[i]).parents.size();
+  WeightedNodes ascending(sizes);
+  for_each_on_host(count, 4096, [&](Index i) { ascending.set(at(i), node_at(found[at(i)])); });
+  return ascending;
 }
 
 }  // namespace pliant::detail

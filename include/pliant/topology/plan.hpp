@@ -64,7 +64,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
     return std::nullopt;
 
   auto new_nodes = std::move(changed.refinement.new_nodes);
-  std::ranges::move(changed.added, std::back_inserter(new_nodes));
+  new_nodes.append(changed.added);
   auto converted = changed.converted;
   for (Index& c : converted) c = changed.renumbered(c);
   std::ranges::move(changed.tree->whole_facets(converted),

@@ -15,13 +15,13 @@ namespace pliant {
 template <int Dim>
 struct Refinement {
   std::vector<Index> parents;             ///< refined cells, closure included, coarser ones first
-  std::vector<NewNode> new_nodes;         ///< ascending; they follow the nodes that were there
+  WeightedNodes new_nodes;                ///< ascending; they follow the nodes that were there
   std::vector<DividedFacet<Dim>> facets;  ///< sides that were divided, in the plane edges
 };
 
 /// What a call of Hierarchy::raise or split did.
 struct AddedNodes {
-  std::vector<NewNode> new_nodes;  ///< ascending; they follow the nodes that were there
+  WeightedNodes new_nodes;  ///< ascending; they follow the nodes that were there
 };
 
 /// What a call of Hierarchy::coarsen or merge did.
@@ -29,7 +29,7 @@ template <int Dim>
 struct Coarsening {
   std::vector<Index> parents;  ///< cells that are leaves again, by their new number, ascending
   Renumbering renumbered;      ///< nodes and cells
-  std::vector<NewNode> gone;  ///< nodes that went, and between which nodes that stayed; old numbers
+  WeightedNodes gone;  ///< nodes that went, and between which nodes that stayed; old numbers
   std::vector<DividedFacet<Dim>> facets;  ///< sides that are whole again; old numbers
 };
 

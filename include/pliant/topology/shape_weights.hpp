@@ -4,11 +4,11 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <pliant/element/linear.hpp>
 #include <pliant/element/quadratic_simplex.hpp>
 #include <pliant/element/quadratic_tensor.hpp>
+#include <pliant/math/short_list.hpp>
 #include <pliant/topology/tree_cell.hpp>
 
 // Elements by the cell they are on, and their shape functions.
@@ -22,26 +22,24 @@ inline constexpr CellNodes nodes_on_cell =
                                                                    : CellNodes::edges;
 namespace detail {
 
+/// The weights of an element's nodes.
+using ShapeWeights = ShortList<std::pair<Index, double>, 27>;
+
 template <Element E>
-std::vector<std::pair<Index, double>> shape_weights(CellNodeList const& nodes,
-                                                    std::array<double, 3> const& place) {
+ShapeWeights shape_weights(CellNodeList const& nodes, std::array<double, 3> const& place) {
   Vector<double, E::dim> xi;
   for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
   auto const shape = E::shape(xi);
-  std::size_t count = 0;
-  for (int a = 0; a < E::nodes; ++a) count += shape[a] != 0;
-  std::vector<std::pair<Index, double>> list;
-  list.reserve(count);
+  ShapeWeights list;
   for (int a = 0; a < E::nodes; ++a)
-    if (shape[a] != 0) list.emplace_back(nodes[static_cast<std::size_t>(a)], shape[a]);
+    if (shape[a] != 0) list.push_back({nodes[static_cast<std::size_t>(a)], shape[a]});
   return list;
 }
 /// The weights of an element's nodes in the value at a place on its cell, in Dim dimensions; dyadic numbers, without
 /// rounding, so that they are the same from all elements around.
 template <int Dim>
-std::vector<std::pair<Index, double>> shape_weights(CellKind kind, CellNodes has,
-                                                    CellNodeList const& nodes,
-                                                    std::array<double, 3> const& place) {
+ShapeWeights shape_weights(CellKind kind, CellNodes has, CellNodeList const& nodes,
+                           std::array<double, 3> const& place) {
   auto const choose = [&]<Element Linear, Element Edges, Element All>(
                           std::type_identity<std::tuple<Linear, Edges, All>>) {
     if (has == CellNodes::corners) return shape_weights<Linear>(nodes, place);

@@ -11,14 +11,9 @@
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/facet_transfer.hpp>
 #include <pliant/topology/refinement_pattern.hpp>
+#include <pliant/topology/weighted_nodes.hpp>
 
 namespace pliant {
-
-/// A node that comes or goes with a change of topology: its value is a weighted sum over nodes that stay.
-struct NewNode {
-  Index node = -1;
-  std::vector<std::pair<Index, double>> parents;  ///< (node, weight); weights add up to one
-};
 
 /// What a change of topology means for fields: where new nodes, elements and facets come from, and what
 /// becomes of those that go. All numbers are the user's. Nodes that stay keep their order, new ones follow. Values
@@ -55,9 +50,8 @@ class Transfer {
   struct Parts {
     Index old_nodes = 0;
     std::vector<Index> renumbered{};  ///< nodes, by the old number; −1: gone; empty: all stay
-    std::vector<NewNode>
-        new_nodes{};              ///< by new numbers, ascending; parents may be new, but before
-    std::vector<NewNode> gone{};  ///< by old numbers
+    WeightedNodes new_nodes{};        ///< by new numbers, ascending; parents may be new, but before
+    WeightedNodes gone{};             ///< by old numbers
     std::vector<std::size_t> old_elements{};     ///< by type
     std::vector<std::vector<Origin>> origins{};  ///< by type, in the new order; see Origin::count
     std::vector<Family> families{};
@@ -90,9 +84,9 @@ class Transfer {
   bool renumbers() const { return !p_.renumbered.empty(); }
   /// Where it does, nodes before this one stay, and keep their numbers.
   Index first_renumbered() const { return first_moved_; }
-  std::vector<NewNode> const& new_nodes() const { return p_.new_nodes; }
+  WeightedNodes const& new_nodes() const { return p_.new_nodes; }
   /// Nodes that go, by old numbers, as weighted sums over nodes that stay.
-  std::vector<NewNode> const& gone() const { return p_.gone; }
+  WeightedNodes const& gone() const { return p_.gone; }
   /// The new number of an old node, or −1 where it goes.
   Index renumbered(Index node) const {
     return p_.renumbered.empty() ? node : p_.renumbered[static_cast<std::size_t>(node)];
