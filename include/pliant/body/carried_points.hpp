@@ -83,15 +83,15 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
   CarriedPoints carried{std::vector<double>(width * count), {}};
   std::size_t e = 0;
   auto const carry_one = [&](Origin const& origin) {
-    Family const* const family = origin.family >= 0
-                                     ? &transfer.families()[static_cast<std::size_t>(origin.family)]
-                                     : nullptr;
+    Family const family = origin.family >= 0
+                              ? transfer.families()[static_cast<std::size_t>(origin.family)]
+                              : Family{};
     auto const fill = [&]<int G>(GroupNumber<G>) {
       auto const now = points_of<typename Table::template formulation<G>>();
       for (std::size_t q = 0; now.size > 0 && q < now.places.size(); ++q) {
         auto at = now.places[q];
         if (origin.child >= 0)
-          at = on_parent<Cell>(at, *family->pattern, origin.child, family->mirrored);
+          at = on_parent<Cell>(at, *family.pattern, origin.child, family.mirrored);
         double least = std::numeric_limits<double>::infinity();
         double const* from = nullptr;
         auto const look_at = [&](Member const& member, auto const& place_of) {
@@ -108,13 +108,13 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
           }
         };
         if (origin.child == Origin::merged)
-          for (int c = 0; c < static_cast<int>(family->before.size()); ++c)
-            look_at(family->before[static_cast<std::size_t>(c)], [&](auto const& xi) {
+          for (int c = 0; c < static_cast<int>(family.before.size()); ++c)
+            look_at(family.before[static_cast<std::size_t>(c)], [&](auto const& xi) {
               Vector<double, Dim> place;
-              visit_cell(family->pattern->child_kind[static_cast<std::size_t>(c)],
+              visit_cell(family.pattern->child_kind[static_cast<std::size_t>(c)],
                          [&]<class Child>(Child) {
                            if constexpr (Child::dim == Dim)
-                             place = on_parent<Child>(xi, *family->pattern, c, family->mirrored);
+                             place = on_parent<Child>(xi, *family.pattern, c, family.mirrored);
                          });
               return place;
             });

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -98,8 +99,8 @@ class FamilyNodes {
   using Member = typename Transfer<M::dim>::Member;
 
  public:
-  FamilyNodes(Topology<M> const& topology, std::vector<Family> const& families,
-              std::vector<Member> Family::*members)
+  FamilyNodes(Topology<M> const& topology, ElementFamilies const& families,
+              std::span<Member const> Family::*members)
       : topology_(topology) {
     first_.reserve(families.size() + 1);
     for (Family const& family : families) {

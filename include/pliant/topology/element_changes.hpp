@@ -14,6 +14,7 @@
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/cell_changes.hpp>
 #include <pliant/topology/cell_set.hpp>
+#include <pliant/topology/element_families.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/transfer.hpp>
@@ -45,7 +46,6 @@ template <class M>
 class ElementChanges {
   static constexpr int dim = M::dim;
   using Origin = typename Transfer<dim>::Origin;
-  using Family = typename Transfer<dim>::Family;
   using Member = typename Transfer<dim>::Member;
 
  public:
@@ -60,11 +60,12 @@ class ElementChanges {
     first_converted_ = merged.size();
     first_divided_ = first_converted_ + changed.converted.size();
     first_split_ = first_divided_ + parents.size();
-    families_.resize(first_split_ + split.size());
+    families_ = ElementFamilies(first_split_ + split.size(), few,
+                                [&](std::size_t f) { return shape_of(f, merged); });
     HostParts const parts(static_cast<Index>(families_.size()), few);
     leaving_.resize(at(parts.count()), std::vector<Leaving>(types_.size()));
     parts([&](Index from, Index to, int part) {
-      for (auto f = at(from); f < at(to); ++f) make_family(f, merged, leaving_[at(part)]);
+      for (auto f = at(from); f < at(to); ++f) fill_before(f, merged, leaving_[at(part)]);
     });
     for (std::size_t k = 0; k < merged.size(); ++k) list_arriving(merged[k], Origin::merged, k);
     for (std::size_t k = 0; k < changed.converted.size(); ++k)
@@ -124,7 +125,7 @@ class ElementChanges {
   }
 
   /// Complete once `of` was asked for each type.
-  std::vector<Family> families() && { return std::move(families_); }
+  ElementFamilies families() && { return std::move(families_); }
 
  private:
   /// A cell that becomes an element: its new number, its family and, as of Origin, its place there.
@@ -153,27 +154,27 @@ class ElementChanges {
     leaving[type].elements.push_back(element);
     return {type, element};
   }
-  void make_family(std::size_t f, std::vector<Index> const& merged, std::vector<Leaving>& leaving) {
-    auto& family = families_[f];
+  [[nodiscard]] ElementFamilies::Shape shape_of(std::size_t f,
+                                                std::vector<Index> const& merged) const {
+    bool const merges = f < first_converted_;
+    if (!merges && f < first_divided_)
+      return {.mirrored = before_.cell(changed_.converted[f - first_converted_]).mirrored};
+    auto const& cell = merges ? before_.cell(merged[f]) : after_.cell(divided(f));
+    auto const& pattern = cell.divided();
+    return {.before = merges ? at(pattern.children) : 1,
+            .after = merges ? 1 : at(pattern.children),
+            .pattern = &pattern,
+            .mirrored = cell.mirrored};
+  }
+  void fill_before(std::size_t f, std::vector<Index> const& merged, std::vector<Leaving>& leaving) {
+    auto const members = families_.before(f);
     if (f < first_converted_) {
-      auto const& cell = before_.cell(merged[f]);
-      family.pattern = &cell.divided();
-      family.mirrored = cell.mirrored;
-      family.before.reserve(at(family.pattern->children));
-      for (Index child = 0; child < family.pattern->children; ++child)
-        family.before.push_back(old_element(cell.first_child + child, leaving));
-      family.after.resize(1);
+      Index cell = before_.cell(merged[f]).first_child;
+      for (Member& member : members) member = old_element(cell++, leaving);
     } else if (f < first_divided_) {
-      Index const old = changed_.converted[f - first_converted_];
-      family.mirrored = before_.cell(old).mirrored;
-      family.before = {old_element(old, leaving)};
-      family.after.resize(1);
+      members[0] = old_element(changed_.converted[f - first_converted_], leaving);
     } else {
-      auto const& cell = after_.cell(divided(f));
-      family.pattern = &cell.divided();
-      family.mirrored = cell.mirrored;
-      family.before = {old_element(old_number(divided(f)), leaving)};
-      family.after.resize(at(family.pattern->children));
+      members[0] = old_element(old_number(divided(f)), leaving);
     }
   }
   /// The cell that a family divides.
@@ -223,9 +224,8 @@ class ElementChanges {
 
   /// Of the element with a number in the list of its type. Makes it a member of its family.
   Origin origin_of(std::size_t type, int child, std::size_t number, Index element) {
-    auto& family = families_[number];
-    family.after[child < 0 ? 0 : at(child)] = {type, element};
-    auto const& from = family.before[0];
+    families_.after(number)[child < 0 ? 0 : at(child)] = {type, element};
+    auto const& from = families_.before(number)[0];
     return {from.element, child, static_cast<Index>(number),
             from.type == type ? Index{-1} : static_cast<Index>(from.type)};
   }
@@ -234,7 +234,7 @@ class ElementChanges {
   Hierarchy<dim> const &before_, &after_;
   ChangedCells<dim> const& changed_;
   std::vector<std::pair<CellKind, CellNodes>> types_;
-  std::vector<Family> families_;  // merged cells, converted ones, refined ones, split ones
+  ElementFamilies families_;  // merged cells, converted ones, refined ones, split ones
   std::size_t first_converted_ = 0, first_divided_ = 0, first_split_ = 0;  // of the families
   std::vector<std::vector<Leaving>> leaving_;  // by the part of the families and by type
   std::vector<Arriving> arriving_;             // merged and converted cells, ascending
@@ -243,18 +243,17 @@ class ElementChanges {
 
 /// The shares of the elements before in the volume of their family: those of merged ones have several.
 template <class M>
-void share_volumes(Topology<M> const& before,
-                   std::vector<typename Transfer<M::dim>::Family>& families) {
+void share_volumes(Topology<M> const& before, ElementFamilies& families) {
   for_each_on_host(static_cast<Index>(families.size()), 512, [&](Index f) {
-    auto& family = families[static_cast<std::size_t>(f)];
-    family.shares.assign(family.before.size(), 1);
-    if (family.before.size() == 1) return;
-    for (std::size_t i = 0; i < family.before.size(); ++i)
-      visit_member(before, family.before[i], [&]<Element E>(E, Connectivity<E> const& nodes) {
-        family.shares[i] = volume<E, MassQuadrature<E>>(nodal(before, nodes));
+    auto const members = families.before(static_cast<std::size_t>(f));
+    auto const shares = families.shares(static_cast<std::size_t>(f));
+    if (members.size() == 1) return;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      visit_member(before, members[i], [&]<Element E>(E, Connectivity<E> const& nodes) {
+        shares[i] = volume<E, MassQuadrature<E>>(nodal(before, nodes));
       });
-    double const sum = std::accumulate(family.shares.begin(), family.shares.end(), 0.0);
-    for (double& share : family.shares) share /= sum;
+    double const sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+    for (double& share : shares) share /= sum;
   });
 }
 

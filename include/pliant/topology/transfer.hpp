@@ -9,8 +9,8 @@
 
 #include <pliant/error.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/element_families.hpp>
 #include <pliant/topology/facet_transfer.hpp>
-#include <pliant/topology/refinement_pattern.hpp>
 #include <pliant/topology/weighted_nodes.hpp>
 
 namespace pliant {
@@ -35,18 +35,8 @@ class Transfer {
     static constexpr int merged = -2;     ///< it was that element's family
     static constexpr int converted = -3;  ///< it is that element of another type on the same cell
   };
-  /// An element: its type, by the place among the mesh's, and its number.
-  struct Member {
-    std::size_t type;
-    Index element;
-  };
-  /// Elements that take the place of others, children in their order.
-  struct Family {
-    std::vector<Member> before, after;
-    std::vector<double> shares;                  ///< of those before in their volume
-    RefinementPattern const* pattern = nullptr;  ///< by which the whole is divided; null: it is not
-    bool mirrored = false;                       ///< whether the whole is (see RefinementPattern)
-  };
+  using Member = ElementFamilies::Member;
+  using Family = ElementFamilies::Family;
   struct Parts {
     Index old_nodes = 0;
     std::vector<Index> renumbered{};  ///< nodes, by the old number; −1: gone; empty: all stay
@@ -54,7 +44,7 @@ class Transfer {
     WeightedNodes gone{};             ///< by old numbers
     std::vector<std::size_t> old_elements{};     ///< by type
     std::vector<std::vector<Origin>> origins{};  ///< by type, in the new order; see Origin::count
-    std::vector<Family> families{};
+    ElementFamilies families{};
     std::vector<DividedFacet<Dim>> divided{};  ///< by new numbers
     std::vector<DividedFacet<Dim>> merged{};   ///< by old numbers
   };
@@ -100,7 +90,7 @@ class Transfer {
     for (Origin const& origin : origins(type)) count += static_cast<std::size_t>(origin.count);
     return count;
   }
-  std::vector<Family> const& families() const { return p_.families; }
+  ElementFamilies const& families() const { return p_.families; }
 
   /// Values per node (numbers or points) on the new mesh: new nodes take the weighted sum. Throws Error for an
   /// array that is not of the mesh before.
@@ -252,7 +242,7 @@ class Transfer {
   template <class V, class ValuesOf>
   V merged_value(ValuesOf const& values_of, Origin const& origin, std::size_t width,
                  std::size_t k) const {
-    Family const& family = p_.families[static_cast<std::size_t>(origin.family)];
+    Family const family = p_.families[static_cast<std::size_t>(origin.family)];
     auto const value_of = [&](std::size_t child) -> decltype(auto) {
       auto const& [type, element] = family.before[child];
       return values_of(type)[width * static_cast<std::size_t>(element) + k];
