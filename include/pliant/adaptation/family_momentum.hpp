@@ -60,12 +60,12 @@ using ImpulseList = std::vector<std::pair<Index, Point<Dim>>>;
 
 /// Lists what each node must be given so that a family, which has a number among all, keeps its momentum: the difference that
 /// lumping made, shared in proportion to the nodal masses of the elements after the change. `v_before`, `v`: by the numbers
-/// of the mesh before and after.
+/// of the mesh before and after. `shares`: room that calls after each other share.
 template <class M>
 void list_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& touched,
                          std::size_t number, double density,
                          ValuesAt<Point<M::dim>> const& v_before, ValuesAt<Point<M::dim>> const& v,
-                         ImpulseList<M::dim>& list) {
+                         std::vector<std::pair<Index, double>>& shares, ImpulseList<M::dim>& list) {
   constexpr std::size_t dim = M::dim;
   Point<dim> const base =
       velocity_in(touched, plan.transfer.families()[number], number, v_before, v);
@@ -76,7 +76,7 @@ void list_family_impulse(TopologyPlan<M> const& plan, TouchedElements<M> const& 
     for (std::size_t k = 0; k < dim; ++k) lost[k] += p[k];
   });
   double volume = 0;
-  std::vector<std::pair<Index, double>> shares;  // of nodes, in this volume
+  shares.clear();  // of nodes, in this volume
   touched.families_after().visit_all(number, [&]<Element E>(E, Connectivity<E> const& nodes) {
     auto const own = host_nodal_volumes<E>(nodal(*plan.after, nodes));
     auto const p = momentum<E>(nodes, own, density, v, base);
@@ -107,9 +107,11 @@ void add_family_impulses(TopologyPlan<M> const& plan, TouchedElements<M> const& 
   HostParts const parts(static_cast<Index>(plan.transfer.families().size()), few_families);
   std::vector<ImpulseList<M::dim>> lists(static_cast<std::size_t>(parts.count()));
   parts([&](Index from, Index to, int part) {
+    ImpulseList<M::dim> list;
+    std::vector<std::pair<Index, double>> shares;
     for (auto f = static_cast<std::size_t>(from); f < static_cast<std::size_t>(to); ++f)
-      list_family_impulse(plan, touched, f, density, v_before, v,
-                          lists[static_cast<std::size_t>(part)]);
+      list_family_impulse(plan, touched, f, density, v_before, v, shares, list);
+    lists[static_cast<std::size_t>(part)] = std::move(list);
   });
   for (auto const& list : lists)  // in the order of families
     for (auto const& [node, own] : list)

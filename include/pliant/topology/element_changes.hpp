@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <iterator>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -63,9 +62,11 @@ class ElementChanges {
     families_ = ElementFamilies(first_split_ + split.size(), few,
                                 [&](std::size_t f) { return shape_of(f, merged); });
     HostParts const parts(static_cast<Index>(families_.size()), few);
-    leaving_.resize(at(parts.count()), std::vector<Leaving>(types_.size()));
+    leaving_.resize(at(parts.count()));
     parts([&](Index from, Index to, int part) {
-      for (auto f = at(from); f < at(to); ++f) fill_before(f, merged, leaving_[at(part)]);
+      std::vector<Leaving> leaving(types_.size());
+      for (auto f = at(from); f < at(to); ++f) fill_before(f, merged, leaving);
+      leaving_[at(part)] = std::move(leaving);
     });
     for (std::size_t k = 0; k < merged.size(); ++k) list_arriving(merged[k], Origin::merged, k);
     for (std::size_t k = 0; k < changed.converted.size(); ++k)
@@ -154,8 +155,7 @@ class ElementChanges {
     leaving[type].elements.push_back(element);
     return {type, element};
   }
-  [[nodiscard]] ElementFamilies::Shape shape_of(std::size_t f,
-                                                std::vector<Index> const& merged) const {
+  ElementFamilies::Shape shape_of(std::size_t f, std::vector<Index> const& merged) const {
     bool const merges = f < first_converted_;
     if (!merges && f < first_divided_)
       return {.mirrored = before_.cell(changed_.converted[f - first_converted_]).mirrored};
