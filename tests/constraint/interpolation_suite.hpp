@@ -57,11 +57,11 @@ TEST_CASE("a row of the host has weights that apply uses", "[constraint]") {
   for (Index i = 0; i < 41; ++i) {
     double sum = 0;
     p.for_each_master(i, [&](Index master, double weight) {
-      CHECK(p.row_of(master) == nullptr);
+      CHECK_FALSE(p.row_of(master).has_value());
       sum += weight * v[static_cast<std::size_t>(master)][0];
     });
     CHECK(pv[static_cast<std::size_t>(i)][0] == Approx(sum).epsilon(1e-14).margin(1e-15));
-    CHECK((p.row_of(i) != nullptr) == (i % 4 == 3));
+    CHECK(p.row_of(i).has_value() == (i % 4 == 3));
   }
 }
 

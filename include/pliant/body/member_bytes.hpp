@@ -24,7 +24,10 @@ concept HasMembers = requires(U& u) { std::remove_cv_t<U>::for_each_member(Ignor
 template <class U>
 concept HasElements = requires { std::tuple_size<U>::value; };  // std::array, std::pair, std::tuple
 template <class U>
-concept IsPointer = requires { typename U::element_type; } && std::is_class_v<U>;
+concept IsPointer = requires(U const& u) {
+  typename U::element_type;
+  *u;
+} && std::is_class_v<U>;
 template <class U>
 concept IsMap = requires { typename U::mapped_type; };
 template <class U>

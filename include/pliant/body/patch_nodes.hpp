@@ -103,7 +103,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
           Index const joined = layout.internal_of(own[0]);
           for (Index node : own) {
             f(joined, layout.internal_of(node));
-            if (auto const* slave = interpolation.row_of(node))
+            if (auto const slave = interpolation.row_of(node))
               for (auto const& [master, weight] : slave->masters)
                 f(joined, layout.internal_of(master));
           }

@@ -115,7 +115,7 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
       throw Error("body.set_load: the force at node ", node,
                   std::isfinite(x) ? " is too large for single precision" : " is not finite");
   // The loads of slaves pull at several nodes.
-  if (parts.state.topology->interpolation.row_of(node) != nullptr) {
+  if (parts.state.topology->interpolation.row_of(node)) {
     auto loads = nodal_loads_of(parts);
     loads[static_cast<std::size_t>(node)] = force;
     return set_loads(parts, loads);

@@ -11,7 +11,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/host_threads.hpp>
-#include <pliant/constraint/slave.hpp>
+#include <pliant/constraint/slave_rows.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/topology.hpp>
@@ -231,9 +231,9 @@ class TouchedElements {
   }
   /// Both lists ascend by nodes, which keep their order. Gives the nodes that stay and are slaves that they were not, by
   /// their old numbers: others have the displacement that they had.
-  std::vector<Index> touch_slaves(std::vector<Slave> const& before, std::vector<Slave> const& after,
+  std::vector<Index> touch_slaves(SlaveRows const& before, SlaveRows const& after,
                                   Transfer<dim> const& transfer) {
-    auto const differ = [&](Slave const& old, Slave const& now) {
+    auto const differ = [&](SlaveRow const& old, SlaveRow const& now) {
       bool same = old.masters.size() == now.masters.size();
       for (std::size_t k = 0; same && k < now.masters.size(); ++k)
         same = transfer.renumbered(old.masters[k].first) == now.masters[k].first &&
@@ -241,16 +241,16 @@ class TouchedElements {
       return !same;
     };
     std::vector<Index> displaced;
-    auto const mark = [&](Slave const& now) {
+    auto const mark = [&](SlaveRow const& now) {
       touch(now.node, of_slaves);
       if (now.node < transfer.staying_nodes()) displaced.push_back(old_number(now.node));
     };
     auto now = after.begin();
-    for (Slave const& old : before) {
+    for (SlaveRow const& old : before) {
       Index const node = transfer.renumbered(old.node);
       if (node < 0) continue;
-      for (; now != after.end() && now->node < node; ++now) mark(*now);
-      if (now == after.end() || now->node != node) {
+      for (; now != after.end() && (*now).node < node; ++now) mark(*now);
+      if (now == after.end() || (*now).node != node) {
         touch(node, of_slaves);
         continue;
       }

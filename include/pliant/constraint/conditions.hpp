@@ -162,7 +162,7 @@ void check_condition(Parts const& parts, Condition<Parts::dim> const& condition)
     if (node < 0 || node >= count)
       throw Error("body: a condition names node ", node, ", but nodes are numbered 0 to ",
                   count - 1);
-    if (parts.state.topology->interpolation.row_of(node) != nullptr)
+    if (parts.state.topology->interpolation.row_of(node))
       throw Error("body: node ", node,
                   " hangs between others, whom it follows; hold or drive these instead");
   }

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include <pliant/constraint/slave.hpp>
+#include <pliant/constraint/slave_rows.hpp>
 
 namespace pliant {
 
@@ -16,22 +19,25 @@ class Interpolation {
  public:
   Interpolation() = default;
   /// Masters must be free nodes (see compose), and slaves ascend.
-  explicit Interpolation(std::vector<Slave> slaves) : slaves_(std::move(slaves)) {}
+  explicit Interpolation(std::vector<Slave> const& slaves) : slaves_(detail::rows_of(slaves)) {}
+  template <std::same_as<SlaveRows> Rows>  // no braces: those are a list of slaves
+  explicit Interpolation(Rows slaves) : slaves_(std::move(slaves)) {}
 
-  std::vector<Slave> const& slaves() const { return slaves_; }
+  SlaveRows const& slaves() const { return slaves_; }
   bool empty() const { return slaves_.empty(); }
-  /// The row of a slave; null for a free node.
-  Slave const* row_of(Index node) const {
-    auto const found = std::lower_bound(slaves_.begin(), slaves_.end(), node,
-                                        [](Slave const& s, Index n) { return s.node < n; });
-    return found != slaves_.end() && found->node == node ? &*found : nullptr;
+  /// The row of a slave, which the interpolation must outlive; none for a free node.
+  std::optional<SlaveRow> row_of(Index node) const {
+    auto const nodes = slaves_.nodes();
+    auto const found = std::ranges::lower_bound(nodes, node);
+    if (found == nodes.end() || *found != node) return std::nullopt;
+    return slaves_[static_cast<std::size_t>(found - nodes.begin())];
   }
   /// Calls visit(free node, weight) for each entry of a node's row.
   template <class Visit>
   void for_each_master(Index node, Visit const& visit) const {
     if (empty()) return visit(node, 1.0);
-    Slave const* const slave = row_of(node);
-    if (slave == nullptr) return visit(node, 1.0);
+    auto const slave = row_of(node);
+    if (!slave) return visit(node, 1.0);
     for (auto const& [master, weight] : slave->masters) visit(master, weight);
   }
 
@@ -60,11 +66,11 @@ class Interpolation {
   /// What the mass of a slave is to its masters. Forces go by the weights w; masses by |w|/Σ|w|, which are the
   /// weights themselves where none is negative (those of quadratic elements can be), so that no mass becomes
   /// negative and the total stays.
-  static double mass_weight(Slave const& slave, std::size_t k) {
+  static double mass_weight(SlaveRow const& slave, std::size_t k) {
     return std::abs(slave.masters[k].second) / magnitude(slave);
   }
   /// Σ|w| of a slave's weights, 1 where none is negative.
-  static double magnitude(Slave const& slave) {
+  static double magnitude(SlaveRow const& slave) {
     double sum = 0, least = 0;
     for (auto const& [master, weight] : slave.masters) {
       sum += std::abs(weight);
@@ -75,13 +81,13 @@ class Interpolation {
   /// The largest of all slaves, 1 or more.
   double magnitude() const {
     double largest = 1;
-    for (Slave const& slave : slaves_) largest = std::max(largest, magnitude(slave));
+    for (SlaveRow const& slave : slaves_) largest = std::max(largest, magnitude(slave));
     return largest;
   }
   /// Hands what slaves hold to their masters by the weights of masses, and sets slaves to zero.
   template <class Value>
   void hand_masses(Value const& value, int components) const {
-    for (Slave const& slave : slaves_)
+    for (SlaveRow const& slave : slaves_)
       for (int k = 0; k < components; ++k) {
         double const own = value(slave.node, k);
         for (std::size_t m = 0; m < slave.masters.size(); ++m)
@@ -92,7 +98,7 @@ class Interpolation {
   /// Sets slaves to the mean of their masters by the weights of masses: to the velocity at which their mass moves.
   template <class Value>
   void apply_masses(Value const& value, int components) const {
-    for (Slave const& slave : slaves_)
+    for (SlaveRow const& slave : slaves_)
       for (int k = 0; k < components; ++k) {
         double const base = value(slave.masters[0].first, k);
         double sum = base;
@@ -108,7 +114,7 @@ class Interpolation {
   }
 
  private:
-  std::vector<Slave> slaves_;
+  SlaveRows slaves_;
 };
 
 }  // namespace pliant

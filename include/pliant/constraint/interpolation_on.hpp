@@ -193,10 +193,10 @@ class InterpolationOn {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   template <class Number>
-  static HostRows rows_by_slave(std::vector<Slave> const& slaves, Number const& number) {
+  static HostRows rows_by_slave(SlaveRows const& slaves, Number const& number) {
     HostRows rows;
     rows.first.reserve(slaves.size() + 1);
-    for (Slave const& slave : slaves)
+    for (SlaveRow const& slave : slaves)
       rows.first.push_back(rows.first.back() + static_cast<Index>(slave.masters.size()));
     rows.node.resize(slaves.size());
     rows.other.resize(at(rows.first.back()));

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/host_threads.hpp>
-#include <pliant/constraint/slave.hpp>
+#include <pliant/constraint/slave_rows.hpp>
 #include <pliant/error.hpp>
 
 namespace pliant {
@@ -20,19 +21,19 @@ class SlavePlaces {
   static constexpr Index none = -1;
 
   /// Throws Error for a slave of no node, and for a node that is a slave twice.
-  explicit SlavePlaces(std::vector<Slave> const& slaves) {
+  explicit SlavePlaces(std::span<Index const> slaves) {
     Index largest = -1;
-    for (Slave const& slave : slaves) {
-      if (slave.node < 0) throw Error("compose: there is no node ", slave.node);
-      largest = std::max(largest, slave.node);
+    for (Index const node : slaves) {
+      if (node < 0) throw Error("compose: there is no node ", node);
+      largest = std::max(largest, node);
     }
     bool const many = static_cast<std::size_t>(largest) / 64 < slaves.size();
     if (many) table_.assign(static_cast<std::size_t>(largest) + 1, none);
-    for (Index i = 0; Slave const& slave : slaves) {
+    for (Index i = 0; Index const node : slaves) {
       if (!many) {
-        sorted_.emplace_back(slave.node, i++);
-      } else if (std::exchange(table_[static_cast<std::size_t>(slave.node)], i++) != none) {
-        refuse(slave.node);
+        sorted_.emplace_back(node, i++);
+      } else if (std::exchange(table_[static_cast<std::size_t>(node)], i++) != none) {
+        refuse(node);
       }
     }
     std::ranges::sort(sorted_);
@@ -70,27 +71,34 @@ class SlavePlaces {
 /// a master reached along several ways appears once, with the sum of the weights. The result ascends by node.
 /// A slave must come after the slaves among its masters. Throws Error where one does not (which is
 /// so for any circle of slaves) and where a node is a slave twice.
-[[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> slaves) {
-  detail::SlavePlaces const places(slaves);
+[[nodiscard]] inline SlaveRows compose_rows(SlaveRows const& slaves) {
+  detail::SlavePlaces const places(slaves.nodes());
+  constexpr Index few = 4096;  // slaves that are worth a thread
+  auto const count = static_cast<Index>(slaves.size());
   std::vector<char> is_composed(slaves.size());  // not to be looked at again
-  detail::for_each_on_host(static_cast<Index>(slaves.size()), 4096, [&](Index k) {
+  detail::for_each_on_host(count, few, [&](Index k) {
     auto const i = static_cast<std::size_t>(k);
-    auto const& masters = slaves[i].masters;
-    auto const is_free = [&](auto const& own) {
+    auto const masters = slaves[i].masters;
+    auto const is_free = [&](NodeWeight const& own) {
       return places.of(own.first) == detail::SlavePlaces::none;
     };
-    is_composed[i] = std::ranges::is_sorted(masters, std::ranges::less_equal{},
-                                            &std::pair<Index, double>::first) &&
-                     std::ranges::all_of(masters, is_free);
+    is_composed[i] =
+        std::ranges::is_sorted(masters, std::ranges::less_equal{}, &NodeWeight::first) &&
+        std::ranges::all_of(masters, is_free);
   });
+  SlaveRows others;  // those that were not
+  std::vector<std::size_t> place_among_others(slaves.size());
+  auto const row = [&](std::size_t i) {
+    return is_composed[i] ? slaves[i] : others[place_among_others[i]];
+  };
+  std::vector<NodeWeight> composed, summed;
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     if (is_composed[i]) continue;
     // Ascending, equal ones in the order in which they come, so that they are summed in a fixed order.
-    std::vector<std::pair<Index, double>> composed;
+    composed.clear();
     auto const add = [&](Index master, double weight) {
-      composed.insert(
-          std::ranges::upper_bound(composed, master, {}, &std::pair<Index, double>::first),
-          {master, weight});
+      composed.insert(std::ranges::upper_bound(composed, master, {}, &NodeWeight::first),
+                      {master, weight});
     };
     for (auto const& [master, weight] : slaves[i].masters) {
       Index const found = places.of(master);
@@ -101,24 +109,36 @@ class SlavePlaces {
       if (static_cast<std::size_t>(found) >= i)
         throw Error("compose: slave node ", slaves[i].node, " has the master ", master,
                     ", a slave that does not come before it; order slaves after their masters");
-      for (auto const& [free, share] : slaves[static_cast<std::size_t>(found)].masters)
+      for (auto const& [free, share] : row(static_cast<std::size_t>(found)).masters)
         add(free, weight * share);
     }
-    auto& masters = slaves[i].masters;
-    masters.clear();
+    summed.clear();
     for (auto const& [free, weight] : composed) {
-      if (!masters.empty() && masters.back().first == free)
-        masters.back().second += weight;
+      if (!summed.empty() && summed.back().first == free)
+        summed.back().second += weight;
       else
-        masters.emplace_back(free, weight);
+        summed.emplace_back(free, weight);
     }
+    place_among_others[i] = others.size();
+    others.push_back(slaves[i].node, summed);
   }
-  std::vector<Slave> ascending;  // as an Interpolation wants them
-  ascending.reserve(slaves.size());
+  std::vector<std::size_t> order, sizes;  // ascending by node, as an Interpolation wants them
+  order.reserve(slaves.size());
+  sizes.reserve(slaves.size());
   places.for_each([&](Index place) {
-    ascending.push_back(std::move(slaves[static_cast<std::size_t>(place)]));
+    order.push_back(static_cast<std::size_t>(place));
+    sizes.push_back(row(order.back()).masters.size());
+  });
+  SlaveRows ascending(sizes);
+  detail::for_each_on_host(count, few, [&](Index k) {
+    auto const i = static_cast<std::size_t>(k);
+    ascending.set(i, row(order[i]));
   });
   return ascending;
+}
+/// The same of a list of slaves.
+[[nodiscard]] inline std::vector<Slave> compose(std::vector<Slave> const& slaves) {
+  return detail::slaves_of(compose_rows(detail::rows_of(slaves)));
 }
 
 }  // namespace pliant

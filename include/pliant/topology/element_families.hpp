@@ -7,7 +7,7 @@
 
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
-#include <pliant/topology/place_iterator.hpp>
+#include <pliant/math/place_iterator.hpp>
 #include <pliant/topology/refinement_pattern.hpp>
 
 namespace pliant {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -25,7 +24,7 @@ class HangingNodes {
   explicit HangingNodes(CellTree<Dim> const& tree) : tree_(tree), edges_(tree.edges()) {}
 
   /// Every one, ascending, with its free masters.
-  [[nodiscard]] std::vector<Slave> slaves() {
+  [[nodiscard]] SlaveRows slaves() {
     if (tree_.mixes_degrees()) {
       listed_.assign(at(tree_.node_count()), false);
       linear_edge_.assign(edges_.size(), false);
@@ -48,23 +47,19 @@ class HangingNodes {
     if (mixed()) add_nodes_of_higher_degree(found[0]);
     // The masters of a node at an element's side are that element's nodes; those can hang at coarser ones, and those on
     // the side's edges can be of too high a degree there.
-    std::vector<Slave> slaves;
-    std::size_t levels = 0, count = 0;
-    for (auto const& own : found) {
-      levels = std::max(levels, own.size());
-      for (auto const& list : own) count += list.size();
-    }
-    slaves.reserve(count);
+    SlaveRows slaves;
+    std::size_t levels = 0;
+    for (auto const& own : found) levels = std::max(levels, own.size());
     for (std::size_t k = 0; k < levels; ++k)
-      for (auto& own : found)
-        if (k < own.size()) std::ranges::move(own[k], std::back_inserter(slaves));
-    return compose(std::move(slaves));
+      for (auto const& own : found)
+        if (k < own.size()) slaves.append(own[k]);
+    return compose_rows(slaves);
   }
 
  private:
   using Masters = detail::ShapeWeights;
   /// Hanging nodes by the level of the coarser element, each level's on edges before those on sides.
-  using Found = std::vector<std::vector<Slave>>;
+  using Found = std::vector<SlaveRows>;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] bool mixed() const { return !listed_.empty(); }
@@ -83,7 +78,7 @@ class HangingNodes {
     std::ranges::sort(masters);
     auto const place = 2 * static_cast<std::size_t>(level) + (on_side ? 1 : 0);
     if (found.size() <= place) found.resize(place + 1);
-    found[place].push_back({node, {masters.begin(), masters.end()}});
+    found[place].push_back(node, masters);
   }
 
   /// The nodes on a whole edge of a leaf that is bisected for others, unless it lies on such an edge itself.

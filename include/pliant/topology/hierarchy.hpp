@@ -165,7 +165,9 @@ class Hierarchy {
   /// Every hanging node, ascending, with its free masters. Weights sum to one. They make the displacement
   /// on each edge and side of each leaf what its own nodes say, and continuous: there it is of the lowest degree
   /// of the leaves around.
-  [[nodiscard]] std::vector<Slave> slaves() const { return HangingNodes(tree_).slaves(); }
+  [[nodiscard]] std::vector<Slave> slaves() const { return detail::slaves_of(slave_rows()); }
+  /// The same in compressed rows.
+  [[nodiscard]] SlaveRows slave_rows() const { return HangingNodes(tree_).slaves(); }
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {

@@ -34,7 +34,7 @@ class Topology {
   explicit Topology(M mesh) : interpolation(compose(mesh.slaves)), stored_(std::move(mesh)) {}
   /// Of the cells of a tree, per type.
   Topology(std::shared_ptr<Hierarchy<dim> const> of, std::vector<CellSet> cells_of_types)
-      : interpolation(of->slaves()), tree(std::move(of)), cells(std::move(cells_of_types)) {}
+      : interpolation(of->slave_rows()), tree(std::move(of)), cells(std::move(cells_of_types)) {}
 
   /// The elements that act. Of a tree, it takes a look at all of them, once.
   M const& mesh() const {
@@ -130,7 +130,7 @@ class Topology {
       });
     });
     mesh.boundaries = stored_.boundaries;
-    mesh.slaves = interpolation.slaves();
+    mesh.slaves = detail::slaves_of(interpolation.slaves());
   }
 
   struct Made {
