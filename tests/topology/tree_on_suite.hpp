@@ -1,10 +1,13 @@
 #pragma once
 
+#include <numeric>
+
+#include <pliant/topology/hanging_nodes_on.hpp>
 #include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/tree_on.hpp>
 
-#include "support/formulations.hpp"
 #include "support/catch.hpp"
+#include "support/formulations.hpp"
 #include "support/meshes.hpp"
 #include "topology/tree_states.hpp"
 
@@ -43,6 +46,35 @@ void check_same(TreeOn<B>& tree, Hierarchy<Dim> const& host) {
   CHECK(tree.leaves() == static_cast<Index>(host.leaf_count()));
 }
 
+/// The same hanging nodes with the same masters and weights; nodes have rows of their own numbers, backwards.
+template <class B, int Dim>
+void check_hanging(B const& backend, HangingNodesOn<Dim, B>& hanging, TreeOn<B> const& tree,
+                   Hierarchy<Dim> const& host) {
+  std::vector<Index> backwards(host.points().size());
+  std::iota(backwards.rbegin(), backwards.rend(), Index{0});
+  auto const row_of_node = upload(backend, backwards);
+  auto const rows = hanging.rows(tree, row_of_node.data());
+  auto const node = download<Index>(rows.node), first = download<Index>(rows.first),
+             other = download<Index>(rows.other);
+  auto const weight = download<double>(rows.weight);
+  auto const wanted = host.slaves();
+  REQUIRE(rows.count == static_cast<Index>(wanted.size()));
+  int wrong = 0;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    auto const& slave = wanted[k];
+    auto const from = static_cast<std::size_t>(first[k]),
+               to = static_cast<std::size_t>(first[k + 1]);
+    REQUIRE(to - from == slave.masters.size());
+    wrong += node[k] != backwards[static_cast<std::size_t>(slave.node)];
+    for (std::size_t m = 0; m < slave.masters.size(); ++m) {
+      auto const& master = slave.masters[m];
+      wrong += other[from + m] != backwards[static_cast<std::size_t>(master.first)];
+      wrong += weight[from + m] != master.second;
+    }
+  }
+  CHECK(wrong == 0);
+}
+
 template <class V>
 std::vector<Index> numbers_of(std::vector<V> const& list, Index V::*number) {
   std::vector<Index> numbers;
@@ -63,6 +95,9 @@ void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int round
   Hierarchy<M::dim> host(mesh);
   RefinedOn<B> on(backend, host);
   check_same(on.tree, host);
+  HangingNodesOn<M::dim, B> hanging(backend);
+  check_hanging(backend, hanging, on.tree, host);
+  bool composed = false;
   Random random(3);
   for (int round = 0; round < rounds; ++round) {
     auto marked = some_leaves(host, one_in, random);
@@ -82,7 +117,11 @@ void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int round
       check_same(on.tree, host);
     }
     on.tree.keep();
+    check_hanging(backend, hanging, on.tree, host);
+    for (auto const& slave : host.slaves())
+      composed = composed || slave.masters.size() == 3 || slave.masters.size() > 4;
   }
+  if (std::same_as<M, Mesh<Tet4>>) CHECK(composed);
   CHECK(std::ranges::any_of(host.leaves(), [&](Index c) { return host.cell(c).level > 1; }));
 }
 

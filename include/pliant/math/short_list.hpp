@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <initializer_list>
 
+#include <pliant/config.hpp>
 #include <pliant/error.hpp>
 
 namespace pliant {
@@ -24,14 +25,14 @@ class ShortList {
     std::ranges::copy(items, items_.begin());
   }
   /// There must be fewer than N.
-  void push_back(T const& item) {
+  PLIANT_HOST_DEVICE void push_back(T const& item) {
     assert(count_ < N);
     items_[count_++] = item;
   }
 
-  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] PLIANT_HOST_DEVICE std::size_t size() const { return count_; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
-  T const& operator[](std::size_t i) const { return items_[i]; }
+  PLIANT_HOST_DEVICE T const& operator[](std::size_t i) const { return items_[i]; }
   T const& back() const { return items_[count_ - 1]; }
   T* begin() { return items_.data(); }
   T* end() { return items_.data() + count_; }

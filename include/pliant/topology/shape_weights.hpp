@@ -26,7 +26,8 @@ namespace detail {
 using ShapeWeights = ShortList<std::pair<Index, double>, 27>;
 
 template <Element E>
-ShapeWeights shape_weights(CellNodeList const& nodes, std::array<double, 3> const& place) {
+PLIANT_HOST_DEVICE ShapeWeights shape_weights(CellNodeList const& nodes,
+                                              std::array<double, 3> const& place) {
   Vector<double, E::dim> xi;
   for (int k = 0; k < E::dim; ++k) xi[k] = place[static_cast<std::size_t>(k)];
   auto const shape = E::shape(xi);
@@ -38,8 +39,9 @@ ShapeWeights shape_weights(CellNodeList const& nodes, std::array<double, 3> cons
 /// The weights of an element's nodes in the value at a place on its cell, in Dim dimensions; dyadic numbers, without
 /// rounding, so that they are the same from all elements around.
 template <int Dim>
-ShapeWeights shape_weights(CellKind kind, CellNodes has, CellNodeList const& nodes,
-                           std::array<double, 3> const& place) {
+PLIANT_HOST_DEVICE ShapeWeights shape_weights(CellKind kind, CellNodes has,
+                                              CellNodeList const& nodes,
+                                              std::array<double, 3> const& place) {
   auto const choose = [&]<Element Linear, Element Edges, Element All>(
                           std::type_identity<std::tuple<Linear, Edges, All>>) {
     if (has == CellNodes::corners) return shape_weights<Linear>(nodes, place);
