@@ -270,21 +270,5 @@ struct FillSlaves {
     }
   }
 };
-/// Σ|w| of a slave's weights, 1 where none is negative.
-template <class T>
-struct MagnitudeOfRow {
-  Index const* first;
-  T const* weight;
-  PLIANT_HOST_DEVICE double operator()(Index k) const {
-    double sum = 0;
-    bool negative = false;
-    for (Index j = first[k]; j < first[k + 1]; ++j) {
-      double const w = static_cast<double>(weight[j]);
-      negative = negative || w < 0;
-      sum += w < 0 ? -w : w;
-    }
-    return negative ? sum : 1;
-  }
-};
 
 }  // namespace pliant::detail
