@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -8,32 +7,12 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/body/cell_order.hpp>
-#include <pliant/topology/element_types.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 // The order of elements that a body keeps, in a backend's memory.
 namespace pliant {
 
 namespace detail {
-
-/// The element type of cells of a kind with some of the nodes; −1 where a mesh has none.
-struct TypeTable {
-  std::array<std::array<std::int8_t, 3>, 6> types;
-
-  template <class M>
-  static TypeTable of() {
-    TypeTable table;
-    for (auto& own : table.types) own.fill(-1);
-    for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
-      table.types[static_cast<std::size_t>(kind_of<typename E::cell>)]
-                 [static_cast<std::size_t>(nodes_on_cell<E>)] = static_cast<std::int8_t>(type);
-    });
-    return table;
-  }
-  PLIANT_HOST_DEVICE int operator()(TreeCell const& cell) const {
-    return types[static_cast<std::size_t>(cell.kind)][static_cast<std::size_t>(cell.has)];
-  }
-};
 
 /// Notes where leaves were divided, by their places: into how many.
 struct MarkDivided {

@@ -102,7 +102,7 @@ class NodeRowsOn {
     backend_.for_each(n, detail::FindRows{rows, node_.data(), partial_.data(), page_at,
                                           before_.data(), found_.data()});
     backend_.for_each(n, detail::TakeFoundRows{found_.data(), order_.data(), refined.nodes,
-                                          of_node_.data(), node_.data()});
+                                               of_node_.data(), node_.data()});
     pages_ = in_all;
     nodes_ += n;
   }

@@ -68,6 +68,7 @@ class TreeOn {
   Refined refine(Index const* marked, Index count, RefinementLimits const& limits = {}) {
     Index const n = close(marked, count, limits.max_level);
     if (n == 0) return {};
+    first_new_ = now_.nodes;
     need(leaves_, n);
     need(parts_, n);
     backend_.for_each(n, detail::ListLeaves{list_.data(), leaves_.data()});
@@ -89,7 +90,7 @@ class TreeOn {
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
     if (has_quadratic_) make_quadratic(n, limits);
-    return {n, now_.nodes - kept_.nodes, leaves_.data(), made_.data(), parts_.data()};
+    return {n, now_.nodes - first_new_, leaves_.data(), made_.data(), parts_.data()};
   }
 
   /// Keeps what changed since the last time.
@@ -118,7 +119,7 @@ class TreeOn {
 
   /// The leaves that are divided, as loops see them now.
   [[nodiscard]] detail::DivisionView division() {
-    return {view(), leaves_.data(), parts_.data(), kept_.nodes, made_.data()};
+    return {view(), leaves_.data(), parts_.data(), first_new_, made_.data()};
   }
   /// Numbers that loops counted.
   template <std::size_t N>
@@ -221,7 +222,7 @@ class TreeOn {
     backend_.scan(count, detail::CountNodes{children_made_.data()}, before_[1].data());
     Index const more = entry(before_[1], count);
     check(n, {more, 0, 0, 0}, limits);
-    Index const known = now_.nodes - kept_.nodes;
+    Index const known = now_.nodes - first_new_;
     detail::grow_keeping(backend_, made_, at(known), at(known + more));
     nodes.made = made_.data() + known;
     backend_.for_each(count, detail::MakeNodes{nodes, before_[1].data()});
@@ -234,6 +235,7 @@ class TreeOn {
   PagedList<B, TreeSide> sides_;
   TreeSizes initial_;
   Counts now_, kept_;
+  Index first_new_ = 0;  // node of the last refinement
   bool has_quadratic_;
   Array<Index> first_at_edge_, cells_at_edge_;  // see CellsAtEdges
   // Of a change.
