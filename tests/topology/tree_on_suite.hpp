@@ -3,48 +3,13 @@
 #include <numeric>
 
 #include <pliant/topology/hanging_nodes_on.hpp>
-#include <pliant/topology/hierarchy.hpp>
-#include <pliant/topology/tree_on.hpp>
 
-#include "support/catch.hpp"
 #include "support/formulations.hpp"
 #include "support/meshes.hpp"
-#include "topology/tree_states.hpp"
+#include "topology/trees_on.hpp"
 
 // Trees in a backend's memory are refined as on the host.
 namespace pliant::test::tree_on_suite {
-
-template <Backend B>
-struct RefinedOn {
-  B backend;
-  TreeOn<B> tree;
-
-  template <int Dim>
-  RefinedOn(B const& on, Hierarchy<Dim> const& like)
-      : backend(on), tree(backend, like.tree().lists(), *like.tree().cells_at_edges()) {}
-
-  auto refine(std::vector<Index> const& marked, RefinementLimits const& limits = {}) {
-    auto const list = upload(backend, marked);
-    return tree.refine(list.data(), static_cast<Index>(marked.size()), limits);
-  }
-  /// Values that a refinement gave, on the host.
-  template <class V>
-  std::vector<V> taken(V const* values, Index count) {
-    auto array = zeros<V>(backend, static_cast<std::size_t>(count));
-    detail::copy_values(backend, values, array.data(), static_cast<std::size_t>(count));
-    return download<V>(array);
-  }
-};
-
-template <class B, int Dim>
-void check_same(TreeOn<B>& tree, Hierarchy<Dim> const& host) {
-  auto const& like = host.tree();
-  CHECK(listed(tree.cells()) == listed(like.cells()));
-  CHECK(listed(tree.edges()) == listed(like.edges()));
-  CHECK(listed(tree.sides()) == listed(like.sides()));
-  CHECK(tree.sizes().nodes == like.node_count());
-  CHECK(tree.leaves() == static_cast<Index>(host.leaf_count()));
-}
 
 /// The same hanging nodes with the same masters and weights; nodes have rows of their own numbers, backwards.
 template <class B, int Dim>
@@ -75,25 +40,11 @@ void check_hanging(B const& backend, HangingNodesOn<Dim, B>& hanging, TreeOn<B> 
   CHECK(wrong == 0);
 }
 
-template <class V>
-std::vector<Index> numbers_of(std::vector<V> const& list, Index V::*number) {
-  std::vector<Index> numbers;
-  for (auto const& own : list) numbers.push_back(own.*number);
-  return numbers;
-}
-
-template <int Dim>
-std::vector<Index> some_leaves(Hierarchy<Dim> const& tree, std::size_t one_in, Random& random) {
-  auto leaves = tree.leaves();
-  std::erase_if(leaves, [&](Index) { return random.below(one_in) != 0; });
-  return leaves;
-}
-
 /// Refines leaves at random, several times, here and on the host.
 template <class B, class M>
 void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int rounds) {
   Hierarchy<M::dim> host(mesh);
-  RefinedOn<B> on(backend, host);
+  TreeBeside<B> on(backend, host);
   check_same(on.tree, host);
   HangingNodesOn<M::dim, B> hanging(backend);
   check_hanging(backend, hanging, on.tree, host);
@@ -149,7 +100,7 @@ TEST_CASE("trees of quadratic elements are refined in a backend's memory", "[top
 TEST_CASE("a tree whose refinement would exceed a limit is as it was", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     Hierarchy<3> host(mesh::raised<Tet10>(regular_mesh<Tet4>(2)));
-    RefinedOn<B> on(backend, host);
+    TreeBeside<B> on(backend, host);
     std::vector<Index> const marked{0, 7, 9};
     auto const more = Hierarchy<3>(host).refine(marked).new_nodes.size();
     RefinementLimits limits{.nodes = host.points().size() + more - 1};
@@ -172,7 +123,7 @@ TEST_CASE("a tree whose refinement would exceed a limit is as it was", "[topolog
 TEST_CASE("memory of a tree in a backend is used again", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     Hierarchy<3> host(regular_mesh<Tet4>(4));
-    RefinedOn<B> on(backend, host);
+    TreeBeside<B> on(backend, host);
     std::size_t bytes = 0;
     for (int round = 0; round < 20; ++round) {
       on.refine({round, 2 * round, 100 + round});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <type_traits>
 
 #include <pliant/config.hpp>
 
@@ -15,9 +16,10 @@ PLIANT_HOST_DEVICE Index atomic_load(Index& number) {
   return std::atomic_ref(number).load(std::memory_order_relaxed);
 #endif
 }
-PLIANT_HOST_DEVICE void atomic_store(Index& number, Index value) {
+template <class U>
+PLIANT_HOST_DEVICE void atomic_store(U& number, std::type_identity_t<U> value) {
 #ifdef __CUDA_ARCH__
-  *static_cast<Index volatile*>(&number) = value;
+  *static_cast<U volatile*>(&number) = value;
 #else
   std::atomic_ref(number).store(value, std::memory_order_relaxed);
 #endif

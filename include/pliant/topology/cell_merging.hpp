@@ -16,6 +16,23 @@ PLIANT_HOST_DEVICE void replace_at_side(TreeView const& tree, Index side, Index 
   atomic_store(cells[atomic_load(cells[0]) == cell ? 0 : 1], other);
 }
 
+/// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, that no neighbour
+/// keeps from being merged.
+PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
+  auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+  auto const& cell = tree.cells[at(c)];
+  if (cell.first_child < 0) return false;
+  auto const has = cell.is_split() ? CellNodes::corners : tree.cells[at(cell.first_child)].has;
+  Index const end = cell.first_child + cell.divided().children;
+  for (Index i = cell.first_child; i < end; ++i) {
+    auto const& child = tree.cells[at(i)];
+    if (child.first_child >= 0 || child.has != has) return false;
+    for (std::size_t e = 0; !cell.is_split() && e < at(child.pattern().edges); ++e)
+      if (tree.edges[at(child.edges[e])].refined > 0) return false;
+  }
+  return true;
+}
+
 /// Makes a divided cell a leaf, and its children are counted nowhere.
 PLIANT_HOST_DEVICE void merge_cell(TreeView const& tree, Index c) {
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };

@@ -126,16 +126,7 @@ class CellTree {
   /// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, that no neighbour
   /// keeps from being merged.
   [[nodiscard]] bool can_be_merged(Index c) const {
-    auto const& cell = lists_.cells[at(c)];
-    if (cell.first_child < 0) return false;
-    auto const has = cell.is_split() ? CellNodes::corners : lists_.cells[at(cell.first_child)].has;
-    for (Index i = cell.first_child; i < cell.first_child + cell.divided().children; ++i) {
-      auto const& child = lists_.cells[at(i)];
-      if (child.first_child >= 0 || child.has != has) return false;
-      for (std::size_t e = 0; !cell.is_split() && e < at(child.pattern().edges); ++e)
-        if (lists_.edges[at(child.edges[e])].refined > 0) return false;
-    }
-    return true;
+    return detail::can_be_merged(lists_.view(), c);
   }
 
   /// Gives leaves with corners only more nodes, and appends those that it makes.

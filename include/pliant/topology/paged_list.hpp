@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/grown_array.hpp>
 #include <pliant/topology/pages.hpp>
 #include <pliant/topology/shared_list.hpp>
 
@@ -21,7 +23,7 @@ template <class V>
 struct ChangedPage {
   Index place;  // in the table
   Page<V>* before;
-  Page<V>* now;
+  Page<V>* now;  // none where the list is shorter
 };
 
 /// Copies pages, so many bytes at a time, and puts them into a table where there is one.
@@ -72,7 +74,7 @@ class PagedList {
   [[nodiscard]] std::size_t page_count() const { return pages_.size(); }
   /// How many bytes it takes, pages that wait for others among them.
   [[nodiscard]] std::size_t bytes() const {
-    return reserved_ * sizeof(Page<V>) + table_.size() * sizeof(Page<V>*);
+    return reserved_ * sizeof(Page<V>) + (table_.size() + table_before_.size()) * sizeof(Page<V>*);
   }
   /// The list as loops see it, until it changes.
   [[nodiscard]] Pages<V> pages() const { return {table_.data()}; }
@@ -90,42 +92,53 @@ class PagedList {
 
   /// Makes pages of which the byte is not zero the list's own, and room for `count` entries more, which have no value.
   void change(B const& backend, std::span<std::uint8_t const> touched, std::size_t count) {
-    std::vector<Changed> changed;
+    std::vector<Index> places;
     for (std::size_t p = 0; p < touched.size(); ++p)
-      if (touched[p] != 0) changed.push_back({static_cast<Index>(p), pages_[p], nullptr});
-    auto const needed = (size_ + count + per_page - 1) / per_page;
-    for (auto p = pages_.size(); p < needed; ++p)
-      changed.push_back({static_cast<Index>(p), nullptr, nullptr});
-    reserve(backend, changed.size(), needed);
-    for (Changed& own : changed) {
-      own.now = free_.back();
-      free_.pop_back();
-    }
-    changed_.insert(changed_.end(), changed.begin(), changed.end());
-    pages_.resize(needed, nullptr);
-    for (Changed const& own : changed) pages_[static_cast<std::size_t>(own.place)] = own.now;
-    put(backend, changed, table_.data());
+      if (touched[p] != 0 && !is_own(p)) places.push_back(static_cast<Index>(p));
+    auto const shared = places.size(), needed = pages_for(size_ + count);
+    for (auto p = pages_.size(); p < needed; ++p) places.push_back(static_cast<Index>(p));
+    put_new(backend, places, shared, needed);
     size_ += count;
   }
   /// Makes room for so many entries more, beside those of the last page if that is shared with what was kept.
   void extend(B const& backend, std::size_t count) { change(backend, {}, count); }
+  /// Puts `count` entries, which have no value, in the place of those from `first` on; those before stay. Gives the list as
+  /// it was before, for loops that are asked for until it changes again.
+  [[nodiscard]] Pages<V> replace_from(B const& backend, std::size_t first, std::size_t count) {
+    detail::grow(backend, table_before_, pages_.size());
+    detail::copy_values<B, Page<V>*>(backend, table_.data(), table_before_.data(), pages_.size());
+    auto const needed = pages_for(first + count);
+    std::vector<Index> places;
+    for (auto p = first / per_page; p < needed; ++p) places.push_back(static_cast<Index>(p));
+    auto const shared = std::size_t{first % per_page != 0};
+    put_new(backend, places, shared, std::max(needed, pages_.size()));
+    for (auto p = needed; p < pages_.size(); ++p) change_page(p, nullptr);
+    pages_.resize(needed);
+    size_ = first + count;
+    return {table_before_.data()};
+  }
 
   /// Keeps what changed.
   void keep() {
-    for (Changed const& own : changed_)
+    for (Changed const& own : changed_) {
       if (own.before != nullptr) free_.push_back(own.before);
+      change_of_[static_cast<std::size_t>(own.place)] = none;
+    }
     changed_.clear();
     kept_ = size_;
   }
   /// The list is what it was when it was kept.
   void take_back(B const& backend) {
-    for (auto own = changed_.rbegin(); own != changed_.rend(); ++own) {
-      free_.push_back(own->now);
-      pages_[static_cast<std::size_t>(own->place)] = own->before;
+    pages_.resize(std::max(pages_.size(), pages_for(kept_)));
+    for (Changed const& own : changed_) {
+      auto const place = static_cast<std::size_t>(own.place);
+      if (own.now != nullptr) free_.push_back(own.now);
+      if (place < pages_.size()) pages_[place] = own.before;
+      change_of_[place] = none;
     }
     changed_.clear();
     size_ = kept_;
-    pages_.resize((size_ + per_page - 1) / per_page);
+    pages_.resize(pages_for(size_));
     backend.synchronize();
     table_.upload(pages_);
   }
@@ -135,6 +148,40 @@ class PagedList {
   using Array = typename B::template Array<U>;
   using Changed = detail::ChangedPage<V>;
   static constexpr std::size_t per_page = Page<V>::entries, per_batch = 256;  // pages
+  static constexpr Index none = -1;
+
+  static std::size_t pages_for(std::size_t entries) { return (entries + per_page - 1) / per_page; }
+  /// Whether a page is not what it was when the list was kept.
+  [[nodiscard]] bool is_own(std::size_t p) const {
+    return p < change_of_.size() && change_of_[p] != none;
+  }
+  /// Notes another page at a place, or none. One that came there since the list was kept is free.
+  void change_page(std::size_t p, Page<V>* page) {
+    if (change_of_.size() <= p) change_of_.resize(p + 1, none);
+    if (is_own(p)) {
+      auto& now = changed_[static_cast<std::size_t>(change_of_[p])].now;
+      if (now != nullptr) free_.push_back(now);
+      now = page;
+      return;
+    }
+    change_of_[p] = static_cast<Index>(changed_.size());
+    changed_.push_back({static_cast<Index>(p), p < pages_.size() ? pages_[p] : nullptr, page});
+  }
+  /// Puts new pages at places, the first `copied` of them with what the pages there hold; there are `count` in all then.
+  void put_new(B const& backend, std::vector<Index> const& places, std::size_t copied,
+               std::size_t count) {
+    reserve(backend, places.size(), count);
+    std::vector<Changed> changed;
+    for (Index const place : places) {
+      auto const p = static_cast<std::size_t>(place);
+      changed.push_back({place, changed.size() < copied ? pages_[p] : nullptr, free_.back()});
+      free_.pop_back();
+    }
+    for (Changed const& own : changed) change_page(static_cast<std::size_t>(own.place), own.now);
+    pages_.resize(count, nullptr);
+    for (Changed const& own : changed) pages_[static_cast<std::size_t>(own.place)] = own.now;
+    put(backend, changed, table_.data());
+  }
 
   /// Memory for so many pages more, and a table for so many in all, with some for changes to come.
   void reserve(B const& backend, std::size_t more, std::size_t in_all) {
@@ -186,8 +233,10 @@ class PagedList {
 
   std::vector<Page<V>*> pages_;  // in the backend's memory
   std::size_t size_ = 0, kept_ = 0;
-  std::vector<Changed> changed_;  // since it was kept
+  std::vector<Changed> changed_;  // since it was kept: each place once
+  std::vector<Index> change_of_;  // by place
   Array<Page<V>*> table_;         // the same as pages_, and room
+  Array<Page<V>*> table_before_;  // the last replace_from
   std::vector<Array<V>> chunks_;
   std::vector<Page<V>*> free_;
   std::size_t reserved_ = 0;  // pages

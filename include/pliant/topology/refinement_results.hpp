@@ -33,6 +33,17 @@ struct Coarsening {
   std::vector<DividedFacet<Dim>> facets;  ///< sides that are whole again; old numbers
 };
 
+/// What a call of TreeOn::coarsen did: lists in the backend's memory, until the tree changes again.
+struct Coarsened {
+  Index merged = 0;                ///< how many cells are leaves again; of none, there are no lists
+  Index const* parents = nullptr;  ///< (merged): these, by their old numbers, ascending
+  TreeSizes initial;      ///< of the initial mesh, whose cells and nodes keep their numbers
+  TreeSizes before, now;  ///< how many there were, and are
+  Index const* nodes =
+      nullptr;  ///< (before.nodes - initial.nodes): [k] is the new number of node initial.nodes + k; −1: gone
+  Index const* cells = nullptr;  ///< (before.cells - initial.cells): the same for cells
+};
+
 /// Beyond what Hierarchy::refine throws Error, or leaves cells alone.
 struct RefinementLimits {
   std::size_t nodes = std::numeric_limits<std::size_t>::max();   ///< most nodes in all

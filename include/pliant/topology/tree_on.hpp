@@ -5,21 +5,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/error.hpp>
-#include <pliant/topology/paged_list.hpp>
+#include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
+#include <pliant/topology/stamps.hpp>
+#include <pliant/topology/tree_coarsening.hpp>
 #include <pliant/topology/tree_lists.hpp>
 #include <pliant/topology/tree_passes.hpp>
 
 namespace pliant {
 
-/// The cells, edges and sides of a CellTree in a backend's memory, where they are refined. What changed can be taken back
+/// The cells, edges and sides of a CellTree in a backend's memory, where they are refined and coarsened. What changed can be taken back
 /// until it is kept.
 template <Backend B>
 class TreeOn {
@@ -38,9 +38,7 @@ class TreeOn {
 
   TreeOn(B const& backend, TreeLists const& lists, CellsAtEdges const& at_edges)
       : backend_(backend),
-        cells_(backend, lists.cells),
-        edges_(backend, lists.edges),
-        sides_(backend, lists.sides),
+        lists_(backend, lists),
         initial_(lists.initial),
         now_{.nodes = lists.nodes, .leaves = lists.linear_leaves + lists.quadratic_leaves},
         kept_(now_),
@@ -48,39 +46,41 @@ class TreeOn {
         first_at_edge_(upload(backend, at_edges.first())),
         cells_at_edge_(upload(backend, at_edges.cells())) {}
 
-  [[nodiscard]] TreeView view() const { return {cells_.pages(), edges_.pages(), sides_.pages()}; }
+  [[nodiscard]] TreeView view() const { return lists_.view(); }
   [[nodiscard]] TreeSizes sizes() const {
-    return {size(cells_), size(edges_), size(sides_), now_.nodes};
+    return {size(lists_.cells), size(lists_.edges), size(lists_.sides), now_.nodes};
   }
+  /// Of the initial mesh, of which coarsening takes nothing away.
+  [[nodiscard]] TreeSizes const& initial() const { return initial_; }
   [[nodiscard]] Index leaves() const { return now_.leaves; }
   /// How many bytes its lists take.
-  [[nodiscard]] std::size_t bytes() const {
-    return cells_.bytes() + edges_.bytes() + sides_.bytes();
-  }
+  [[nodiscard]] std::size_t bytes() const { return lists_.bytes(); }
   /// Copies of the lists on the host.
-  [[nodiscard]] std::vector<TreeCell> cells() { return cells_.download(backend_); }
-  [[nodiscard]] std::vector<TreeEdge> edges() { return edges_.download(backend_); }
-  [[nodiscard]] std::vector<TreeSide> sides() { return sides_.download(backend_); }
+  [[nodiscard]] std::vector<TreeCell> cells() { return lists_.cells.download(backend_); }
+  [[nodiscard]] std::vector<TreeEdge> edges() { return lists_.edges.download(backend_); }
+  [[nodiscard]] std::vector<TreeSide> sides() { return lists_.sides.download(backend_); }
 
   /// Refines marked leaves below the limit of levels and, before each, the leaves that are coarser across one of its edges or
   /// sides, and so on. `marked`: in the backend's memory; cells may be marked several times, and what is no leaf is left
-  /// alone. Throws Error where a limit would be exceeded; the tree is then as it was.
+  /// alone. Throws Error where a limit would be exceeded; the tree is then what it was when it was kept.
   Refined refine(Index const* marked, Index count, RefinementLimits const& limits = {}) {
     Index const n = close(marked, count, limits.max_level);
     if (n == 0) return {};
-    first_new_ = now_.nodes;
+    first_new_node_ = now_.nodes;
     need(leaves_, n);
     need(parts_, n);
     backend_.for_each(n, detail::ListLeaves{list_.data(), leaves_.data()});
-    own_pages(n);
+    lists_.own(backend_, [&](detail::PageMarks const& marks) {
+      backend_.for_each(n, detail::MarkDivided{leaves_.data(), marks});
+    });
     auto const planned = division();
     backend_.for_each(n, detail::ClaimShared{planned});
     backend_.for_each(n, detail::FindParts{planned});
     auto const totals = number_parts(n);
     check(n, totals, limits);
-    edges_.extend(backend_, at(totals[1]));
-    sides_.extend(backend_, at(totals[2]));
-    cells_.extend(backend_, at(totals[3]));
+    lists_.edges.extend(backend_, at(totals[1]));
+    lists_.sides.extend(backend_, at(totals[2]));
+    lists_.cells.extend(backend_, at(totals[3]));
     need(made_, totals[0]);
     auto const dividing = division();
     backend_.for_each(n, detail::MakeOnEdges{dividing});
@@ -90,21 +90,28 @@ class TreeOn {
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
     if (has_quadratic_) make_quadratic(n, limits);
-    return {n, now_.nodes - first_new_, leaves_.data(), made_.data(), parts_.data()};
+    return {n, now_.nodes - first_new_node_, leaves_.data(), made_.data(), parts_.data()};
+  }
+
+  /// Merges the children of refined cells, all of which are marked, as Hierarchy::coarsen does: a family stays where one of its
+  /// children is not marked, is divided or has another degree than the others, and where it touches cells two levels finer
+  /// than the parent. Parents take the degree of their children. Cells, edges, sides and nodes that nothing uses any more
+  /// go, but for those of the initial mesh, and the others keep their order and move up. `marked`: as for `refine`.
+  Coarsened coarsen(Index const* marked, Index count) {
+    auto const done = coarsening_(backend_, lists_, initial_, sizes(), stamps_, marked, count);
+    now_.nodes = done.now.nodes;
+    now_.leaves += done.merged - (done.before.cells - done.now.cells);
+    return done;
   }
 
   /// Keeps what changed since the last time.
   void keep() {
-    cells_.keep();
-    edges_.keep();
-    sides_.keep();
+    lists_.keep();
     kept_ = now_;
   }
   /// The tree is what it was when it was kept the last time.
   void take_back() {
-    cells_.take_back(backend_);
-    edges_.take_back(backend_);
-    sides_.take_back(backend_);
+    lists_.take_back(backend_);
     now_ = kept_;
   }
 
@@ -119,7 +126,7 @@ class TreeOn {
 
   /// The leaves that are divided, as loops see them now.
   [[nodiscard]] detail::DivisionView division() {
-    return {view(), leaves_.data(), parts_.data(), first_new_, made_.data()};
+    return {view(), leaves_.data(), parts_.data(), first_new_node_, made_.data()};
   }
   /// Numbers that loops counted.
   template <std::size_t N>
@@ -137,16 +144,15 @@ class TreeOn {
 
   /// Lists the marked leaves and those to be refined before them, in the order in which they are. Returns how many.
   Index close(Index const* marked, Index count, int max_level) {
-    if (stamps_.size() < cells_.size())
-      stamps_ = zeros<Index>(backend_, cells_.size() + cells_.size() / 2), stamp_ = 0;
-    need(list_, size(cells_));
+    stamps_.begin(backend_, lists_.cells.size());
+    need(list_, size(lists_.cells));
     counters_ = zeros<Index>(backend_, 4);
-    detail::ListOnce const once{stamps_.data(), ++stamp_, list_.data(), counters_.data()};
+    detail::ListOnce const once{stamps_.data(), stamps_.now(), list_.data(), counters_.data()};
     backend_.for_each(count, detail::ListMarked{view(), marked, max_level, once});
     Index n = counted<1>()[0], from = 0;
     detail::CellsAtEdgesView const at_edges{view(), initial_.edges, first_at_edge_.data(),
                                             cells_at_edge_.data()};
-    while (size(cells_) > initial_.cells && from < n) {  // some may have coarser neighbours
+    while (size(lists_.cells) > initial_.cells && from < n) {  // some may have coarser neighbours
       backend_.for_each(n - from, detail::ListCoarser{at_edges, from, once});
       from = n;
       n = counted<1>()[0];
@@ -156,22 +162,6 @@ class TreeOn {
     constexpr int bits_of_cell = 32, bits_of_level = 6;
     backend_.sort(n, keys_.data(), list_.data(), bits_of_cell + bits_of_level);
     return n;
-  }
-  /// Makes the pages the tree's own that a division of leaves edits.
-  void own_pages(Index n) {
-    std::array const counts{cells_.page_count(), edges_.page_count(), sides_.page_count()};
-    auto touched = zeros<std::uint8_t>(backend_, counts[0] + counts[1] + counts[2]);
-    auto* const first = touched.data();
-    backend_.for_each(
-        n,
-        detail::MarkPages{division(), {first, first + counts[0], first + counts[0] + counts[1]}});
-    auto const bytes = download<std::uint8_t>(touched);
-    auto const of = [&](std::size_t from, std::size_t count) {
-      return std::span(bytes).subspan(from, count);
-    };
-    cells_.change(backend_, of(0, counts[0]), 0);
-    edges_.change(backend_, of(counts[0], counts[1]), 0);
-    sides_.change(backend_, of(counts[0] + counts[1], counts[2]), 0);
   }
   /// Numbers what leaves make; returns how many nodes, edges, sides and cells that are.
   std::array<Index, 4> number_parts(Index n) {
@@ -202,9 +192,9 @@ class TreeOn {
     constexpr auto most = static_cast<std::size_t>(std::numeric_limits<Index>::max());
     check_one("nodes", now_.nodes, more[0], limits.nodes);
     check_one("leaves", now_.leaves - n, more[3], limits.leaves);
-    check_one("cells", size(cells_), more[3], most);
-    check_one("edges", size(edges_), more[1], most);
-    check_one("sides", size(sides_), more[2], most);
+    check_one("cells", size(lists_.cells), more[3], most);
+    check_one("edges", size(lists_.edges), more[1], most);
+    check_one("sides", size(lists_.sides), more[2], most);
   }
   /// Makes the nodes that children's elements have between their corners.
   void make_quadratic(Index n, RefinementLimits const& limits) {
@@ -222,7 +212,7 @@ class TreeOn {
     backend_.scan(count, detail::CountNodes{children_made_.data()}, before_[1].data());
     Index const more = entry(before_[1], count);
     check(n, {more, 0, 0, 0}, limits);
-    Index const known = now_.nodes - first_new_;
+    Index const known = now_.nodes - first_new_node_;
     detail::grow_keeping(backend_, made_, at(known), at(known + more));
     nodes.made = made_.data() + known;
     backend_.for_each(count, detail::MakeNodes{nodes, before_[1].data()});
@@ -230,17 +220,14 @@ class TreeOn {
   }
 
   B backend_;
-  PagedList<B, TreeCell> cells_;
-  PagedList<B, TreeEdge> edges_;
-  PagedList<B, TreeSide> sides_;
+  detail::PagedTree<B> lists_;
   TreeSizes initial_;
   Counts now_, kept_;
-  Index first_new_ = 0;  // node of the last refinement
   bool has_quadratic_;
   Array<Index> first_at_edge_, cells_at_edge_;  // see CellsAtEdges
   // Of a change.
-  Array<Index> stamps_;  // (cells): the change that listed them last
-  Index stamp_ = 0;
+  detail::Stamps<B> stamps_;  // by cell
+  Index first_new_node_ = 0;
   Array<Index> list_, counters_;
   Array<std::uint64_t> keys_;
   Array<CellSplit> leaves_;
@@ -249,6 +236,7 @@ class TreeOn {
   Array<PlacedNode> made_;
   Array<Index> children_;
   Array<detail::CellNodesMade> children_made_;
+  detail::TreeCoarsening<B> coarsening_;
 };
 
 }  // namespace pliant

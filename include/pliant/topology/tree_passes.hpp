@@ -9,9 +9,18 @@
 #include <pliant/topology/cells_at_edges.hpp>
 #include <pliant/topology/division_view.hpp>
 #include <pliant/topology/element_nodes.hpp>
+#include <pliant/topology/paged_tree.hpp>
 
 // Passes over cells of a tree, for loops of a backend.
 namespace pliant::detail {
+
+/// Whether a call is the first that gives an entry the stamp `now`.
+PLIANT_HOST_DEVICE bool stamps_first(Index& stamp, Index now) {
+  Index seen = atomic_load(stamp);
+  while (seen != now)
+    if (atomic_exchange(stamp, seen, now)) return true;
+  return false;
+}
 
 /// Cells that a loop lists, each once: those of which the stamp is not `now` yet.
 struct ListOnce {
@@ -21,12 +30,7 @@ struct ListOnce {
   Index* count;
 
   PLIANT_HOST_DEVICE void operator()(Index c) const {
-    Index seen = atomic_load(stamps[c]);
-    while (seen != now)
-      if (atomic_exchange(stamps[c], seen, now)) {
-        list[atomic_add(*count, 1)] = c;
-        return;
-      }
+    if (stamps_first(stamps[c], now)) list[atomic_add(*count, 1)] = c;
   }
 };
 
@@ -92,20 +96,11 @@ struct ListLeaves {
   PLIANT_HOST_DEVICE void operator()(Index k) const { leaves[k] = {list[k], Division::refined}; }
 };
 
-/// Marks the pages that a division of leaves edits: of cells, of edges, and of sides, a byte each.
-struct MarkPages {
-  DivisionView division;
-  std::array<std::uint8_t*, 3> touched;
-
-  PLIANT_HOST_DEVICE void operator()(Index r) const {
-    auto const mark = [](std::uint8_t* pages, Index i, std::size_t entries) {
-      pages[static_cast<std::size_t>(i) / entries] = 1;
-    };
-    division.tree.visit_parts(
-        division.leaf(r), [&](Index c) { mark(touched[0], c, Page<TreeCell>::entries); },
-        [&](Index e) { mark(touched[1], e, Page<TreeEdge>::entries); },
-        [&](Index s) { mark(touched[2], s, Page<TreeSide>::entries); });
-  }
+/// Marks the pages that a division of leaves edits.
+struct MarkDivided {
+  CellSplit const* leaves;
+  PageMarks marks;
+  PLIANT_HOST_DEVICE void operator()(Index r) const { marks.parts_of(leaves[r].cell); }
 };
 
 /// How much of one sort each leaf makes.

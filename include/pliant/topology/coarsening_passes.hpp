@@ -1,0 +1,197 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/config.hpp>
+#include <pliant/topology/cell_merging.hpp>
+#include <pliant/topology/compaction_view.hpp>
+#include <pliant/topology/paged_tree.hpp>
+#include <pliant/topology/tree_passes.hpp>
+
+// Passes over cells of a tree that is coarsened, for loops of a backend.
+namespace pliant::detail {
+
+/// Stamps marked leaves, and lists the refined cells of which they are children.
+struct ListFamilies {
+  TreeView tree;
+  Index const* marked;
+  ListOnce list;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = tree.cells[static_cast<std::size_t>(marked[k])];
+    if (cell.first_child >= 0 || cell.parent < 0) return;
+    if (tree.cells[static_cast<std::size_t>(cell.parent)].is_split()) return;
+    atomic_store(list.stamps[marked[k]], list.now);
+    list(cell.parent);
+  }
+};
+/// Lists those of them of which all children are marked and can be merged, with their numbers for keys.
+struct ListMergeable {
+  TreeView tree;
+  Index const* families;
+  Index const* stamps;  // by cell
+  Index now;
+  Index* list;
+  Index* count;
+  std::uint64_t* keys;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const c = families[k];
+    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
+    for (Index i = 0; i < cell.divided().children; ++i)
+      if (stamps[cell.first_child + i] != now) return;
+    if (!can_be_merged(tree, c)) return;
+    Index const place = atomic_add(*count, 1);
+    list[place] = c;
+    keys[place] = static_cast<std::uint64_t>(c);
+  }
+};
+/// Whether a cell of the initial mesh knows of cells, edges, sides or nodes that came later.
+struct IsKnowing {
+  TreeView tree;
+  PLIANT_HOST_DEVICE bool operator()(Index c) const {
+    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
+    return cell.first_child >= 0 || cell.has != cell.had;
+  }
+};
+
+/// Marks the pages of what becomes leaves, and of their children.
+struct MarkMerged {
+  Index const* parents;
+  PageMarks marks;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = marks.tree.cells[static_cast<std::size_t>(parents[k])];
+    marks.parts_of(parents[k]);
+    for (Index i = 0; i < cell.divided().children; ++i) marks.parts_of(cell.first_child + i);
+  }
+};
+/// Marks the pages of cells of the initial mesh, their edges and sides.
+struct MarkKnowing {
+  Index const* cells;
+  PageMarks marks;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = marks.tree.cells[static_cast<std::size_t>(cells[k])];
+    auto const& p = cell.pattern();
+    marks.cell(cells[k]);
+    for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) marks.edge(cell.edges[e]);
+    for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) marks.side(cell.sides[s]);
+  }
+};
+
+/// Makes divided cells leaves of the degree of their children.
+struct MergeCells {
+  TreeView tree;
+  Index const* parents;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto& cell = tree.cells[static_cast<std::size_t>(parents[k])];
+    cell.has = tree.cells[static_cast<std::size_t>(cell.first_child)].has;
+    merge_cell(tree, parents[k]);
+  }
+};
+
+/// Stamps the nodes behind the initial mesh's that cells use which stay: of those behind the initial mesh's, and of listed
+/// ones.
+struct UseNodes {
+  CompactionView view;
+  Index* stamps;  // by nodes behind the initial mesh's
+  Index now;
+  Index const* listed = nullptr;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const c = listed != nullptr ? listed[k] : view.initial.cells + k;
+    if (!view.stays(c)) return;
+    auto* const own = stamps;
+    Index const stamp = now;
+    view.use_nodes_of(c, [&](Index node) { atomic_store(own[node], stamp); });
+  }
+};
+
+/// Whether an entry behind the initial mesh's stays, to be summed.
+struct CountStamped {
+  Index const* stamps;
+  Index now;
+  PLIANT_HOST_DEVICE Index operator()(Index k) const { return stamps[k] == now ? 1 : 0; }
+};
+struct CountCells {
+  CompactionView view;
+  PLIANT_HOST_DEVICE Index operator()(Index k) const {
+    return view.stays(view.initial.cells + k) ? 1 : 0;
+  }
+};
+template <class V>
+struct CountUsed {
+  Pages<V> entries;
+  Index first;
+  PLIANT_HOST_DEVICE Index operator()(Index k) const {
+    return CompactionView::is_used(entries[static_cast<std::size_t>(first + k)]) ? 1 : 0;
+  }
+};
+/// New numbers of entries from `first` on, by how many stay before each; those that go have −1.
+struct NumberStaying {
+  Index const* before;
+  Index first;
+  Index* numbers;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    numbers[k] = before[k] < before[k + 1] ? first + before[k] : -1;
+  }
+};
+
+/// Moves entries behind the initial mesh's to where they are then.
+template <class V>
+struct MoveUp {
+  CompactionView view;
+  NewNumbers numbers;
+  Pages<V> before, now;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const to = numbers.others[k];
+    if (to < 0) return;
+    V own = before[static_cast<std::size_t>(numbers.first + k)];
+    view.renumber(own);
+    now[static_cast<std::size_t>(to)] = own;
+  }
+};
+/// Tells listed cells of the initial mesh, and each of their edges and sides once, the numbers of what moved.
+struct TellSides {
+  CompactionView view;
+  TreeView tree;  // as it is then
+  Index const* cells;
+  Index* stamps;  // by side of the initial mesh
+  Index now;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = tree.cells[static_cast<std::size_t>(cells[k])];
+    for (std::size_t s = 0; s < static_cast<std::size_t>(cell.pattern().sides); ++s)
+      if (stamps_first(stamps[cell.sides[s]], now))
+        view.renumber_within(tree.sides[static_cast<std::size_t>(cell.sides[s])]);
+  }
+};
+struct TellEdges {
+  CompactionView view;
+  TreeView tree;
+  Index const* cells;
+  Index* stamps;  // by edge of the initial mesh
+  Index now;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = tree.cells[static_cast<std::size_t>(cells[k])];
+    for (std::size_t e = 0; e < static_cast<std::size_t>(cell.pattern().edges); ++e)
+      if (stamps_first(stamps[cell.edges[e]], now))
+        view.renumber_within(tree.edges[static_cast<std::size_t>(cell.edges[e])]);
+  }
+};
+struct TellCells {
+  CompactionView view;
+  TreeView tree;
+  Index const* cells;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    view.renumber_within(tree.cells[static_cast<std::size_t>(cells[k])]);
+  }
+};
+
+}  // namespace pliant::detail

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+
+#include <pliant/config.hpp>
+#include <pliant/topology/tree_view.hpp>
+
+namespace pliant::detail {
+
+/// New numbers of what stays, as all before `first` is; −1: gone.
+struct NewNumbers {
+  Index first = 0;
+  Index const* others = nullptr;  // from `first` on
+
+  PLIANT_HOST_DEVICE Index operator()(Index old) const {
+    return old < first ? old : others[old - first];
+  }
+};
+
+/// A tree of which cells became leaves, and leaves lost nodes, as loops see it that take away what nothing uses any more.
+/// What the initial mesh has stays; of it only what divided and converted cells have knows of the rest.
+struct CompactionView {
+  TreeView tree;  // before anything moves
+  TreeSizes initial;
+  NewNumbers nodes{}, cells{}, edges{}, sides{};
+
+  /// Children of leaves go.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool stays(Index c) const {
+    return c < initial.cells || !tree.is_leaf(tree.cells[at(c)].parent);
+  }
+  [[nodiscard]] static PLIANT_HOST_DEVICE bool is_used(TreeEdge const& edge) {
+    return edge.leaves + edge.refined > 0;
+  }
+  [[nodiscard]] static PLIANT_HOST_DEVICE bool is_used(TreeSide const& side) {
+    return side.any_cell() >= 0;
+  }
+  /// use(k) for each node that the element on a cell has, if it is node k behind those of the initial mesh.
+  template <class Use>
+  PLIANT_HOST_DEVICE void use_nodes_of(Index c, Use const& use) const {
+    auto const list = tree.nodes_of(c);
+    for (std::size_t i = 0; i < list.count; ++i)
+      if (list[i] >= initial.nodes) use(list[i] - initial.nodes);
+  }
+
+  /// New numbers in what an entry of the initial mesh knows of the rest.
+  PLIANT_HOST_DEVICE void renumber_within(TreeCell& cell) const {
+    move(cell.first_child, cells);
+    move(cell.centre, nodes);
+  }
+  PLIANT_HOST_DEVICE void renumber_within(TreeEdge& edge) const {
+    if (edge.refined == 0) edge.first_half = -1;
+    move(edge.middle, nodes);
+    move(edge.first_half, edges);
+  }
+  PLIANT_HOST_DEVICE void renumber_within(TreeSide& side) const {
+    bool is_divided = false;
+    for (Index const c : side.cells) is_divided = is_divided || (c >= 0 && !tree.is_leaf(c));
+    if (!is_divided) side.first_child = side.first_inner_edge = -1;
+    move(side.centre, nodes);
+    move(side.first_child, sides);
+    move(side.first_inner_edge, edges);
+    move_all(side.cells, cells);  // parts of split cells among them
+  }
+
+  /// New numbers in an entry that came later.
+  PLIANT_HOST_DEVICE void renumber(TreeCell& cell) const {
+    renumber_within(cell);
+    move(cell.parent, cells);
+    move_all(cell.nodes, nodes);
+    move_all(cell.edges, edges);
+    move_all(cell.sides, sides);
+  }
+  PLIANT_HOST_DEVICE void renumber(TreeEdge& edge) const {
+    renumber_within(edge);
+    move(edge.parent, edges);
+    move(edge.side, sides);
+    move(edge.cell, cells);
+    move_all(edge.nodes, nodes);
+  }
+  PLIANT_HOST_DEVICE void renumber(TreeSide& side) const {
+    renumber_within(side);
+    move(side.parent, sides);
+    move_all(side.nodes, nodes);
+    move_all(side.edges, edges);
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  static PLIANT_HOST_DEVICE void move(Index& number, NewNumbers const& to) { number = to(number); }
+  template <class Numbers>
+  static PLIANT_HOST_DEVICE void move_all(Numbers& numbers, NewNumbers const& to) {
+    for (Index& number : numbers) move(number, to);
+  }
+};
+
+}  // namespace pliant::detail

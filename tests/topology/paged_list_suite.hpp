@@ -1,0 +1,115 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include <pliant/topology/paged_list.hpp>
+
+#include "support/backends.hpp"
+#include "support/catch.hpp"
+#include "support/formulations.hpp"
+#include "support/random.hpp"
+
+namespace pliant::test::paged_list_suite {
+
+struct WriteEntries {
+  Pages<Index> list;
+  Index first, value;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    list[static_cast<std::size_t>(first + i)] = value + i;
+  }
+};
+struct RepeatEntries {
+  Pages<Index> before, now;
+  Index first, period;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    now[static_cast<std::size_t>(first + i)] =
+        before[static_cast<std::size_t>(first + (i + 1) % period)];
+  }
+};
+
+/// A list in pages, and what it holds.
+template <Backend B>
+struct Pair {
+  B backend;
+  PagedList<B, Index> list;
+  std::vector<Index> values, kept;
+  Index next = 0;
+
+  explicit Pair(B const& on) : backend(on) {}
+
+  void write(std::size_t first, std::size_t count) {
+    backend.for_each(static_cast<Index>(count),
+                     WriteEntries{list.pages(), static_cast<Index>(first), next += 10000});
+    std::iota(values.begin() + static_cast<std::ptrdiff_t>(first),
+              values.begin() + static_cast<std::ptrdiff_t>(first + count), next);
+  }
+  void extend(std::size_t count) {
+    list.extend(backend, count);
+    values.resize(values.size() + count);
+    write(values.size() - count, count);
+  }
+  void change(std::size_t page) {
+    std::vector<std::uint8_t> touched(list.page_count(), 0);
+    touched[page] = 1;
+    list.change(backend, touched, 0);
+    auto const first = page * Page<Index>::entries;
+    write(first, std::min(values.size() - first, Page<Index>::entries));
+  }
+  void replace_from(std::size_t first, std::size_t count) {
+    auto const period = values.size() - first;
+    auto const before = list.replace_from(backend, first, count);
+    backend.for_each(
+        static_cast<Index>(count),
+        RepeatEntries{before, list.pages(), static_cast<Index>(first), static_cast<Index>(period)});
+    auto const old = values;
+    values.resize(first + count);
+    for (std::size_t i = 0; i < count; ++i) values[first + i] = old[first + (i + 1) % period];
+  }
+  void keep() {
+    list.keep();
+    kept = values;
+  }
+  void take_back() {
+    list.take_back(backend);
+    values = kept;
+  }
+};
+
+TEST_CASE("lists in pages hold what they were given, and take back what was not kept",
+          "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Pair<B> on(backend);
+    Random random(9);
+    constexpr std::size_t most = 4000;
+    for (int round = 0; round < 400; ++round) {
+      switch (random.below(6)) {
+        case 0:
+          if (on.values.size() < most) on.extend(random.below(900));
+          break;
+        case 1:
+        case 2:
+          if (!on.values.empty()) on.change(random.below(on.list.page_count()));
+          break;
+        case 3:
+          if (!on.values.empty()) {
+            auto first = random.below(on.values.size());
+            if (random.below(3) == 0) first -= first % Page<Index>::entries;
+            on.replace_from(first, random.below(on.values.size() - first + 300));
+          }
+          break;
+        case 4:
+          on.keep();
+          break;
+        default:
+          if (random.below(2) == 0) on.take_back();
+      }
+      REQUIRE(on.list.size() == on.values.size());
+      REQUIRE(on.list.download(backend) == on.values);
+    }
+    CHECK(on.list.bytes() < 6 * most * sizeof(Index));
+  });
+}
+
+}  // namespace pliant::test::paged_list_suite

@@ -1,0 +1,260 @@
+#pragma once
+
+#include <numeric>
+#include <tuple>
+
+#include "support/formulations.hpp"
+#include "support/meshes.hpp"
+#include "topology/trees_on.hpp"
+
+// Trees in a backend's memory are coarsened as on the host.
+namespace pliant::test::tree_on_coarsening_suite {
+
+template <int Dim>
+auto state(Hierarchy<Dim> const& host) {
+  auto const& tree = host.tree();
+  return std::tuple(listed(tree.cells()), listed(tree.edges()), listed(tree.sides()),
+                    tree.node_count());
+}
+
+/// Leaves of families, of which one in so many is whole, and most of the others lack a child.
+template <int Dim>
+std::vector<Index> some_families(Hierarchy<Dim> const& host, std::size_t one_in, Random& random) {
+  std::vector<Index> marked;
+  for (Index c = 0; c < static_cast<Index>(host.cells().size()); ++c) {
+    auto const& cell = host.cell(c);
+    if (cell.first_child < 0) continue;
+    bool const is_whole = random.below(one_in) == 0;
+    for (Index i = 0; i < cell.divided().children; ++i)
+      if (host.is_leaf(cell.first_child + i) && (is_whole || random.below(4) != 0))
+        marked.push_back(cell.first_child + i);
+  }
+  return marked;
+}
+
+/// Merges families of marked leaves here and on the host; returns how many.
+template <class B, int Dim>
+Index coarsen_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked,
+                   Random& random) {
+  auto const parents = host.families(marked);
+  auto const before = on.tree.sizes(), initial = on.tree.initial();
+  auto more = marked;  // some of them again, and cells that are no leaves
+  for (Index const c : marked)
+    if (random.below(3) == 0) more.push_back(c);
+  for (Index c = 0; c < before.cells; ++c)
+    if (!host.is_leaf(c) && random.below(2) == 0) more.push_back(c);
+  random.shuffle(more);
+  auto const done = on.coarsen(more);
+  auto const wanted = host.merge(parents);
+  REQUIRE(done.merged == static_cast<Index>(parents.size()));
+  CHECK(done.before.cells == before.cells);
+  CHECK(listed(std::vector{done.now}) == listed(std::vector{on.tree.sizes()}));
+  check_same(on.tree, host);
+  if (parents.empty()) return 0;
+  CHECK(on.taken(done.parents, done.merged) == parents);
+  auto const behind = [](std::vector<Index> const& all, Index first) {
+    return std::vector(all.begin() + first, all.end());
+  };
+  CHECK(on.taken(done.nodes, before.nodes - initial.nodes) ==
+        behind(wanted.renumbered.nodes, initial.nodes));
+  CHECK(on.taken(done.cells, before.cells - initial.cells) ==
+        behind(wanted.renumbered.cells, initial.cells));
+  return done.merged;
+}
+template <class B, int Dim>
+void refine_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked) {
+  auto const done = on.refine(marked);
+  auto const wanted = host.refine(marked);
+  REQUIRE(done.leaves == static_cast<Index>(wanted.parents.size()));
+  REQUIRE(done.new_nodes == static_cast<Index>(wanted.new_nodes.size()));
+  std::vector<Index> nodes;
+  for (auto const& node : wanted.new_nodes) nodes.push_back(node.node);
+  CHECK(numbers_of(on.taken(done.nodes, done.new_nodes), &PlacedNode::node) == nodes);
+  check_same(on.tree, host);
+}
+
+/// Refines and coarsens at random, here and on the host, some changes kept together, some taken back; then merges all.
+template <class B, int Dim>
+void check_changes(TreeBeside<B>& on, Hierarchy<Dim>& host, int rounds) {
+  Random random(5);
+  auto kept = host;
+  Index merged = 0, taken_back = 0;
+  int deepest = 0;
+  for (int round = 0; round < rounds; ++round) {
+    if (round < 2 || random.below(2) == 0)
+      refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random));
+    else
+      merged += coarsen_both(on, host, some_families(host, 2, random), random);
+    for (Index const c : host.leaves()) deepest = std::max(deepest, host.cell(c).level);
+    auto const next = random.below(5);
+    if (next == 0 && round > 2) {
+      on.tree.take_back();
+      host = kept;
+      check_same(on.tree, host);
+      ++taken_back;
+    } else if (next < 4) {
+      on.tree.keep();
+      kept = host;
+    }
+  }
+  CHECK(merged > 3);
+  CHECK(taken_back > 0);
+  CHECK(deepest > 1);
+  on.tree.keep();
+}
+/// Merges all that can be merged.
+template <class B, int Dim>
+void merge_all(TreeBeside<B>& on, Hierarchy<Dim>& host) {
+  Random random(6);
+  while (coarsen_both(on, host, host.leaves(), random) > 0) {
+  }
+}
+
+/// The same from a mesh, back to it, and back to where that began.
+template <class B, class M>
+void check_changes_of(B const& backend, M const& mesh, int rounds) {
+  Hierarchy<M::dim> host(mesh);
+  auto const first = state(host);
+  TreeBeside<B> on(backend, host);
+  check_changes(on, host, rounds);
+  auto const changed = host;
+  merge_all(on, host);
+  CHECK(std::tuple(listed(on.tree.cells()), listed(on.tree.edges()), listed(on.tree.sides()),
+                   on.tree.sizes().nodes) == first);
+  on.tree.take_back();
+  check_same(on.tree, changed);
+}
+
+TEST_CASE("trees of every cell are coarsened in a backend's memory", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_changes_of(backend, regular_mesh<Tri3>(5), 20);
+    check_changes_of(backend, regular_mesh<Quad4>(5), 20);
+    check_changes_of(backend, regular_mesh<Tet4>(2), 14);
+    check_changes_of(backend, regular_mesh<Hex8>(3), 14);
+    check_changes_of(backend, regular_mesh<Wedge6>(3), 14);
+    check_changes_of(backend, regular_mesh<Pyramid5>(2), 14);
+    check_changes_of(backend, mixed_mesh(4), 20);
+  });
+}
+
+TEST_CASE("trees of quadratic elements are coarsened in a backend's memory", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_changes_of(backend, mesh::raised<Tri6>(regular_mesh<Tri3>(4)), 20);
+    check_changes_of(backend, mesh::raised<Quad9>(regular_mesh<Quad4>(4)), 20);
+    check_changes_of(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(2)), 14);
+    check_changes_of(backend, mesh::raised<Hex27>(regular_mesh<Hex8>(3)), 14);
+  });
+}
+
+/// A mesh of which some leaves got another degree, and some others another shape, before it came to the backend.
+template <class B, class M>
+void check_converted(B const& backend, M const& mesh, CellNodes has, Division division) {
+  Hierarchy<M::dim> host(mesh);
+  Random random(4);
+  for (int round = 0; round < 2; ++round) {
+    host.refine(some_leaves(host, host.leaf_count() / 3, random));
+    std::vector<CellConversion> conversions;
+    for (Index const c : some_leaves(host, 3, random))
+      if (host.cell(c).has == CellNodes::corners) conversions.push_back({c, has});
+    host.raise(conversions);
+  }
+  std::vector<Index> lowered;
+  for (Index const c : some_leaves(host, 3, random))
+    if (host.cell(c).has != CellNodes::corners) lowered.push_back(c);
+  host.merge({}, lowered);
+  std::vector<CellSplit> splits;
+  for (Index const c : some_leaves(host, 6, random))
+    if (host.cell(c).has == CellNodes::corners && division != Division::refined)
+      splits.push_back({c, division});
+  host.split(splits);
+  CHECK(host.tree().lists().converted.size() > 2);
+  CHECK((division == Division::refined || splits.size() > 1));
+
+  TreeBeside<B> on(backend, host);
+  check_same(on.tree, host);
+  check_changes(on, host, 14);
+  auto const changed = host;
+  merge_all(on, host);
+  on.tree.take_back();
+  check_same(on.tree, changed);
+}
+
+TEST_CASE("trees of several degrees and shapes are coarsened in a backend's memory", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_converted(backend, regular_mesh<Tri3>(5), CellNodes::edges, Division::refined);
+    check_converted(backend, regular_mesh<Quad4>(6), CellNodes::all, Division::four_triangles);
+    check_converted(backend, regular_mesh<Tet4>(3), CellNodes::edges, Division::refined);
+    check_converted(backend, regular_mesh<Hex8>(4), CellNodes::all, Division::six_pyramids);
+    check_converted(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(3)), CellNodes::edges,
+                    Division::refined);
+  });
+}
+
+TEST_CASE("families that have a reason to stay are not merged in a backend's memory",
+          "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<2> host(regular_mesh<Quad4>(2));  // two side by side
+    REQUIRE(host.cells().size() == 2);
+    TreeBeside<B> on(backend, host);
+    refine_both(on, host, {0, 1});
+    refine_both(on, host, {6});  // a corner of cell 1 at cell 0
+    REQUIRE(host.cells().size() == 14);
+    auto const merged = [&](std::vector<Index> const& marked) {
+      auto const before = state(host);
+      auto const done = on.coarsen(marked);
+      if (done.merged == 0) {
+        CHECK(done.parents == nullptr);
+        check_same(on.tree, host);
+      }
+      return done.merged;
+    };
+    on.tree.keep();
+    CHECK(merged({}) == 0);
+    CHECK(merged({2, 3, 4, 5}) == 0);           // beside cells two levels finer
+    CHECK(merged({6, 7, 8, 9}) == 0);           // one of them is divided
+    CHECK(merged({7, 8, 9, 10, 11, 12}) == 0);  // not all are marked
+    CHECK(merged({0, 1, 6, 7}) == 0);
+    CHECK(merged({2, 3, 4, 5, 10, 11, 12, 13}) == 1);  // what is finer goes as late
+    on.tree.take_back();
+    CHECK(merged({10, 13, 11, 12, 10}) == 1);
+    CHECK(merged({6, 7, 8, 9, 2, 5, 4, 3}) == 2);
+    CHECK(on.tree.sizes().cells == 2);
+    on.tree.take_back();
+    check_same(on.tree, host);
+  });
+}
+
+TEST_CASE("memory of a tree that is refined and coarsened again and again does not grow",
+          "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<3> host(regular_mesh<Tet4>(4));
+    TreeBeside<B> on(backend, host);
+    Random random(2);
+    auto const marked = some_leaves(host, 4, random);
+    auto const coarsen_all = [&] {
+      std::vector<Index> cells(static_cast<std::size_t>(on.tree.sizes().cells));
+      std::iota(cells.begin(), cells.end(), Index{0});
+      return on.coarsen(cells).merged;
+    };
+    std::size_t bytes = 0;
+    for (int round = 0; round < 30; ++round) {
+      on.refine(marked);
+      on.tree.keep();
+      if (round % 3 == 1) {
+        REQUIRE(coarsen_all() > 0);
+        on.tree.take_back();
+      }
+      while (coarsen_all() > 0) {
+      }
+      if (round % 2 == 0) on.refine(marked);  // kept together
+      while (coarsen_all() > 0) {
+      }
+      on.tree.keep();
+      if (round == 3) bytes = on.tree.bytes();
+      if (round > 3) CHECK(on.tree.bytes() == bytes);
+    }
+    check_same(on.tree, host);
+  });
+}
+
+}  // namespace pliant::test::tree_on_coarsening_suite
