@@ -19,8 +19,8 @@
 
 namespace pliant {
 
-/// The cells, edges and sides of a CellTree in a backend's memory, where they are refined and coarsened. What changed can be taken back
-/// until it is kept.
+/// The cells, edges and sides of a CellTree in a backend's memory, where they are refined and coarsened. What changed can be
+/// taken back until it is kept.
 template <Backend B>
 class TreeOn {
   template <class U>
@@ -96,7 +96,8 @@ class TreeOn {
   /// Merges the children of refined cells, all of which are marked, as Hierarchy::coarsen does: a family stays where one of its
   /// children is not marked, is divided or has another degree than the others, and where it touches cells two levels finer
   /// than the parent. Parents take the degree of their children. Cells, edges, sides and nodes that nothing uses any more
-  /// go, but for those of the initial mesh, and the others keep their order and move up. `marked`: as for `refine`.
+  /// go, but for those of the initial mesh, and the others keep their order and move up. `marked`: as for `refine`. Throws
+  /// Error where memory runs out; what was kept is there then after take_back.
   Coarsened coarsen(Index const* marked, Index count) {
     auto const done = coarsening_(backend_, lists_, initial_, sizes(), stamps_, marked, count);
     now_.nodes = done.now.nodes;
