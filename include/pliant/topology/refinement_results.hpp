@@ -37,8 +37,8 @@ struct Coarsening {
 struct Coarsened {
   Index merged = 0;                ///< how many cells are leaves again; of none, there are no lists
   Index const* parents = nullptr;  ///< (merged): these, by their old numbers, ascending
-  TreeSizes initial;               ///< of the initial mesh, whose cells and nodes keep their numbers
-  TreeSizes before, now;           ///< how many there were, and are
+  TreeSizes initial;      ///< of the initial mesh, whose cells and nodes keep their numbers
+  TreeSizes before, now;  ///< how many there were, and are
   /// (before.nodes - initial.nodes): the new number of node initial.nodes + k is nodes[k]; −1: gone.
   Index const* nodes = nullptr;
   Index const* cells = nullptr;  ///< (before.cells - initial.cells): the same for cells
