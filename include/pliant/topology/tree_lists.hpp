@@ -45,7 +45,9 @@ struct TreeLists {
   }
 
   /// The lists as loops see them, until one of them changes its size or makes entries its own.
-  [[nodiscard]] TreeView view() const { return {cells.pages(), edges.pages(), sides.pages(), HostThreads::now() > 1}; }
+  [[nodiscard]] TreeView view() const {
+    return {cells.pages(), edges.pages(), sides.pages(), HostThreads::now() > 1};
+  }
   /// See TreeView.
   [[nodiscard]] CellNodeList nodes_of(Index c) const { return view().nodes_of(c); }
 
