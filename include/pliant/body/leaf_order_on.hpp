@@ -15,7 +15,7 @@ namespace pliant {
 namespace detail {
 
 /// Notes where leaves were divided, by their places: into how many.
-struct MarkDivided {
+struct MarkDividedPlaces {
   CellSplit const* leaves;
   LeafParts const* parts;
   Index const* places;
@@ -107,8 +107,8 @@ class LeafOrderOn {
     detail::grow(backend_, from_, static_cast<std::size_t>(after));
     detail::grow_keeping(backend_, places_, places_.size(),
                          static_cast<std::size_t>(tree.sizes().cells));
-    backend_.for_each(refined.leaves, detail::MarkDivided{refined.cells, refined.parts,
-                                                          places_.data(), into.data()});
+    backend_.for_each(refined.leaves, detail::MarkDividedPlaces{refined.cells, refined.parts,
+                                                                places_.data(), into.data()});
     backend_.scan(count_, detail::LeavesInPlace{into.data()}, start_.data());
     backend_.for_each(count_,
                       detail::PutLeaves{tree.view(), into.data(), leaves_.data(), start_.data(),
