@@ -256,6 +256,28 @@ TEST_CASE("families that have a reason to stay are not merged in a backend's mem
   });
 }
 
+TEST_CASE("a coarsening far from other refined cells is taken back there too", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<3> host(regular_mesh<Tet4>(6));
+    Index const far = 600;
+    REQUIRE(far / static_cast<Index>(Page<TreeCell>::entries) > 0);
+    REQUIRE(host.cells().size() > far + Page<TreeCell>::entries);
+    TreeBeside<B> on(backend, host);
+    refine_both(on, host, {far});
+    refine_both(on, host, {0});
+    on.tree.keep();
+    auto const before = host;
+    Random random(1);
+    Index const child = host.cell(far).first_child;
+    std::vector<Index> family(8);
+    std::iota(family.begin(), family.end(), child);
+    CHECK(coarsen_both(on, host, family, random) == 1);
+    CHECK(host.cell(0).first_child == child);
+    on.tree.take_back();
+    check_same(on.tree, before);
+  });
+}
+
 TEST_CASE("memory of a tree that is refined and coarsened again and again does not grow",
           "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
