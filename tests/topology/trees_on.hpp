@@ -61,4 +61,45 @@ std::vector<Index> some_leaves(Hierarchy<Dim> const& tree, std::size_t one_in, R
   return leaves;
 }
 
+/// Merges families of marked leaves here and on the host; returns how many.
+template <class B, int Dim>
+Index coarsen_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked,
+                   Random& random) {
+  auto const parents = host.families(marked);
+  auto const before = on.tree.sizes(), initial = on.tree.initial();
+  auto more = marked;  // some of them again, and cells that are no leaves
+  for (Index const c : marked)
+    if (random.below(3) == 0) more.push_back(c);
+  for (Index c = 0; c < before.cells; ++c)
+    if (!host.is_leaf(c) && random.below(2) == 0) more.push_back(c);
+  random.shuffle(more);
+  auto const done = on.coarsen(more);
+  auto const wanted = host.merge(parents);
+  REQUIRE(done.merged == static_cast<Index>(parents.size()));
+  CHECK(done.before.cells == before.cells);
+  CHECK(listed(std::vector{done.now}) == listed(std::vector{on.tree.sizes()}));
+  check_same(on.tree, host);
+  if (parents.empty()) return 0;
+  CHECK(on.taken(done.parents, done.merged) == parents);
+  auto const behind = [](std::vector<Index> const& all, Index first) {
+    return std::vector(all.begin() + first, all.end());
+  };
+  CHECK(on.taken(done.nodes, before.nodes - initial.nodes) ==
+        behind(wanted.renumbered.nodes, initial.nodes));
+  CHECK(on.taken(done.cells, before.cells - initial.cells) ==
+        behind(wanted.renumbered.cells, initial.cells));
+  return done.merged;
+}
+template <class B, int Dim>
+void refine_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked) {
+  auto const done = on.refine(marked);
+  auto const wanted = host.refine(marked);
+  REQUIRE(done.leaves == static_cast<Index>(wanted.parents.size()));
+  REQUIRE(done.new_nodes == static_cast<Index>(wanted.new_nodes.size()));
+  std::vector<Index> nodes;
+  for (auto const& node : wanted.new_nodes) nodes.push_back(node.node);
+  CHECK(numbers_of(on.taken(done.nodes, done.new_nodes), &PlacedNode::node) == nodes);
+  check_same(on.tree, host);
+}
+
 }  // namespace pliant::test
