@@ -80,6 +80,17 @@ class Replaying : private SmallPatches<T, Size> {
     return Verbs::select(n, f);
   }
   template <class F>
+  void select(Index n, F const& f, Index* to, Index* count) const {
+    run([=, *this] { Verbs::select(n, f, to, count); });
+  }
+  template <class F>
+  void scan(Index n, F const& f, Index* to) const {
+    run([=, *this] { Verbs::scan(n, f, to); });
+  }
+  void sort(Index n, std::uint64_t* keys, Index* values, int bits) const {
+    run([=, *this] { Verbs::sort(n, keys, values, bits); });
+  }
+  template <class F>
   void histogram(Index n, F const& f, std::int64_t* bins) const {
     run([=, *this] { Verbs::histogram(n, f, bins); });
   }
