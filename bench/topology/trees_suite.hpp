@@ -33,13 +33,21 @@ struct Trees {
         hanging(backend) {}
 };
 
-enum class TreePass { here, host, order, rows, hanging };
+enum class TreePass { here, host, order, rows, hanging, coarsen, coarsen_host };
 
 /// The first cell, and others at a distance from each other.
 inline std::vector<Index> cells_at_distances(Index distance, std::size_t count) {
   std::vector<Index> marked;
   for (std::size_t k = 0; k < count; ++k) marked.push_back(static_cast<Index>(k) * distance);
   return marked;
+}
+
+/// Those that a refinement of a tree made, where there are so many in all now.
+template <int Dim>
+std::vector<Index> cells_from(Hierarchy<Dim> const& before, Index cells) {
+  std::vector<Index> made;
+  for (auto c = static_cast<Index>(before.cells().size()); c < cells; ++c) made.push_back(c);
+  return made;
 }
 
 template <Element E, class B>
@@ -50,15 +58,18 @@ void time_tree(benchmark::State& state, B const& backend, int cells, TreePass pa
   auto const list = upload(backend, marked);
   auto const count = static_cast<Index>(marked.size());
   for (auto _ : state) {
-    if (pass == TreePass::host) {
+    if (pass == TreePass::host || pass == TreePass::coarsen_host) {
       auto copy = trees->host;
-      state.SetIterationTime(seconds(backend, [&] { copy.refine(marked); }));
+      double const there = seconds(backend, [&] { copy.refine(marked); });
+      auto const made = cells_from(trees->host, static_cast<Index>(copy.cells().size()));
+      double const back = seconds(backend, [&] { copy.coarsen(made); });
+      state.SetIterationTime(pass == TreePass::host ? there : back);
       continue;
     }
     auto& tree = trees->here;
     LeafOrderOn<B> order(backend, trees->first);
     NodeRowsOn<B> rows(backend, {trees->numbering.internal_node, trees->numbering.user_node, {}});
-    std::array<double, 5> times{};
+    std::array<double, 7> times{};
     auto const time = [&](TreePass which, auto const& work) {
       times[static_cast<std::size_t>(which)] = seconds(backend, work);
     };
@@ -67,6 +78,8 @@ void time_tree(benchmark::State& state, B const& backend, int cells, TreePass pa
     time(TreePass::order, [&] { order.refine(tree, refined); });
     time(TreePass::rows, [&] { rows.refine(tree, order, refined); });
     time(TreePass::hanging, [&] { trees->hanging.rows(tree, rows.of_node()); });
+    auto const made = upload(backend, cells_from(trees->host, tree.sizes().cells));
+    time(TreePass::coarsen, [&] { tree.coarsen(made.data(), static_cast<Index>(made.size())); });
     state.SetIterationTime(times[static_cast<std::size_t>(pass)]);
     tree.take_back();
   }
@@ -75,7 +88,6 @@ void time_tree(benchmark::State& state, B const& backend, int cells, TreePass pa
 
 inline void add_trees() {
   on_each_backend<double>([](auto const& backend, std::string const& name, Role role) {
-    using B = std::remove_cvref_t<decltype(backend)>;
     if (role != Role::main) return;
     auto const one = [&]<class E>(E, double elements) {
       int const cells = cells_for<E>(elements);
@@ -91,6 +103,8 @@ inline void add_trees() {
         pass("order", TreePass::order);
         pass("rows", TreePass::rows);
         pass("hanging nodes", TreePass::hanging);
+        pass("coarsen tree", TreePass::coarsen);
+        pass("coarsen tree on the host", TreePass::coarsen_host);
       };
       change("of two", cells_at_distances(1, 2));
       change("of a ten thousandth", cells_at_distances(9973, total / 10000));
