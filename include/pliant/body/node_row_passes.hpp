@@ -87,7 +87,7 @@ struct FreeRowsIn {
 
 /// New nodes and pages with free rows, both in the order of regions.
 struct NewRows {
-  Index nodes, pages, regions;
+  Index nodes, pages;
   std::uint64_t const* places;            // (nodes): see KeysOfNodes
   std::uint64_t const* regions_of_pages;  // (pages)
   Index const* free_before;               // (pages + 1): free rows of the pages before

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -81,7 +82,6 @@ class NodeRowsOn {
     Index const regions = (order.blocks() + blocks_of_region - 1) / blocks_of_region;
     detail::NewRows const rows{n,
                                partial,
-                               regions,
                                keys_.data(),
                                page_keys_.data(),
                                free_before_.data(),

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include <pliant/backend/backend.hpp>
@@ -26,8 +27,10 @@ class HangingNodesOn {
   explicit HangingNodesOn(B const& backend) : backend_(backend) {}
 
   /// Every one, ascending by the user's numbers, with its free masters; by row_of_node(the user's number), in the backend's
-  /// memory.
+  /// memory. Throws Error for a tree that mixes degrees.
   RowsOn<B> rows(TreeOn<B> const& tree, Index const* row_of_node) {
+    if (tree.mixes_degrees())
+      throw Error("hanging nodes: the tree mixes degrees; take HangingNodes, on the host");
     auto const sizes = tree.sizes();
     forget();
     detail::HangingView<Dim> const view{tree.view()};

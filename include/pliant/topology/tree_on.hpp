@@ -43,6 +43,7 @@ class TreeOn {
         now_{.nodes = lists.nodes, .leaves = lists.linear_leaves + lists.quadratic_leaves},
         kept_(now_),
         has_quadratic_(lists.quadratic_leaves > 0),
+        mixes_degrees_((has_quadratic_ && lists.linear_leaves > 0) || !lists.converted.empty()),
         first_at_edge_(upload(backend, at_edges.first())),
         cells_at_edge_(upload(backend, at_edges.cells())) {}
 
@@ -53,6 +54,9 @@ class TreeOn {
   /// Of the initial mesh, of which coarsening takes nothing away.
   [[nodiscard]] TreeSizes const& initial() const { return initial_; }
   [[nodiscard]] Index leaves() const { return now_.leaves; }
+  /// Whether the tree that it was made of had leaves with corners only beside others, or cells of another degree than in the
+  /// initial mesh.
+  [[nodiscard]] bool mixes_degrees() const { return mixes_degrees_; }
   /// How many bytes its lists take.
   [[nodiscard]] std::size_t bytes() const { return lists_.bytes(); }
   /// Copies of the lists on the host.
@@ -224,7 +228,7 @@ class TreeOn {
   detail::PagedTree<B> lists_;
   TreeSizes initial_;
   Counts now_, kept_;
-  bool has_quadratic_;
+  bool has_quadratic_, mixes_degrees_;
   Array<Index> first_at_edge_, cells_at_edge_;  // see CellsAtEdges
   // Of a change.
   detail::Stamps<B> stamps_;  // by cell
