@@ -37,8 +37,8 @@ void live(B const& backend, M const& mesh, unsigned seed, Tally& tally) {
     for (auto const& h : *hanging) hangs[static_cast<std::size_t>(h.node)] = true;
     bool masses = true;
     for (std::size_t i = 0; i < hangs.size(); ++i)
-      masses = masses && (hangs[i] ? body.parts().layout.mass_list[i] == 0
-                                   : body.parts().layout.mass_list[i] > 0);
+      masses = masses && (hangs[i] ? body.parts().layout.mass_list()[i] == 0
+                                   : body.parts().layout.mass_list()[i] > 0);
     CHECK(masses);
     CHECK(total_mass(body) == Approx(soft.density).epsilon(1e-13));
     REQUIRE(std::isfinite(largest(body.displacements())));

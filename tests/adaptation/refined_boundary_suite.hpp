@@ -35,7 +35,7 @@ TEST_CASE("a family keeps the momentum of distorted parents", "[adaptation]") {
     auto const momentum = [&] {
       auto p = body.velocities();
       for (std::size_t i = 0; i < p.size(); ++i)
-        for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
+        for (double& x : p[i]) x *= body.parts().layout.mass_list()[i];
       return total(p);
     };
     auto const before = momentum();

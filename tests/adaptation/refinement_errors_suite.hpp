@@ -21,7 +21,7 @@ struct Portrait {
         u(body.displacements()),
         v(body.velocities()),
         f(body.forces()),
-        masses(body.parts().layout.mass_list),
+        masses(body.parts().layout.mass_list()),
         strain(strain_energy(body)),
         kinetic(kinetic_energy(body)),
         time(body.time()),

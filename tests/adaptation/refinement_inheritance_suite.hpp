@@ -131,7 +131,7 @@ TEST_CASE("conditions and loads on nodes stay with these nodes", "[adaptation]")
     CentralDifference step{{.step = dt}};
     step(body);
     CHECK(body.displacements()[5][0] ==
-          Approx(dt * dt / 2 * 0.25 / body.parts().layout.mass_list[5]).epsilon(1e-12));
+          Approx(dt * dt / 2 * 0.25 / body.parts().layout.mass_list()[5]).epsilon(1e-12));
   });
 }
 

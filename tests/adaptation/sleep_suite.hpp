@@ -481,7 +481,7 @@ TEST_CASE("what sleep takes is booked, and its residual told", "[adaptation]") {
       told = told || (entry.action == "sleep" && entry.kinetic_energy == found.energy);
     CHECK(told);
     // A node would not gain the threshold within for_steps, up to the next look.
-    auto const& mass = body.parts().layout.mass_list;
+    auto const& mass = body.parts().layout.mass_list();
     CHECK(found.residual <= 2 * 5e-3 * *std::ranges::max_element(mass) / (16 * step.step()));
   });
 }

@@ -160,7 +160,7 @@ auto all_of(TheBody& body) {
                     body.state().prescribed->conditions.size(),
                     body.time(),
                     body.steps(),
-                    body.parts().layout.mass_list};
+                    body.parts().layout.mass_list()};
 }
 
 TEST_CASE("a call that is refused leaves the body as it was", "[body]") {

@@ -160,7 +160,7 @@ TEST_CASE("a load accelerates its node by load over mass", "[body]") {
       Point<2> const load = i == 5 ? Point<2>{3, -1} : i == 11 ? Point<2>{0, 2} : Point<2>{};
       for (std::size_t k = 0; k < 2; ++k)
         CHECK(u[i][k] ==
-              Approx(dt * dt / 2 * load[k] / body.parts().layout.mass_list[i]).epsilon(epsilon));
+              Approx(dt * dt / 2 * load[k] / body.parts().layout.mass_list()[i]).epsilon(epsilon));
     }
   });
 }

@@ -142,7 +142,7 @@ TEST_CASE("a static solution is at rest with its memory", "[body]") {
       auto const u = body.displacements();
       auto left = body.forces();
       for (std::size_t i = 0; i < left.size(); ++i)
-        left[i][1] -= 0.3 * body.parts().layout.mass_list[i];
+        left[i][1] -= 0.3 * body.parts().layout.mass_list()[i];
       for (Index i : nodes_of(mesh.boundary("left"))) left[static_cast<std::size_t>(i)] = {};
       CHECK(largest(left) < 1e-11);
       step(body, 200);

@@ -58,7 +58,7 @@ TEMPLATE_TEST_CASE("bodies do not depend on the number of threads", "[body]", Tr
     for (auto& x : u) x[0] *= 0.01 * x[1];
     body.set_displacements(u);
     auto const& layout = body.parts().layout;
-    return std::tuple{layout.mass_list, layout.mass_in_all, download<double>(layout.mass),
+    return std::tuple{layout.mass_list(), layout.mass_in_all, download<double>(layout.mass),
                       download<double>(layout.rest), body.forces()};
   });
   CHECK((made.first == made.second));
@@ -88,8 +88,8 @@ TEMPLATE_TEST_CASE("changes of the mesh do not depend on the number of threads",
     }
     auto const& layout = body.parts().layout;
     return std::tuple{counts,
-                      layout.own_masses,
-                      layout.mass_list,
+                      layout.own_masses(),
+                      layout.mass_list(),
                       body.mesh().nodes,
                       body.mesh().tables,
                       body.displacements(),

@@ -38,7 +38,7 @@ TEST_CASE("the energies are those of the state", "[body]") {
 
     double kinetic = 0, potential = -(2 * u[3][0] + 4 * u[3][1]);
     for (std::size_t i = 0; i < u.size(); ++i) {
-      double const m = body.parts().layout.mass_list[i];
+      double const m = body.parts().layout.mass_list()[i];
       kinetic += m * (v[i][0] * v[i][0] + v[i][1] * v[i][1]) / 2;
       potential -= m * (1.5 * u[i][0] - 9 * u[i][1]);
     }

@@ -29,7 +29,7 @@ TEST_CASE("masses add up to density times volume, about the right centre", "[for
     auto const mesh = distorted_mesh<typename F::element>(5);
 
     auto const body = body_among_all<F>(B{}, mesh);
-    auto const& masses = body.parts().layout.mass_list;
+    auto const& masses = body.parts().layout.mass_list();
 
     double sum = 0;
     Point<F::dim> centre{};

@@ -38,7 +38,7 @@ TEMPLATE_TEST_CASE("a constant body load is what consistent masses weigh", "[bod
     auto const body =
         body_of<Formulation<TestType, Gauss<2>, Hooke>>(Reference<double>{}, mesh, {1, 0.3, 1});
     for (std::size_t i = 0; i < loads.size(); ++i)
-      CHECK(loads[i][1] == Approx(-10 * body.parts().layout.mass_list[i]).epsilon(1e-12));
+      CHECK(loads[i][1] == Approx(-10 * body.parts().layout.mass_list()[i]).epsilon(1e-12));
   }
 }
 

@@ -106,7 +106,7 @@ void assign(Body& body, int i) {
                 last = table.elements.patch_bounds()[static_cast<std::size_t>(p) + 1];
     for (Index e = first; e < last; ++e) {
       bool const is_some = i % 2 == 0 ? e == first : p % 3 < 2 && e % (5 + i) < 2;
-      (is_some ? some : others).push_back(table.numbers[e]);
+      (is_some ? some : others).push_back(table.user_element(e));
     }
   }
   body.template assign<First>(others);
@@ -139,7 +139,7 @@ void compare(Body& body, int changes, Assign const& assign_groups) {
         marked.push_back(static_cast<Index>(e));
     auto const& table = body.parts().layout.template table<E>();
     for (Index e = 0; i % 6 == 1 && e < 100; ++e)  // of the first chapter, which gets another patch
-      marked.push_back(table.numbers[e]);
+      marked.push_back(table.user_element(e));
     if (back)
       coarsen(body, {marked});
     else
@@ -147,7 +147,7 @@ void compare(Body& body, int changes, Assign const& assign_groups) {
 
     auto const& parts = body.parts();
     Layout anew(parts.backend, *parts.state.topology, parts.material, parts.groups, &parts.layout,
-                parts.layout.node_rows);
+                parts.layout.node_rows());
     auto const& elements = parts.layout.template table<E>().elements;
     auto& fresh = anew.template table<E>().elements;
     constexpr int groups = Layout::template Table<E>::groups;

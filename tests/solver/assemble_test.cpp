@@ -124,7 +124,7 @@ TEST_CASE("reactions are the residual that is assembled", "[solver]") {
         auto const i = static_cast<std::size_t>(condition.nodes[n]);
         for (std::size_t k = 0; k < 2; ++k) {
           double const pull = force[static_cast<Eigen::Index>(2 * i + k)] +
-                              body.parts().layout.mass_list[i] * body.state().gravity[k] +
+                              body.parts().layout.mass_list()[i] * body.state().gravity[k] +
                               loads[i][k];
           CHECK(own[n][k] == Approx(condition.directions >> k & 1 ? -pull : 0).margin(1e-12));
         }

@@ -44,8 +44,8 @@ TEST_CASE("time and state go back together", "[solver]") {
       double sum = 0, mass = 0;
       auto const u = body.displacements();
       for (std::size_t i = 0; i < u.size(); ++i) {
-        sum += body.parts().layout.mass_list[i] * u[i][1];
-        mass += body.parts().layout.mass_list[i];
+        sum += body.parts().layout.mass_list()[i] * u[i][1];
+        mass += body.parts().layout.mass_list()[i];
       }
       return sum / mass;
     };

@@ -8,7 +8,7 @@ template <class TheBody>
 FieldOf<TheBody::dim> momenta(TheBody& body) {
   auto p = body.velocities();
   for (std::size_t i = 0; i < p.size(); ++i)
-    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
+    for (double& x : p[i]) x *= body.parts().layout.mass_list()[i];
   return p;
 }
 

@@ -58,14 +58,14 @@ double growth_of_macro_step(TheBody& body, LocalSteps& step) {
   std::vector<std::pair<std::size_t, std::size_t>> free;
   auto const held = held_directions(body.parts(), std::span(body.state().prescribed->conditions));
   auto const& layout = body.parts().layout;
-  for (std::size_t i = 0; i < layout.mass_list.size(); ++i)
+  for (std::size_t i = 0; i < layout.mass_list().size(); ++i)
     for (std::size_t k = 0; k < 2; ++k)
-      if (layout.mass_list[i] > 0 &&
+      if (layout.mass_list()[i] > 0 &&
           !(held[static_cast<std::size_t>(layout.internal_of(static_cast<Index>(i)))] >> k & 1))
         free.emplace_back(i, k);
   auto const n = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd p(n, n);
-  FieldOf<2> const rest(layout.mass_list.size(), Point<2>{});
+  FieldOf<2> const rest(layout.mass_list().size(), Point<2>{});
   step(body);  // chooses levels
   for (Eigen::Index column = 0; column < n; ++column) {
     auto u = rest;
@@ -205,7 +205,7 @@ TEST_CASE("local steps keep linear momentum, and energy for long", "[solver]") {
     Point<2> sum{};
     auto const now = body.velocities();
     for (std::size_t i = 0; i < now.size(); ++i)
-      for (std::size_t k = 0; k < 2; ++k) sum[k] += body.parts().layout.mass_list[i] * now[i][k];
+      for (std::size_t k = 0; k < 2; ++k) sum[k] += body.parts().layout.mass_list()[i] * now[i][k];
     return sum;
   };
   auto const before = moved();
@@ -337,7 +337,7 @@ TEST_CASE("what pulls where elements are coarse gives the impulse of its time", 
   double pushed = 0;
   auto const now = body.velocities();
   for (std::size_t i = 0; i < now.size(); ++i)
-    pushed += body.parts().layout.mass_list[i] * now[i][0];
+    pushed += body.parts().layout.mass_list()[i] * now[i][0];
 
   CHECK(pushed == Approx(pressure * body.time()).epsilon(1e-5));  // on 1 m
 }

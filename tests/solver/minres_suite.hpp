@@ -51,7 +51,7 @@ struct Sheet {
     stiffness = Eigen::MatrixXd(unknowns_->restrict(assemble(body, problem.start()).stiffness));
     Values masses(problem.size());
     for (Index i = 0; i < masses.size(); ++i)
-      masses[i] = parts.layout.mass_list[static_cast<std::size_t>(i / 2)];
+      masses[i] = parts.layout.mass_list()[static_cast<std::size_t>(i / 2)];
     mass = unknowns_->restrict(masses);
   }
   Eigen::MatrixXd matrix(double shift) const {

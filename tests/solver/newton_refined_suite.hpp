@@ -78,7 +78,7 @@ TEST_CASE("more freedom never raises the potential energy of an equilibrium", "[
         CHECK(gap(hanging, body.displacements()) < 1e-15);
         auto f = body.forces();
         for (std::size_t i = 0; i < f.size(); ++i)
-          f[i][1] -= 0.03 * body.parts().layout.mass_list[i];
+          f[i][1] -= 0.03 * body.parts().layout.mass_list()[i];
         for (Index i : nodes_of(body.mesh().boundary("left"))) f[static_cast<std::size_t>(i)] = {};
         CHECK(largest(f) < 1e-12);
       }

@@ -26,7 +26,7 @@ double imbalance(TheBody& body) {
   auto const loads = nodal_loads(body);
   for (std::size_t i = 0; i < f.size(); ++i)
     for (std::size_t k = 0; k < 2; ++k) {
-      f[i][k] += body.parts().layout.mass_list[i] * body.state().gravity[k];
+      f[i][k] += body.parts().layout.mass_list()[i] * body.state().gravity[k];
       if (!loads.empty()) f[i][k] += loads[i][k];
     }
   for (auto const& condition : body.state().prescribed->conditions)

@@ -234,7 +234,7 @@ TEST_CASE("iterations leave a free body its momentum, to rounding", "[solver]") 
       double sum = 0;
       auto const now = body.velocities();
       for (std::size_t i = 0; i < now.size(); ++i)
-        sum += body.parts().layout.mass_list[i] * now[i][0];
+        sum += body.parts().layout.mass_list()[i] * now[i][0];
       return sum;
     };
     double const before = momentum(), mass = 500;  // N s, kg

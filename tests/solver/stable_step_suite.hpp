@@ -98,7 +98,7 @@ void check_row_sums(B const& backend) {
   auto body = body_of<F>(backend, mesh);
   body.set_displacements(Random(3).field<F::dim>(mesh.nodes.size(), 0.03));
   auto const k = assembled_stiffness(body, body.displacements());
-  auto const& mass = body.parts().layout.mass_list;
+  auto const& mass = body.parts().layout.mass_list();
   double largest = 0;
   for (Eigen::Index i = 0; i < k.rows(); ++i)
     largest =

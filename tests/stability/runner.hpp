@@ -144,7 +144,7 @@ class Run {
     Sample s{
         .time = body_.time(), .steps = body_.steps(), .error = told_.error, .lost = told_.lost};
     auto const u = body_.displacements(), v = body_.velocities();
-    auto const& mass = body_.parts().layout.mass_list;
+    auto const& mass = body_.parts().layout.mass_list();
     s.strain = strain_energy(body_);
     s.kinetic = kinetic_energy(body_);
     s.potential = potential_energy(body_);

@@ -37,10 +37,11 @@ Eigen::VectorXd squared_frequencies(TheBody& body, FieldOf<TheBody::dim> const& 
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i)
     scale[i] =
-        1 / std::sqrt(
-                body.parts()
-                    .layout
-                    .mass_list[static_cast<std::size_t>(free[static_cast<std::size_t>(i)]) / dim]);
+        1 /
+        std::sqrt(
+            body.parts()
+                .layout
+                .mass_list()[static_cast<std::size_t>(free[static_cast<std::size_t>(i)]) / dim]);
   Eigen::MatrixXd const a = scale.asDiagonal() * k(free, free) * scale.asDiagonal();
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
 }

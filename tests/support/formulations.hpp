@@ -234,7 +234,7 @@ inline constexpr bool small_strain =
 template <class TheBody>
 double total_mass(TheBody const& body) {
   double sum = 0;
-  for (double m : body.parts().layout.mass_list) sum += m;
+  for (double m : body.parts().layout.mass_list()) sum += m;
   return sum;
 }
 

@@ -76,7 +76,7 @@ template <class TheBody>
 Point<TheBody::dim> momentum(TheBody& body) {
   auto p = body.velocities();
   for (std::size_t i = 0; i < p.size(); ++i)
-    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
+    for (double& x : p[i]) x *= body.parts().layout.mass_list()[i];
   return total(p);
 }
 template <int Dim>
@@ -176,7 +176,7 @@ TEST_CASE(
     auto body = body_of<F>(B{}, initial_mesh<typename F::element>());
     Random random(13);
     change(body, random);
-    auto const& mass = body.parts().layout.mass_list;
+    auto const& mass = body.parts().layout.mass_list();
     std::vector<bool> hangs(mass.size(), false);
     for (auto const& slave : body.mesh().slaves) hangs[static_cast<std::size_t>(slave.node)] = true;
     for (std::size_t i = 0; i < mass.size(); ++i) CHECK((hangs[i] ? mass[i] == 0 : mass[i] > 0));

@@ -55,7 +55,7 @@ template <class TheBody>
 Point<TheBody::dim> momentum(TheBody& body) {
   auto p = body.velocities();
   for (std::size_t i = 0; i < p.size(); ++i)
-    for (double& x : p[i]) x *= body.parts().layout.mass_list[i];
+    for (double& x : p[i]) x *= body.parts().layout.mass_list()[i];
   return total(p);
 }
 
@@ -162,7 +162,7 @@ void check_what_is_kept(TheBody& body, Change const& change, Undo const& undo) {
   CHECK(strain_energy(body) == Approx(energy).epsilon(1e-12));
   auto const mixed = momentum(body);
   for (std::size_t k = 0; k < dim; ++k) CHECK(mixed[k] == Approx(before[k]).margin(1e-13));
-  auto const& mass = body.parts().layout.mass_list;
+  auto const& mass = body.parts().layout.mass_list();
   std::vector<bool> hangs(mass.size(), false);
   for (auto const& slave : body.mesh().slaves) hangs[static_cast<std::size_t>(slave.node)] = true;
   for (std::size_t i = 0; i < mass.size(); ++i) CHECK((hangs[i] ? mass[i] == 0 : mass[i] > 0));

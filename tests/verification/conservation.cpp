@@ -36,7 +36,7 @@ Kept kept_by(TheBody& body) {
   Point<2> p{};
   double spin = 0;
   for (std::size_t i = 0; i < u.size(); ++i) {
-    double const m = body.parts().layout.mass_list[i];
+    double const m = body.parts().layout.mass_list()[i];
     Point<2> const x{body.mesh().nodes[i][0] + u[i][0], body.mesh().nodes[i][1] + u[i][1]};
     for (std::size_t k = 0; k < 2; ++k) p[k] += m * v[i][k];
     spin += m * (x[0] * v[i][1] - x[1] * v[i][0]);

@@ -52,7 +52,7 @@ void adapt(TheBody& body, C const& criterion, S const& strategy) {
   auto& table = parts.layout.template table<typename F::element>();
   using Table = std::remove_cvref_t<decltype(table)>;
   auto& workspace = table.criteria;
-  if (workspace.number.size() < table.numbers.size())
+  if (workspace.number.size() < static_cast<std::size_t>(table.count()))
     workspace.number = upload(parts.backend, table.user_elements());
   detail::TableRules<Table, detail::Look<F, C>> const rules{{detail::Look<F, C>{criterion}}};
   detail::evaluate_criteria(

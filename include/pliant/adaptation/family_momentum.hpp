@@ -135,7 +135,7 @@ void add_impulse_of_slaves(Transfer<M::dim> const& transfer, TouchedElements<M> 
   ValuesAt<ExactSum> masses(*v.subset);
   for (Index const node : nodes) {
     auto const i = static_cast<std::size_t>(node);
-    masses[i] = layout.own_masses[i];
+    masses[i] = layout.own_masses()[i];
   }
   auto const& come = touched.families_after();
   come.visit_all([&]<Element E>(E, Connectivity<E> const& element) {
@@ -181,8 +181,8 @@ Point<M::dim> give_momentum_back(TopologyPlan<M> const& plan, TouchedElements<M>
     for (std::size_t k = 0; k < dim; ++k)
       if (held[i] >> k & 1)
         taken[k] += impulse[i][k];
-      else if (layout.mass_list[i] > 0)
-        v[i][k] += impulse[i][k] / layout.mass_list[i];
+      else if (layout.mass_list()[i] > 0)
+        v[i][k] += impulse[i][k] / layout.mass_list()[i];
   }
   return taken;
 }

@@ -107,7 +107,7 @@ struct MergingReport {
 template <class Parts>
 auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
   HostThreads const threads(parts.backend, *parts.state.topology);
-  return plan_change(parts.state.topology, marked,
+  return plan_change(parts.state.topology.shared(), marked,
                      {parts.limits.nodes, parts.limits.elements, max_level},
                      detail::kept_parts(parts), detail::element_values_of(parts));
 }

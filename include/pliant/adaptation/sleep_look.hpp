@@ -168,7 +168,7 @@ namespace detail {
 template <Element E, class Parts>
 std::vector<bool> asleep_on(Parts const& parts) {
   auto const& table = parts.layout.template table<E>();
-  std::vector<bool> sleeps(table.numbers.size(), false);
+  std::vector<bool> sleeps(static_cast<std::size_t>(table.count()), false);
   if (!parts.awake) return sleeps;
   auto const asleep = on_host<std::uint8_t>(parts.awake->asleep);
   Index const first = parts.patch_nodes->first_of_type[Parts::layout_type::template type_of<E>];

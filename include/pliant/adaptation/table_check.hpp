@@ -143,7 +143,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
       auto const masks = download<std::uint32_t>(workspace().mesh_marks);
       for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
-        if (masks[e] != 0) lists.add(table_.numbers[static_cast<Index>(e)], masks[e]);
+        if (masks[e] != 0) lists.add(table_.user_element(static_cast<Index>(e)), masks[e]);
     }
   }
   void keep() const {

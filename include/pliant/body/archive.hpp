@@ -24,11 +24,12 @@ inline constexpr std::uint32_t archive_version = 17;
 template <class M>
 struct WriteMember {
   ByteWriter write;
-  std::shared_ptr<Topology<M> const> const& known;
+  WhenAsked<Topology<M>> known;
 
-  void operator()(char const*, std::shared_ptr<Topology<M> const> const& topology) const {
-    write.put(topology == known);
-    if (topology != known) write.put(topology);
+  void operator()(char const*, WhenAsked<Topology<M>> const& topology) const {
+    bool const same = topology.get() == known.get();
+    write.put(same);
+    if (!same) write.put(topology);
   }
   template <class U>
   void operator()(char const*, U const& member) const {
@@ -39,9 +40,9 @@ struct WriteMember {
 template <class B, class M>
 struct ReadMember {
   ByteReader<B> read;
-  std::shared_ptr<Topology<M> const> const& known;
+  WhenAsked<Topology<M>> known;
 
-  void operator()(char const*, std::shared_ptr<Topology<M> const>& topology) const {
+  void operator()(char const*, WhenAsked<Topology<M>>& topology) const {
     bool same = false;
     read.get(same);
     if (same)
@@ -189,7 +190,7 @@ void save_state(Stream& stream, Parts const& parts) {
   detail::ByteWriter const write(content);
   write.put(detail::signature_of(parts));
   State::for_each_member(detail::WriteMember<M>{write, parts.first}, parts.state);
-  write.put(parts.layout.node_rows);
+  write.put(parts.layout.node_rows());
   write.put(parts.watched_energy != nullptr);
   write.put(parts.has_checkpoint);
   if (parts.has_checkpoint)

@@ -57,7 +57,7 @@ Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfe
 /// nodes, which wait to be filled. put_in_force makes them the body's.
 template <class Parts>
 Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
-               std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
+               WhenAsked<Topology<typename Parts::mesh_type>> topology,
                std::shared_ptr<Prescribed<Parts::dim> const> prescribed) {
   Parts next{.backend = parts.backend,
              .material = parts.material,

@@ -8,6 +8,7 @@
 #include <pliant/body/element_numbers.hpp>
 #include <pliant/body/group.hpp>
 #include <pliant/body/group_laws.hpp>
+#include <pliant/body/when_asked.hpp>
 
 namespace pliant {
 
@@ -36,7 +37,7 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
 
   typename B::template Elements<E::nodes> elements;
   Laws laws;
-  ElementNumbers numbers;
+  WhenAsked<ElementNumbers> numbers;
   typename B::template Array<scalar> values;   // (values, elements)
   typename B::template Array<scalar> scratch;  // (elements), of whoever needs it
   CriteriaWorkspace<B> criteria;
@@ -44,12 +45,14 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
 
   Index count() const { return elements.count(); }
   /// The user's numbers, by the internal number.
-  std::vector<Index> const& user_elements() const { return numbers.all(); }
+  std::vector<Index> const& user_elements() const { return numbers->all(); }
+  /// Of one element, without a look at the others.
+  Index user_element(Index element) const { return (*numbers)[element]; }
 
   /// The rows of values per element, in the order of the backend's memory.
   std::vector<scalar> in_internal_order(std::vector<double> const& rows) const {
     std::vector<scalar> columns(rows.size());
-    std::size_t const n = numbers.size(), width = n > 0 ? rows.size() / n : 0;
+    std::size_t const n = static_cast<std::size_t>(count()), width = n > 0 ? rows.size() / n : 0;
     if (width > 0) {
       auto const& user_element = user_elements();
       detail::for_each_on_host(static_cast<Index>(n), 16384, [&](Index i) {
@@ -71,7 +74,7 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   }
   /// The inverse, of what an array holds.
   std::vector<Tag> tags_in_user_order(typename B::template Array<Tag> const& array) const {
-    std::vector<Tag> user(numbers.size(), 0);
+    std::vector<Tag> user(static_cast<std::size_t>(count()), 0);
     if constexpr (groups > 1) {
       auto const internal = download<Tag>(array);
       auto const& user_element = user_elements();

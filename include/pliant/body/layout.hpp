@@ -14,6 +14,7 @@
 #include <pliant/body/motion.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/body/straight.hpp>
+#include <pliant/body/when_asked.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
 
 namespace pliant {
@@ -48,11 +49,8 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   static_assert((acts<Fs> && ...), "every Group is of an element type that the mesh has");
 
   std::shared_ptr<CellOrder const> first_order;
-  detail::SumUnit mass_unit;                // by the first mesh
-  SharedList<detail::ExactSum> own_masses;  // in the user's order, slaves' with them
-  SharedList<double> mass_list;             // the same in kg, slaves' handed on
-  double mass_in_all = 0;                   // kg, of the first mesh
-  NodeRows node_rows;
+  detail::SumUnit mass_unit;  // by the first mesh
+  double mass_in_all = 0;     // kg, of the first mesh
   Index rows = 0;             // of fields of nodes: free ones are among them
   Point<dim> middle{};        // m, of the box around the first mesh: `rest` is relative to it
   Array<T> rest, f;           // (rows, 4); f with scratch rows behind
@@ -68,10 +66,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   /// topology with a tree.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
          std::tuple<Group<Fs>...> const& groups, Layout const* other = nullptr,
-         NodeRows known_rows = {})
-      : node_rows(std::move(known_rows)) {
+         NodeRows known_rows = {}) {
     if (other != nullptr) keep_from(*other);
-    make(backend, topology, material, groups, nullptr);
+    make(backend, topology, material, groups, nullptr, std::move(known_rows));
   }
   /// The same from the layout before a change.
   Layout(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
@@ -80,20 +77,27 @@ struct Layout<B, Mesh<Es...>, Fs...> {
          std::vector<Index> const& looked_at) {
     keep_from(before);
     Change const change{before, transfer, touched, looked_at};
-    make(backend, topology, material, groups, &change);
+    make(backend, topology, material, groups, &change, {});
   }
 
   /// How many nodes the mesh has.
-  Index nodes() const { return static_cast<Index>(node_rows.of_node.size()); }
+  Index nodes() const { return nodes_; }
+  NodeRows const& node_rows() const { return *node_rows_; }
+  /// Sums of the nodes' lumped masses in the user's order, slaves' with them.
+  SharedList<detail::ExactSum> const& own_masses() const { return *own_masses_; }
+  /// The same in kg, slaves' handed on.
+  SharedList<double> const& mass_list() const { return *mass_list_; }
   /// The user's numbers of nodes by the row, in the backend's memory; −1: the row is free.
   Array<Index> const& user_nodes_on(B const& backend) const {
-    if (user_node_array_.size() == 0) user_node_array_ = upload(backend, node_rows.node);
+    if (user_node_array_.size() == 0) user_node_array_ = upload(backend, node_rows().node);
     return user_node_array_;
   }
   /// The row of a node by the user's number.
-  Index internal_of(Index user) const { return node_rows.of_node[static_cast<std::size_t>(user)]; }
+  Index internal_of(Index user) const {
+    return node_rows().of_node[static_cast<std::size_t>(user)];
+  }
   /// The inverse.
-  Index user_of(Index row) const { return node_rows.node[static_cast<std::size_t>(row)]; }
+  Index user_of(Index row) const { return node_rows().node[static_cast<std::size_t>(row)]; }
 
   template <class E>
   Table<E>& table() {
@@ -112,10 +116,11 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   std::vector<Point<dim>> in_user_order(Array<T> const& array) const {
     auto const& field = on_host<T>(array);
     std::vector<Point<dim>> values(static_cast<std::size_t>(nodes()));
+    auto const& of_node = node_rows().of_node;
     for (std::size_t i = 0; i < values.size(); ++i)
       for (std::size_t k = 0; k < dim; ++k)
-        values[i][k] = static_cast<double>(
-            field[node_stride * static_cast<std::size_t>(node_rows.of_node[i]) + k]);
+        values[i][k] =
+            static_cast<double>(field[node_stride * static_cast<std::size_t>(of_node[i]) + k]);
     return values;
   }
 
@@ -128,11 +133,11 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   std::vector<T> padded(Value const& value) const {
     std::vector<T> field(static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(rows),
                          T(0));
+    auto const& of_node = node_rows().of_node;
     detail::for_each_on_host(nodes(), few_nodes, [&](Index node) {
       auto const i = static_cast<std::size_t>(node);
       for (std::size_t k = 0; k < dim; ++k)
-        field[node_stride * static_cast<std::size_t>(node_rows.of_node[i]) + k] =
-            static_cast<T>(value(i, k));
+        field[node_stride * static_cast<std::size_t>(of_node[i]) + k] = static_cast<T>(value(i, k));
     });
     return field;
   }
@@ -145,21 +150,20 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     mass_in_all = other.mass_in_all;
   }
 
-  /// `change`: null where there was none.
+  /// `change`: null where there was none. `known`: see the constructor.
   void make(B const& backend, Topology<Mesh<Es...>> const& topology, Elastic const& material,
-            std::tuple<Group<Fs>...> const& groups, Change const* change) {
+            std::tuple<Group<Fs>...> const& groups, Change const* change, NodeRows known) {
     HostThreads const threads(backend, topology);
     OrderedElements<sizeof...(Es)> ordered;
     std::optional<Numbering<Es...>> numbering;  // of a first mesh
     if (!first_order || !topology.tree) {
       numbering.emplace(topology.mesh());
       ordered.blocks = first_blocks(topology.mesh());
-      node_rows = {numbering->internal_node, std::move(numbering->user_node), {}};
+      known = {numbering->internal_node, std::move(numbering->user_node), {}};
     } else if (change == nullptr) {
       ordered = elements_in_order(topology, *first_order);
     } else {
-      std::tie(ordered, node_rows, freed_rows) =
-          detail::order_after(topology, *first_order, *change);
+      std::tie(ordered, known, freed_rows) = detail::order_after(topology, *first_order, *change);
     }
     if (!first_order) {
       first_order = std::make_shared<CellOrder const>(pliant::first_order(*numbering));
@@ -167,7 +171,9 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       middle = box.middle;
       mass_unit = detail::unit_of_masses(material.density, box.volume);
     }
-    rows = node_rows.count();
+    rows = known.count();
+    nodes_ = static_cast<Index>(known.of_node.size());
+    node_rows_ = std::move(known);
 
     Index scratch = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -205,7 +211,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       connectivity = std::move(std::get<I>(numbering->tables));
       table.numbers = ElementNumbers(std::move(numbering->user_element[I]));
     } else {
-      connectivity = rows_of_blocks<E>(topology, ordered.cells[I], blocks, !by_blocks, node_rows);
+      connectivity = rows_of_blocks<E>(topology, ordered.cells[I], blocks, !by_blocks, node_rows());
       table.numbers = ElementNumbers(std::move(ordered.cells[I]), blocks.first, topology.cells[I]);
     }
     auto const make_elements = [&](auto const&... planned) {
@@ -262,22 +268,22 @@ struct Layout<B, Mesh<Es...>, Fs...> {
   }
 
   void find_masses(Topology<Mesh<Es...>> const& topology, double density, Change const* change) {
-    if (change == nullptr) {
-      own_masses = SharedList(detail::lumped_masses(topology.mesh(), density, mass_unit));
-      mass_list = detail::in_kilograms(own_masses, mass_unit);
-    } else {
-      own_masses = detail::changed_masses(*change, density);
-      mass_list = detail::changed_in_kilograms(*change, own_masses);
-    }
+    auto own = change == nullptr
+                   ? SharedList(detail::lumped_masses(topology.mesh(), density, mass_unit))
+                   : detail::changed_masses(*change, density);
+    auto list = change == nullptr ? detail::in_kilograms(own, mass_unit)
+                                  : detail::changed_in_kilograms(*change, own);
     topology.interpolation.hand_masses(
-        [&](Index i, int) -> double& { return mass_list.edit(static_cast<std::size_t>(i)); }, 1);
+        [&](Index i, int) -> double& { return list.edit(static_cast<std::size_t>(i)); }, 1);
     if (mass_in_all == 0)
-      for (double m : mass_list) mass_in_all += m;
+      for (double m : list) mass_in_all += m;
+    own_masses_ = std::move(own);
+    mass_list_ = std::move(list);
   }
 
   void make_mass(B const& backend, double density, Change const* change) {
     auto const checked = [&](Index user) {
-      return detail::checked_mass<T>(mass_list[static_cast<std::size_t>(user)], density);
+      return detail::checked_mass<T>(mass_list()[static_cast<std::size_t>(user)], density);
     };
     if (change != nullptr) {
       std::vector<Index> places;
@@ -293,6 +299,10 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     mass = upload(backend, masses);
   }
 
+  Index nodes_ = 0;
+  WhenAsked<NodeRows> node_rows_;
+  WhenAsked<SharedList<detail::ExactSum>> own_masses_;
+  WhenAsked<SharedList<double>> mass_list_;
   mutable Array<Index> user_node_array_;  // empty until it is asked for
 };
 

@@ -56,11 +56,11 @@ std::tuple<OrderedElements<sizeof...(Es)>, NodeRows, std::vector<Index>> order_a
     Topology<Mesh<Es...>> const& topology, CellOrder const& first,
     LayoutChange<L, Mesh<Es...>> const& change) {
   auto const places = places_of_families(topology, first, change.transfer);
-  auto [rows, freed] =
-      rows_after(change.before.node_rows, change.transfer, change.touched.families_after(), places);
+  auto [rows, freed] = rows_after(change.before.node_rows(), change.transfer,
+                                  change.touched.families_after(), places);
   auto const changed = changed_blocks(first, places);
   OrderBefore<sizeof...(Es), Mesh<Es...>::dim> before{{}, change.transfer, changed};
-  std::apply([&](auto const&... table) { before.cells = {table.numbers.blocks()...}; },
+  std::apply([&](auto const&... table) { before.cells = {table.numbers->blocks()...}; },
              change.before.tables);
   auto ordered = elements_in_order(topology, first, &before);
   for (std::size_t type = 0; type < sizeof...(Es); ++type)

@@ -94,7 +94,7 @@ SharedList<ExactSum> changed_masses(LayoutChange<L, M> const& change, double den
   auto const& transfer = change.transfer;
   auto const& touched = change.touched;
   auto const& unit = change.before.mass_unit;
-  auto masses = carried_list(change.before.own_masses, transfer);
+  auto masses = carried_list(change.before.own_masses(), transfer);
   for (Index const node : touched.nodes())
     if (touched.changes_elements(node)) masses.edit(static_cast<std::size_t>(node));
   auto const &gone = touched.families_before(), &come = touched.families_after();
@@ -132,7 +132,7 @@ inline SharedList<double> in_kilograms(SharedList<ExactSum> const& masses, SumUn
 template <class L, class M>
 SharedList<double> changed_in_kilograms(LayoutChange<L, M> const& change,
                                         SharedList<ExactSum> const& masses) {
-  auto values = carried_list(change.before.mass_list, change.transfer);
+  auto values = carried_list(change.before.mass_list(), change.transfer);
   values.edit_listed(change.looked_at, [&](double& value, std::size_t k) {
     value = change.before.mass_unit.value_of(masses[static_cast<std::size_t>(change.looked_at[k])]);
   });

@@ -182,7 +182,7 @@ void set_velocities(Parts& parts, std::vector<Point<Parts::dim>> const& v) {
 namespace detail {
 template <class Parts>
 auto made_term(Parts const& parts, typename Parts::MakeTerm const& make) {
-  auto term = make(parts.backend, parts.layout.node_rows);
+  auto term = make(parts.backend, parts.layout.node_rows());
   if (!term) throw Error("body.add: there is no force term; make one whenever it is asked for");
   return term;
 }

@@ -10,6 +10,7 @@
 #include <pliant/body/group_statistics.hpp>
 #include <pliant/body/integrator_state.hpp>
 #include <pliant/body/step_schedule.hpp>
+#include <pliant/body/when_asked.hpp>
 #include <pliant/constraint/condition.hpp>
 #include <pliant/topology/topology.hpp>
 
@@ -70,8 +71,8 @@ struct State<B, Mesh<Es...>, Fs...> {
   template <class E>
   static constexpr int groups_on = detail::FormulationsOf<E, detail::TypeList<>, Fs...>::type::size;
 
-  std::shared_ptr<Topology<Mesh<Es...>> const> topology;  // shared by copies
-  std::shared_ptr<Prescribed<dim> const> prescribed;      // shared by copies
+  WhenAsked<Topology<Mesh<Es...>>> topology;          // shared by copies
+  std::shared_ptr<Prescribed<dim> const> prescribed;  // shared by copies
   Array<T> u, v;       // (nodes, 4), m and m/s; v is a pending half-kick behind `time`
   Array<T> load;       // (nodes, 4), N, as the user set it; empty while there is none
   Array<double> work;  // (Work::count), J

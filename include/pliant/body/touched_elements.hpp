@@ -61,8 +61,8 @@ class ElementsAtNodes {
     auto const& table = parts_.layout.template table<E>();
     auto found = parts_.backend.select(
         table.count(), HasMarkedNode<E::nodes>{table.elements.rows_of_nodes(), marks_.data()});
-    for (Index& e : found) e = table.numbers[e];
-    return each_once(std::move(found), table.numbers.size());
+    for (Index& e : found) e = table.user_element(e);
+    return each_once(std::move(found), static_cast<std::size_t>(table.count()));
   }
 
  private:

@@ -27,7 +27,7 @@ std::vector<Point<Parts::dim>> reactions(Parts& parts, Handle handle) {
     Point<Parts::dim> force{};
     for (std::size_t k = 0; k < Parts::dim; ++k)
       if (found->directions >> k & 1)
-        force[k] = -(f[i][k] + parts.layout.mass_list[i] * parts.state.gravity[k] +
+        force[k] = -(f[i][k] + parts.layout.mass_list()[i] * parts.state.gravity[k] +
                      (load.empty() ? 0.0 : load[i][k]));
     forces.push_back(force);
   }

@@ -22,7 +22,7 @@ BlockMatrix<TheBody::dim, TheBody::dim> mass_blocks(TheBody const& body, MassMat
     sum.stiffness.clear_values();
     for (Index i = 0; i < body.nodes(); ++i)
       for (int k = 0; k < dim; ++k)
-        sum.stiffness.at(i)[(dim + 1) * k] = parts.layout.mass_list[static_cast<std::size_t>(i)];
+        sum.stiffness.at(i)[(dim + 1) * k] = parts.layout.mass_list()[static_cast<std::size_t>(i)];
     return std::move(sum.stiffness);
   }
   sum.stiffness = stiffness_blocks(parts, {});

@@ -109,7 +109,7 @@ LeastJacobian least_jacobian_on(Parts& parts, typename Parts::ConstField u, bool
     if (!(least < found.value)) return;
     double const at =
         -parts.backend.maximum(table.count(), detail::FirstOf<T>{table.scratch.data(), least});
-    found = {least, E::name(), table.numbers[static_cast<Index>(at)]};
+    found = {least, E::name(), table.user_element(static_cast<Index>(at))};
   });
   return found;
 }

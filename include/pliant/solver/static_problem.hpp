@@ -67,7 +67,7 @@ class StaticProblem {
         for (int k = 0; k < dim; ++k)
           if (condition.directions >> k & 1) fixed[at(dim * node + k)] = true;
     for (Index i = 0; i < body.nodes(); ++i)
-      if (!(body.parts().layout.mass_list[at(i)] > 0))  // slaves, and nodes of no element
+      if (!(body.parts().layout.mass_list()[at(i)] > 0))  // slaves, and nodes of no element
         for (int k = 0; k < dim; ++k) fixed[at(dim * i + k)] = true;
     return fixed;
   }
@@ -104,7 +104,7 @@ class StaticProblem {
     if (kind == MassMatrix::lumped) {
       for (Index i = 0; i < body_.nodes(); ++i)
         for (int k = 0; k < dim; ++k)
-          f[dim * i + k] = body_.parts().layout.mass_list[at(i)] * force[at(k)];
+          f[dim * i + k] = body_.parts().layout.mass_list()[at(i)] * force[at(k)];
     } else {
       for (double& x : force) x *= body_.material().density;
       f = flat(body_loads(body_.mesh(), force));
