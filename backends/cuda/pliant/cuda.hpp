@@ -16,6 +16,7 @@
 #include <pliant/cuda/accumulate.cuh>
 #include <pliant/cuda/accumulate_fans.cuh>
 #include <pliant/cuda/context.hpp>
+#include <pliant/cuda/element_list.hpp>
 #include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/point_rows.cuh>
@@ -60,6 +61,8 @@ class Cuda {
   using Array = DeviceArray<U>;
   template <int Nodes>
   using Elements = CudaElements<T, Nodes>;
+  template <int Nodes>
+  using ElementList = CudaElementList<T, Nodes>;
   using Recording = CudaRecording;
   using Timer = CudaTimer;
   static constexpr bool orders_by_group = false;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -93,9 +94,18 @@ class LeafOrderOn {
   [[nodiscard]] Index const* places() const { return places_.data(); }
   /// By the place: that before the last change, of a child its parent's.
   [[nodiscard]] Index const* from() const { return from_.data(); }
+  /// The leaves before the last change, by their places then. There is no such change of a first mesh.
+  [[nodiscard]] Index const* before() const { return others_.data(); }
+  [[nodiscard]] Index count_before() const { return count_before_; }
   /// The place of the first leaf of each block, and behind the last one.
   [[nodiscard]] Index const* first_of_block() const { return first_.data(); }
   [[nodiscard]] Index blocks() const { return blocks_; }
+  /// A copy of first_of_block on the host.
+  [[nodiscard]] std::vector<Index> download_first_of_block() const {
+    std::vector<Index> first(static_cast<std::size_t>(blocks_) + 1);
+    first_.download(first);
+    return first;
+  }
 
   /// Puts the children of refined leaves in the place of these.
   void refine(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
@@ -115,14 +125,14 @@ class LeafOrderOn {
                                         others_.data(), places_.data(), from_.data()});
     backend_.for_each(blocks_ + 1, detail::LookUp{start_.data(), first_.data()});
     std::swap(leaves_, others_);
-    count_ = after;
+    count_before_ = std::exchange(count_, after);
   }
 
  private:
   B backend_;
   Array<Index> leaves_, others_;  // others: those before a change, or room
   Array<Index> places_, from_, start_, first_;
-  Index count_ = 0, blocks_ = 0;
+  Index count_ = 0, count_before_ = 0, blocks_ = 0;
 };
 
 }  // namespace pliant

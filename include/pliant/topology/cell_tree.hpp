@@ -171,12 +171,7 @@ class CellTree {
   /// The same as the element has them, whose volume is positive.
   [[nodiscard]] CellNodeList element_nodes(Index c) const {
     auto list = nodes_of(c);
-    if (!lists_.cells[at(c)].mirrored) return list;
-    std::swap(list.nodes[2], list.nodes[3]);
-    if (list.count == 10) {  // edges 0-1, 1-2, 2-0, 0-3, 1-3, 2-3
-      std::swap(list.nodes[5], list.nodes[8]);
-      std::swap(list.nodes[6], list.nodes[7]);
-    }
+    if (lists_.cells[at(c)].mirrored) list.mirror();
     return list;
   }
 

@@ -137,6 +137,20 @@ struct CellNodeList {
   auto end() const { return nodes.begin() + static_cast<std::ptrdiff_t>(count); }
   PLIANT_HOST_DEVICE Index operator[](std::size_t a) const { return nodes[a]; }
   PLIANT_HOST_DEVICE void push_back(Index node) { nodes[count++] = node; }
+  /// Takes the last two corners of a tetrahedron in the other order, and what lies between the corners with them.
+  PLIANT_HOST_DEVICE void mirror() {
+    swap(2, 3);
+    if (count != 10) return;
+    swap(5, 8);  // edges 0-1, 1-2, 2-0, 0-3, 1-3, 2-3
+    swap(6, 7);
+  }
+
+ private:
+  PLIANT_HOST_DEVICE void swap(std::size_t a, std::size_t b) {
+    Index const kept = nodes[a];
+    nodes[a] = nodes[b];
+    nodes[b] = kept;
+  }
 };
 
 /// How many of each there are.

@@ -35,6 +35,13 @@ struct TreeView {
     return list;
   }
 
+  /// The same as the element has them, whose volume is positive.
+  [[nodiscard]] PLIANT_HOST_DEVICE CellNodeList element_nodes(Index c) const {
+    auto list = nodes_of(c);
+    if (cells[at(c)].mirrored) list.mirror();
+    return list;
+  }
+
   /// What a change of a cell may edit: cell(c), and edge(e) and side(s) for its edges and sides and the parts that these
   /// have, which children of the cell use.
   template <class Cell, class Edge, class Side>

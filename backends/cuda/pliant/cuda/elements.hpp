@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/check_nodes.hpp>
@@ -89,7 +90,7 @@ class CudaElements {
   using View = detail::ElementView<Nodes>;
 
  public:
-  static constexpr int nodes_per_element = Nodes;
+  static constexpr int nodes_per_element = Nodes, row_width = View::width;
   CudaElements() = default;
   /// Simplices of four nodes are loaded in fans where they are many, if kernels may be given their nodes in any even
   /// order.
@@ -98,10 +99,18 @@ class CudaElements {
                NodeOrder order = NodeOrder::as_given, ElementBlocks const& blocks = {},
                CudaElements const* before = nullptr)
       : CudaElements(backend, connectivity, tags, nodes, blocks, before) {
-    constexpr auto t = detail::fan_tuning<T>();
-    bool const in_fans = order == NodeOrder::any_even && count_ >= t.least_elements;
-    if (in_fans && plan_fans(backend, {t.patch_size, t.threads}, blocks, before)) return;
-    plan(backend, tuned(count_), blocks, before);
+    plan(backend, order, blocks, before);
+  }
+  /// The same of rows that are on the device, whose numbers of nodes are not looked at: see TakesRows.
+  CudaElements(Cuda<T> const& backend, DeviceArray<Index> rows, int /* groups */,
+               DeviceArray<Tag> tags, Index /* nodes */, NodeOrder order = NodeOrder::as_given,
+               ElementBlocks const& blocks = {}, CudaElements const* before = nullptr)
+      : count_(blocks.count(rows.size() / row_width)),
+        tags_(std::move(tags)),
+        connectivity_(std::move(rows)) {
+    if (tags_.size() == 0) tags_ = backend.template array<Tag>(static_cast<std::size_t>(count_));
+    tag_data_ = tags_.data();
+    plan(backend, order, blocks, before);
   }
   /// With patches of a given size and threads per block, for tuning; small ones where the GPU has no room in
   /// shared memory for those. Throws Error when the size is no multiple of the threads.
@@ -207,6 +216,13 @@ class CudaElements {
           return fits;
         });
     return fits;
+  }
+  void plan(Cuda<T> const& backend, NodeOrder order, ElementBlocks const& blocks,
+            CudaElements const* before) {
+    constexpr auto t = detail::fan_tuning<T>();
+    bool const in_fans = order == NodeOrder::any_even && count_ >= t.least_elements;
+    if (in_fans && plan_fans(backend, {t.patch_size, t.threads}, blocks, before)) return;
+    plan(backend, tuned(count_), blocks, before);
   }
   void plan(Cuda<T> const& backend, std::array<int, 2> size_and_threads,
             ElementBlocks const& blocks = {}, CudaElements const* before = nullptr) {

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/element_blocks.hpp>
+
+// Tables of elements whose rows of nodes are in a backend's memory already.
+namespace pliant {
+
+/// Elements of a backend that take rows of nodes which are in its memory, and keep them: row_width entries for each element,
+/// of which the first are its nodes. Tags, if there are any, are there too; else all elements are of group 0. What blocks
+/// and the table before a change are for is said of PlansByBlocks, but the rows are those of all elements. Numbers of nodes
+/// may not be checked.
+template <class Elements, class B>
+concept TakesRows =
+    requires {
+      { Elements::row_width } -> std::convertible_to<int>;
+    } && std::constructible_from<Elements, B const&, typename B::template Array<Index>, int,
+                                 typename B::template Array<Tag>, Index, NodeOrder,
+                                 ElementBlocks const&, Elements const*>;
+
+/// How many entries a row of nodes has for elements_of_rows.
+template <class Elements>
+inline constexpr int row_width = Elements::nodes_per_element;
+template <class Elements>
+  requires requires {
+    { Elements::row_width } -> std::convertible_to<int>;
+  }
+inline constexpr int row_width<Elements> = Elements::row_width;
+
+namespace detail {
+
+template <class B, int Nodes>
+struct ElementListOf {
+  using type = typename B::template Elements<Nodes>;
+};
+template <class B, int Nodes>
+  requires requires { typename B::template ElementList<Nodes>; }
+struct ElementListOf<B, Nodes> {
+  using type = typename B::template ElementList<Nodes>;
+};
+
+/// The rows of some elements, one run [first, second) of them after another.
+template <int Nodes>
+std::vector<std::array<Index, Nodes>> taken_rows(Index const* rows,
+                                                 std::vector<std::pair<Index, Index>> const& runs) {
+  std::size_t count = 0;
+  for (auto const& [first, last] : runs) count += static_cast<std::size_t>(last - first);
+  std::vector<std::array<Index, Nodes>> taken;
+  taken.reserve(count);
+  for (auto const& [first, last] : runs)
+    for (Index e = first; e < last; ++e)
+      std::copy_n(rows + std::ptrdiff_t{Nodes} * e, Nodes, taken.emplace_back().begin());
+  return taken;
+}
+
+}  // namespace detail
+
+/// Elements for sum_elements and visit alone, of which no patches have to be planned where a backend has such a type, its
+/// ElementList.
+template <class B, int Nodes>
+using ElementListOn = typename detail::ElementListOf<B, Nodes>::type;
+
+/// A table of elements whose rows of nodes, (elements, row_width<Elements>), and tags, (elements) or none, are in the backend's
+/// memory: taken over where Elements is one that TakesRows, else copied. `nodes`: how many rows fields have. `before`: null, or
+/// the table before a change in which blocks stay; all rows are given then, too.
+template <class Elements, Backend B>
+Elements elements_of_rows(B const& backend, typename B::template Array<Index> rows, int groups,
+                          typename B::template Array<Tag> tags, Index nodes,
+                          NodeOrder order = NodeOrder::as_given, ElementBlocks const& blocks = {},
+                          Elements const* before = nullptr) {
+  if constexpr (TakesRows<Elements, B>) {
+    return {backend, std::move(rows), groups, std::move(tags), nodes, order, blocks, before};
+  } else {
+    constexpr int width = Elements::nodes_per_element;
+    auto const& numbers = on_host<Index>(rows);
+    auto const taken = [&](bool all) {
+      std::vector<std::pair<Index, Index>> runs;
+      if (all) runs.emplace_back(0, blocks.count(numbers.size() / width));
+      for (std::size_t b = 0; !all && b < blocks.stays.size(); ++b)
+        if (blocks.stays[b] == 0) runs.emplace_back(blocks.first[b], blocks.first[b + 1]);
+      return detail::taken_rows<width>(numbers.data(), runs);
+    };
+    if constexpr (PlansByBlocks<Elements, B>) {
+      bool const all = before == nullptr || !blocks.some_stay();
+      return {backend, taken(all), groups, download<Tag>(tags), nodes, order, blocks, before};
+    } else {
+      return {backend, taken(true), groups, download<Tag>(tags), nodes, order};
+    }
+  }
+}
+
+/// The same for sum_elements and visit alone, of all elements that have rows.
+template <int Nodes, Backend B>
+ElementListOn<B, Nodes> element_list(B const& backend, typename B::template Array<Index> rows,
+                                     int groups, typename B::template Array<Tag> tags,
+                                     Index nodes) {
+  using List = ElementListOn<B, Nodes>;
+  if constexpr (std::same_as<List, typename B::template Elements<Nodes>>)
+    return elements_of_rows<List>(backend, std::move(rows), groups, std::move(tags), nodes);
+  else
+    return {backend, std::move(rows), std::move(tags)};
+}
+
+}  // namespace pliant

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/element_blocks.hpp>
+#include <pliant/body/leaf_order_on.hpp>
+#include <pliant/element/element.hpp>
+#include <pliant/topology/shape_weights.hpp>
+#include <pliant/topology/tree_on.hpp>
+
+// The elements of a mesh of one type after a refinement, in a backend's memory: what belongs to each is taken from where it
+// was before, or comes from the tree.
+namespace pliant {
+
+namespace detail {
+
+/// Puts the rows of nodes of elements, `Width` entries of which the first are the nodes.
+template <Element E, int Width>
+struct PutElementRows {
+  TreeView tree;
+  Index const* leaves;
+  Index const *leaves_before, *from;
+  ElementRows before;    // null: all come from the tree
+  Index const* of_node;  // rows of fields
+  Index* to;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const cell = leaves[i];
+    Index* const row = to + static_cast<std::ptrdiff_t>(Width) * i;
+    if (before.nodes != nullptr && leaves_before[from[i]] == cell) {
+      Index const* const own = before[from[i]];
+      for (int a = 0; a < Width; ++a) row[a] = own[a];
+    } else if constexpr (nodes_on_cell<E> == CellNodes::corners) {
+      auto const& own = tree.cells[static_cast<std::size_t>(cell)];
+      for (int a = 0; a < E::nodes; ++a) {
+        bool const swapped = own.mirrored && (a == 2 || a == 3);  // see TreeCell
+        row[swapped ? 5 - a : a] = of_node[own.nodes[static_cast<std::size_t>(a)]];
+      }
+    } else {
+      auto const nodes = tree.element_nodes(cell);
+      for (int a = 0; a < E::nodes; ++a) row[a] = of_node[nodes[static_cast<std::size_t>(a)]];
+    }
+  }
+};
+
+/// to[i] = from[places[i]] in each of several columns.
+template <class U>
+struct InheritValues {
+  Index const* places;
+  U const* from;
+  U* to;
+  Index count_before, count, columns;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (Index k = 0; k < columns; ++k)
+      to[static_cast<std::ptrdiff_t>(count) * k + i] =
+          from[static_cast<std::ptrdiff_t>(count_before) * k + places[i]];
+  }
+};
+
+}  // namespace detail
+
+/// The rows of nodes of all elements after a refinement, for elements_of_rows: (elements, Width). Those of leaves that were
+/// there before are taken from `before`, the rows of the table of then; without nodes there, all come from the tree.
+/// `of_node`: the row of each node, by the user's number, in the backend's memory.
+template <Element E, int Width, Backend B>
+typename B::template Array<Index> element_rows(B const& backend, TreeView const& tree,
+                                               LeafOrderOn<B> const& order, Index const* of_node,
+                                               ElementRows const& before = {nullptr, Width}) {
+  static_assert(Width >= E::nodes);
+  auto rows = zeros<Index>(backend, static_cast<std::size_t>(order.count()) * Width);
+  backend.for_each(order.count(),
+                   detail::PutElementRows<E, Width>{tree, order.leaves(), order.before(),
+                                                    order.from(), before, of_node, rows.data()});
+  return rows;
+}
+
+/// The blocks of the elements after a refinement; those of which no leaf was divided stay, as they have as many leaves as before.
+/// `first_before`: the blocks before it. Waits for the backend.
+template <Backend B>
+ElementBlocks blocks_after_refinement(LeafOrderOn<B> const& order,
+                                      std::vector<Index> first_before) {
+  ElementBlocks blocks{order.download_first_of_block(), {}, std::move(first_before)};
+  auto const &now = blocks.first, &then = blocks.first_before;
+  for (std::size_t b = 0; b + 1 < now.size(); ++b)
+    blocks.stays.push_back(now[b + 1] - now[b] == then[b + 1] - then[b] ? 1 : 0);
+  return blocks;
+}
+
+/// Values per element after a refinement, (columns, elements): each has those that it had before, or that its parent had.
+template <class U, Backend B>
+typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> const& order,
+                                               U const* before, Index columns = 1) {
+  auto values = zeros<U>(
+      backend, static_cast<std::size_t>(order.count()) * static_cast<std::size_t>(columns));
+  backend.for_each(order.count(),
+                   detail::InheritValues<U>{order.from(), before, values.data(),
+                                            order.count_before(), order.count(), columns});
+  return values;
+}
+
+}  // namespace pliant

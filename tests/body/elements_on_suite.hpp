@@ -1,0 +1,293 @@
+#pragma once
+
+#include <cstring>
+#include <set>
+
+#include <pliant/backend/elements_of_rows.hpp>
+#include <pliant/body/element_numbers_on.hpp>
+#include <pliant/body/element_rows_on.hpp>
+#include <pliant/body/element_table.hpp>
+
+#include "body/refined_mesh.hpp"
+#include "support/formulations.hpp"
+#include "support/list_backends.hpp"
+#include "support/repeatable.hpp"
+
+// What belongs to the elements of a mesh that is refined in a backend's memory, beside what the host makes of the same mesh.
+namespace pliant::test::elements_on_suite {
+
+/// Springs between all nodes of an element, of twice the stiffness in group 1.
+template <int Nodes, int Dim>
+struct SpringForce {
+  static constexpr bool symmetric = true;
+  template <int G, class V>
+  PLIANT_HOST_DEVICE V operator()(GroupNumber<G>, V const& x) const {
+    using S = std::remove_cvref_t<decltype(x(0, 0))>;
+    V out = x;
+    for (int k = 0; k < Dim; ++k) {
+      auto sum = x(0, k);
+      for (int a = 1; a < Nodes; ++a) sum = sum + x(a, k);
+      for (int a = 0; a < Nodes; ++a) out(a, k) = S(G + 1) * (S(Nodes) * x(a, k) - sum);
+    }
+    return out;
+  }
+};
+/// Weighs nodes by their places, so that no two orders of them give the same.
+template <int Nodes, int Dim>
+struct WeightedSquares {
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& x) const {
+    using S = std::remove_cvref_t<decltype(x(0, 0))>;
+    S sum = S(0);
+    for (int k = 0; k < Dim; ++k)
+      for (int a = 0; a < Nodes; ++a) sum = sum + S(G + 1) * S(a + 1) * x(a, k) * x(a, k);
+    return sum;
+  }
+};
+
+#if defined(__CUDACC__)
+template <class B, class View>
+bool same_patches(B const& backend, View const& one, View const& other, Index patches,
+                  Index units) {
+  auto const same = [&](auto const* a, auto const* b, Index count) {
+    if ((a == nullptr) != (b == nullptr)) return false;
+    if (a == nullptr) return true;
+    auto const x = taken(backend, a, count), y = taken(backend, b, count);
+    return std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+  };
+  return one.capacity.nodes == other.capacity.nodes && one.capacity.fans == other.capacity.fans &&
+         one.capacity.slots == other.capacity.slots &&
+         one.capacity.diagonals == other.capacity.diagonals &&
+         same(one.units, other.units, units) &&
+         same(one.nodes, other.nodes, patches * one.capacity.nodes) &&
+         same(one.diagonals, other.diagonals, patches * one.capacity.diagonals);
+}
+#endif
+
+/// Tables of a mesh that is refined: from rows in the backend's memory, and from connectivity of the host.
+template <class B, Element E>
+struct Tables {
+  using T = typename B::scalar;
+  using M = Mesh<E>;
+  using Elements = typename B::template Elements<E::nodes>;
+  template <class U>
+  using Array = typename B::template Array<U>;
+  static constexpr int groups = 2, dim = E::dim, width = row_width<Elements>;
+  static constexpr bool by_blocks = PlansByBlocks<Elements, B>;
+
+  RefinedMesh<B, E> mesh;
+  B const& backend;
+  std::vector<Tag> first_tags;       // by cell
+  std::vector<double> first_values;  // by cell, then by column
+  Elements on, host;
+  Array<Tag> tags;
+  Array<double> values;  // (2, elements)
+  ElementNumbersOn<B> numbers;
+  ElementBlocks blocks;
+  std::vector<std::vector<Index>> leaves_of_blocks;
+
+  Tables(B const& given, M const& of) : mesh(given, of), backend(mesh.backend) {
+    Random random(3);
+    auto const count = at(mesh.first.count());
+    std::vector<Tag> own_tags;
+    std::vector<double> own_values(2 * count);
+    for (std::size_t c = 0; c < count; ++c) {
+      first_tags.push_back(static_cast<Tag>(random.below(2)));
+      for (int k = 0; k < 2; ++k) first_values.push_back(random());
+    }
+    for (Index const c : mesh.first.cells) own_tags.push_back(first_tags[at(c)]);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < 2; ++k)
+        own_values[k * count + i] = first_values[2 * at(mesh.first.cells[i]) + k];
+    tags = upload(backend, own_tags);
+    values = upload(backend, own_values);
+    blocks.first = mesh.order.download_first_of_block();
+    make({nullptr, width}, false);
+  }
+
+  void refine(std::vector<Index> const& marked) {
+    mesh.refine(marked);
+    tags = inherited_values(backend, mesh.order, std::as_const(tags).data());
+    values = inherited_values(backend, mesh.order, std::as_const(values).data(), 2);
+    blocks = blocks_after_refinement(mesh.order, blocks.first);
+    make(on.rows_of_nodes(), true);
+  }
+
+  Array<Index> rows(ElementRows const& before) {
+    return element_rows<E, width>(backend, mesh.tree.view(), mesh.order, mesh.rows.of_node(),
+                                  before);
+  }
+  Array<Tag> copy_of_tags() {
+    auto copy = zeros<Tag>(backend, tags.size());
+    detail::copy_values(backend, std::as_const(tags).data(), copy.data(), tags.size());
+    return copy;
+  }
+
+  void make(ElementRows const& before, bool changed) {
+    Index const node_rows = mesh.rows.count();
+    on = elements_of_rows(backend, rows(before), groups, copy_of_tags(), node_rows, node_order<E>,
+                          blocks, changed ? &on : nullptr);
+    numbers.find(backend, mesh.tree, mesh.order);
+    check_rows(node_rows, changed);
+    check_results(node_rows);
+  }
+
+  /// Rows, numbers, tags and values are those that follow from the tree on the host.
+  void check_rows(Index node_rows, bool changed) {
+    std::vector<Index> divided, arriving;
+    auto const cells = static_cast<Index>(mesh.host->cells().size());
+    for (Index c = 0; c < cells; ++c)
+      if (!mesh.host->is_leaf(c)) divided.push_back(c);
+    auto const set = CellSet::range(0, cells).changed(
+        divided, cells, [](Index c) { return c; }, arriving);
+    Topology<M> const topology(mesh.host, {set});
+    auto const ordered = elements_in_order(topology, mesh.first);
+    auto wanted = ordered.blocks[0];
+    REQUIRE(blocks.first == wanted.first);
+    std::vector<std::vector<Index>> leaves;
+    for (auto const& own : ordered.cells[0]) leaves.push_back(own->cells);
+    if (changed) {
+      for (std::size_t b = 0; b < leaves.size(); ++b)
+        wanted.stays.push_back(leaves[b] == leaves_of_blocks[b] ? 1 : 0);
+      CHECK(blocks.stays == wanted.stays);
+      wanted.first_before = blocks.first_before;
+    }
+    leaves_of_blocks = leaves;
+
+    auto const of_nodes = mesh.rows.download_all();
+    auto const all = rows_of_blocks<E>(topology, ordered.cells[0], wanted, true, of_nodes);
+    std::vector<Index> padded;
+    for (auto const& row : all) {
+      padded.insert(padded.end(), row.begin(), row.end());
+      padded.resize(padded.size() + width - E::nodes, 0);
+    }
+    REQUIRE(on.count() == static_cast<Index>(all.size()));
+    CHECK(taken(backend, on.rows_of_nodes().nodes, on.count() * width) == padded);
+
+    ElementNumbers const expected(ordered.cells[0], wanted.first, set);
+    REQUIRE(numbers.count() == on.count());
+    CHECK(taken(backend, numbers.numbers(), numbers.count()) == expected.all());
+    CHECK(taken(backend, numbers.cells(), numbers.count()) ==
+          std::vector<Index>(set.begin(), set.end()));
+
+    std::vector<Tag> tags_wanted;
+    std::vector<double> values_wanted(2 * all.size());
+    auto const leaves_now = mesh.leaves();
+    for (std::size_t i = 0; i < leaves_now.size(); ++i) {
+      Index root = leaves_now[i];
+      while (mesh.host->cell(root).parent >= 0) root = mesh.host->cell(root).parent;
+      tags_wanted.push_back(first_tags[at(root)]);
+      for (std::size_t k = 0; k < 2; ++k)
+        values_wanted[k * all.size() + i] = first_values[2 * at(root) + k];
+    }
+    CHECK(download<Tag>(tags) == tags_wanted);
+    CHECK(download<Tag>(on.tags()) == tags_wanted);
+    CHECK(download<double>(values) == values_wanted);
+
+    if constexpr (by_blocks)
+      host = Elements(
+          backend, rows_of_blocks<E>(topology, ordered.cells[0], wanted, !changed, of_nodes),
+          groups, tags_wanted, node_rows, node_order<E>, wanted, changed ? &host : nullptr);
+    else
+      host = Elements(backend, all, groups, tags_wanted, node_rows, node_order<E>);
+  }
+
+  /// Loops over both tables give the same.
+  void check_results(Index node_rows) {
+    CHECK(on.patch_size() == host.patch_size());
+    CHECK(std::ranges::equal(std::span<Index const>(on.patch_bounds()),
+                             std::span<Index const>(host.patch_bounds())));
+    CHECK(on.scratch_nodes() == host.scratch_nodes());
+#if defined(__CUDACC__)
+    REQUIRE(on.has_fans() == host.has_fans());
+    if (auto const a = on.fan_view({}), b = host.fan_view({}); on.has_fans())
+      CHECK(same_patches(backend, a, b, on.patch_count(),
+                         detail::FanPlanner::first_unit(on.patch_count(), on.count(), a.capacity)));
+    else
+      CHECK(same_patches(backend, on.patch_view({}), host.patch_view({}), on.patch_count(),
+                         on.count()));
+#endif
+    Random random(9);
+    auto const values_of_field = [&](Index count) {
+      std::vector<T> list(at(node_stride * count));
+      for (T& x : list) x = static_cast<T>(random());
+      return list;
+    };
+    auto const x = upload(backend, values_of_field(node_rows));
+    NodeField<T const, dim> const field{x.data()};
+    auto const force = [&](Elements const& table) {
+      auto f = zeros<T>(backend, at(node_stride * (node_rows + table.scratch_nodes())));
+      backend.template accumulate<groups>(table, SpringForce<E::nodes, dim>{},
+                                          NodeField<T, dim>{f.data()}, field);
+      auto list = download<T>(f);
+      list.resize(at(node_stride * node_rows));
+      return list;
+    };
+    auto const energy = [&](auto const& table) {
+      return backend.template sum_elements<groups>(table, WeightedSquares<E::nodes, dim>{}, field);
+    };
+    auto const f = force(on), wanted = force(host);
+    T largest = 0, difference = 0;
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      largest = std::max(largest, std::abs(wanted[i]));
+      difference = std::max(difference, std::abs(f[i] - wanted[i]));
+    }
+    CHECK(largest > T(1));
+    CHECK(difference <= between_runs(64 * double{std::numeric_limits<T>::epsilon()}) * largest);
+    CHECK(energy(on) == energy(host));
+    CHECK(energy(element_list<E::nodes>(backend, rows({nullptr, width}), groups, copy_of_tags(),
+                                        node_rows)) == Approx(energy(host)).epsilon(1e-13));
+  }
+};
+
+template <Element E, class B>
+void check_rounds(B const& backend, Mesh<E> const& mesh, std::size_t one_in, int rounds) {
+  Tables<B, E> tables(backend, mesh);
+  Random random(5);
+  bool some_stay = false, all_stay = true;
+  for (int round = 0; round < rounds; ++round) {
+    // In one half of the blocks alone, so that some stay.
+    auto const leaves = tables.mesh.leaves();
+    std::vector<Index> marked;
+    for (std::size_t i = 0; i < leaves.size() / 2; ++i)
+      if (random.below(one_in) == 0) marked.push_back(leaves[i]);
+    tables.refine(marked);
+    REQUIRE(tables.mesh.refined.leaves > 0);
+    for (char const stays : tables.blocks.stays) {
+      some_stay = some_stay || stays != 0;
+      all_stay = all_stay && stays != 0;
+    }
+  }
+  CHECK(some_stay);
+  CHECK_FALSE(all_stay);
+}
+
+TEST_CASE("elements refined in a backend's memory are those that the host makes", "[body]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_rounds(backend, distorted_mesh<Tri3>(80), 60, 5);
+    check_rounds(backend, distorted_mesh<Quad4>(60), 40, 4);
+    check_rounds(backend, distorted_mesh<Tet4>(10), 40, 4);
+    check_rounds(backend, distorted_mesh<Hex8>(14), 30, 3);
+    check_rounds(backend, distorted_mesh<Tet10>(5), 30, 3);
+  });
+}
+TEST_CASE("elements of single precision are those that the host makes, too", "[body]") {
+  on_each_backend<Backends<float>>([]<class B>(B const& backend) {
+    check_rounds(backend, distorted_mesh<Tet4>(8), 40, 2);
+    check_rounds(backend, distorted_mesh<Tri3>(40), 40, 2);
+  });
+}
+#if defined(__CUDACC__)
+TEST_CASE("fans of elements refined on a device are those of the host's tables", "[body]") {
+  Tables<Cuda<double>, Tet4> tables(Cuda<double>{}, regular_mesh<Tet4>(20));
+  tables.refine(tables.mesh.leaves());
+  REQUIRE(tables.on.has_fans());
+  auto leaves = tables.mesh.leaves();
+  leaves.resize(500);
+  tables.refine(leaves);
+  CHECK(tables.on.has_fans());
+  CHECK(std::ranges::count(tables.blocks.stays, 1) > 100);
+}
+#endif
+
+}  // namespace pliant::test::elements_on_suite
