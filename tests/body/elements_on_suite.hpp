@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
-#include <set>
+#include <span>
+#include <utility>
 
 #include <pliant/backend/elements_of_rows.hpp>
 #include <pliant/body/element_numbers_on.hpp>
@@ -42,6 +45,21 @@ struct WeightedSquares {
     for (int k = 0; k < Dim; ++k)
       for (int a = 0; a < Nodes; ++a) sum = sum + S(G + 1) * S(a + 1) * x(a, k) * x(a, k);
     return sum;
+  }
+};
+
+struct CountByGroup {
+  static constexpr int counters = 2;
+  template <int G, class V>
+  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& x) const {
+    Vector<std::remove_cvref_t<decltype(x(0, 0))>, 1> first;
+    first[0] = x(0, 0);
+    return first;
+  }
+  template <int G, class Values, class Again, class Tally>
+  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index, Values const&, Again const&,
+                                 Tally const& tally) const {
+    tally(G, 1.0);
   }
 };
 
@@ -106,11 +124,22 @@ struct Tables {
   }
 
   void refine(std::vector<Index> const& marked) {
+    auto const energy_before = energy(on);
     mesh.refine(marked);
+    RefinedPlaces<B> const places(backend, mesh.tree.view(), mesh.order, mesh.refined.leaves);
+    auto const gone = element_list(backend, on, std::as_const(tags).data(), places.go.data(),
+                                   places.go_count, groups, mesh.rows.count());
     tags = inherited_values(backend, mesh.order, std::as_const(tags).data());
     values = inherited_values(backend, mesh.order, std::as_const(values).data(), 2);
     blocks = blocks_after_refinement(mesh.order, blocks.first);
     make(on.rows_of_nodes(), true);
+    auto const made = element_list(backend, on, std::as_const(tags).data(), places.come.data(),
+                                   places.come_count, groups, mesh.rows.count());
+    CHECK(gone.count() == mesh.refined.leaves);
+    CHECK(energy(made) > 0);
+    CHECK(counts(gone) == counts_of_parents());
+    CHECK(std::abs(energy(made) - energy(gone) - (energy(on) - energy_before)) <=
+          1e-13 * energy_before);
   }
 
   Array<Index> rows(ElementRows const& before) {
@@ -174,8 +203,7 @@ struct Tables {
     std::vector<double> values_wanted(2 * all.size());
     auto const leaves_now = mesh.leaves();
     for (std::size_t i = 0; i < leaves_now.size(); ++i) {
-      Index root = leaves_now[i];
-      while (mesh.host->cell(root).parent >= 0) root = mesh.host->cell(root).parent;
+      Index const root = root_of(leaves_now[i]);
       tags_wanted.push_back(first_tags[at(root)]);
       for (std::size_t k = 0; k < 2; ++k)
         values_wanted[k * all.size() + i] = first_values[2 * at(root) + k];
@@ -190,6 +218,37 @@ struct Tables {
           groups, tags_wanted, node_rows, node_order<E>, wanted, changed ? &host : nullptr);
     else
       host = Elements(backend, all, groups, tags_wanted, node_rows, node_order<E>);
+  }
+
+  /// Any, of which rows have the same as long as they are there.
+  Array<T> field_values(Index node_rows) {
+    Random random(9);
+    std::vector<T> list(at(node_stride * node_rows));
+    for (T& x : list) x = static_cast<T>(random());
+    return upload(backend, list);
+  }
+  std::vector<double> counts(auto const& table) {
+    auto const x = field_values(mesh.rows.count());
+    auto counters = zeros<double>(backend, 2);
+    backend.template visit<groups>(table, CountByGroup{}, counters,
+                                   NodeField<T const, dim>{x.data()});
+    return download<double>(counters);
+  }
+  /// How many leaves of each group were divided.
+  std::vector<double> counts_of_parents() {
+    std::vector<double> counts(2);
+    for (auto const& leaf : taken(backend, mesh.refined.cells, mesh.refined.leaves))
+      counts[first_tags[at(root_of(leaf.cell))]] += 1;
+    return counts;
+  }
+  Index root_of(Index c) const {
+    while (mesh.host->cell(c).parent >= 0) c = mesh.host->cell(c).parent;
+    return c;
+  }
+  double energy(auto const& table) {
+    auto const x = field_values(mesh.rows.count());
+    return backend.template sum_elements<groups>(table, WeightedSquares<E::nodes, dim>{},
+                                                 NodeField<T const, dim>{x.data()});
   }
 
   /// Loops over both tables give the same.
@@ -207,13 +266,7 @@ struct Tables {
       CHECK(same_patches(backend, on.patch_view({}), host.patch_view({}), on.patch_count(),
                          on.count()));
 #endif
-    Random random(9);
-    auto const values_of_field = [&](Index count) {
-      std::vector<T> list(at(node_stride * count));
-      for (T& x : list) x = static_cast<T>(random());
-      return list;
-    };
-    auto const x = upload(backend, values_of_field(node_rows));
+    auto const x = field_values(node_rows);
     NodeField<T const, dim> const field{x.data()};
     auto const force = [&](Elements const& table) {
       auto f = zeros<T>(backend, at(node_stride * (node_rows + table.scratch_nodes())));
@@ -222,9 +275,6 @@ struct Tables {
       auto list = download<T>(f);
       list.resize(at(node_stride * node_rows));
       return list;
-    };
-    auto const energy = [&](auto const& table) {
-      return backend.template sum_elements<groups>(table, WeightedSquares<E::nodes, dim>{}, field);
     };
     auto const f = force(on), wanted = force(host);
     T largest = 0, difference = 0;

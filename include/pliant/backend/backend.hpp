@@ -62,6 +62,7 @@
 //                              throws Error where an element has a node outside [0, nodes); order: see NodeOrder;
 //                              without tags, all elements are of group 0;
 //                              two more arguments where a backend plans by blocks: see backend/element_blocks.hpp
+//                              rows of nodes that are where loops run already: backend/elements_of_rows.hpp
 //   .rows_of_nodes()           an ElementRows: the nodes of each element, where loops run
 //   .count() .tags() .regroup()   regroup: call after tags changed, of backends that order elements by
 //                              group (orders_by_group); the others look at each tag as they go

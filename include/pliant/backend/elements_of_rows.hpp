@@ -46,6 +46,21 @@ struct ElementListOf<B, Nodes> {
   using type = typename B::template ElementList<Nodes>;
 };
 
+/// Takes rows of nodes, and tags, from their places in a table.
+template <int Width>
+struct TakeElements {
+  ElementRows from;
+  Tag const* tags;
+  Index const* places;
+  Index* to;
+  Tag* tags_to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const* const row = from[places[i]];
+    for (int a = 0; a < Width; ++a) to[static_cast<std::ptrdiff_t>(Width) * i + a] = row[a];
+    tags_to[i] = tags[places[i]];
+  }
+};
+
 /// The rows of some elements, one run [first, second) of them after another.
 template <int Nodes>
 std::vector<std::array<Index, Nodes>> taken_rows(Index const* rows,
@@ -96,7 +111,7 @@ Elements elements_of_rows(B const& backend, typename B::template Array<Index> ro
   }
 }
 
-/// The same for sum_elements and visit alone, of all elements that have rows.
+/// The same for sum_elements and visit alone, of all elements that have rows of row_width<ElementListOn> entries.
 template <int Nodes, Backend B>
 ElementListOn<B, Nodes> element_list(B const& backend, typename B::template Array<Index> rows,
                                      int groups, typename B::template Array<Tag> tags,
@@ -106,6 +121,18 @@ ElementListOn<B, Nodes> element_list(B const& backend, typename B::template Arra
     return elements_of_rows<List>(backend, std::move(rows), groups, std::move(tags), nodes);
   else
     return {backend, std::move(rows), std::move(tags)};
+}
+/// Of the elements of a table at some places, (count). Places, and the tags of the table, are in the backend's memory.
+template <class Elements, Backend B>
+auto element_list(B const& backend, Elements const& table, Tag const* tags, Index const* places,
+                  Index count, int groups, Index nodes) {
+  constexpr int n = Elements::nodes_per_element, width = row_width<ElementListOn<B, n>>;
+  static_assert(width <= row_width<Elements>);
+  auto rows = zeros<Index>(backend, static_cast<std::size_t>(count) * width);
+  auto own_tags = zeros<Tag>(backend, static_cast<std::size_t>(count));
+  backend.for_each(count, detail::TakeElements<width>{table.rows_of_nodes(), tags, places,
+                                                      rows.data(), own_tags.data()});
+  return element_list<n>(backend, std::move(rows), groups, std::move(own_tags), nodes);
 }
 
 }  // namespace pliant

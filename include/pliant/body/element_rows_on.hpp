@@ -46,6 +46,18 @@ struct PutElementRows {
   }
 };
 
+/// Whether the leaf at a place was not there before.
+struct IsNewLeaf {
+  Index const *leaves, *leaves_before, *from;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves_before[from[i]] != leaves[i]; }
+};
+/// Whether the leaf that was at a place is divided.
+struct WasDivided {
+  TreeView tree;
+  Index const* leaves_before;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return !tree.is_leaf(leaves_before[i]); }
+};
+
 /// to[i] = from[places[i]] in each of several columns.
 template <class U>
 struct InheritValues {
@@ -100,5 +112,24 @@ typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> 
                                             order.count_before(), order.count(), columns});
   return values;
 }
+
+/// The places of the elements that come in a refinement, and of those that go, before it; ascending, in a backend's memory.
+template <Backend B>
+struct RefinedPlaces {
+  typename B::template Array<Index> come, go;
+  Index come_count = 0, go_count = 0;
+
+  /// `divided`: how many leaves were. Waits for nothing.
+  RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order, Index divided)
+      : come_count(order.count() - order.count_before() + divided), go_count(divided) {
+    come = zeros<Index>(backend, static_cast<std::size_t>(come_count) + 1);
+    go = zeros<Index>(backend, static_cast<std::size_t>(go_count) + 1);
+    // How many there are is behind them.
+    backend.select(order.count(), detail::IsNewLeaf{order.leaves(), order.before(), order.from()},
+                   come.data(), come.data() + come_count);
+    backend.select(order.count_before(), detail::WasDivided{tree, order.before()}, go.data(),
+                   go.data() + go_count);
+  }
+};
 
 }  // namespace pliant
