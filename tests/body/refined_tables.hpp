@@ -63,6 +63,9 @@ struct CountByGroup {
 };
 
 #if defined(__CUDACC__)
+static_assert(TakesRows<CudaElements<double, 10>, Cuda<double>>);
+static_assert(std::same_as<ElementListOn<Cuda<double>, 4>, CudaElementList<double, 4>>);
+
 template <class B, class View>
 bool same_patches(B const& backend, View const& one, View const& other, Index patches,
                   Index units) {
