@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <type_traits>
 
 #include <pliant/config.hpp>
@@ -28,6 +29,16 @@ PLIANT_HOST_DEVICE void atomic_store(U& number, std::type_identity_t<U> value) {
 PLIANT_HOST_DEVICE Index atomic_add(Index& number, Index by) {
 #ifdef __CUDA_ARCH__
   return atomicAdd(&number, by);
+#else
+  return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
+#endif
+}
+/// The same for 64 bits.
+PLIANT_HOST_DEVICE std::uint64_t atomic_add(std::uint64_t& number, std::uint64_t by) {
+#ifdef __CUDA_ARCH__
+  using Word = unsigned long long;
+  static_assert(sizeof(Word) == sizeof(std::uint64_t));
+  return atomicAdd(reinterpret_cast<Word*>(&number), static_cast<Word>(by));
 #else
   return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
 #endif

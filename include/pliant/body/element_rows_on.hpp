@@ -8,7 +8,7 @@
 #include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/element/element.hpp>
-#include <pliant/topology/shape_weights.hpp>
+#include <pliant/topology/rows_of_element.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 // The elements of a mesh of one type after a refinement, in a backend's memory: what belongs to each is taken from where it
@@ -33,15 +33,9 @@ struct PutElementRows {
     if (before.nodes != nullptr && leaves_before[from[i]] == cell) {
       Index const* const own = before[from[i]];
       for (int a = 0; a < Width; ++a) row[a] = own[a];
-    } else if constexpr (nodes_on_cell<E> == CellNodes::corners) {
-      auto const& own = tree.cells[static_cast<std::size_t>(cell)];
-      for (int a = 0; a < E::nodes; ++a) {
-        bool const swapped = own.mirrored && (a == 2 || a == 3);  // see TreeCell
-        row[swapped ? 5 - a : a] = of_node[own.nodes[static_cast<std::size_t>(a)]];
-      }
     } else {
-      auto const nodes = tree.element_nodes(cell);
-      for (int a = 0; a < E::nodes; ++a) row[a] = of_node[nodes[static_cast<std::size_t>(a)]];
+      auto const own = rows_of_element<E>(tree, cell, of_node);
+      for (std::size_t a = 0; a < own.size(); ++a) row[a] = own[a];
     }
   }
 };

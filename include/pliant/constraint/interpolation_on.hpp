@@ -79,6 +79,9 @@ class InterpolationOn {
   }
 
   bool empty() const { return to_slaves_.count == 0; }
+  /// Its slaves with their masters, and masters with their slaves.
+  RowsOn<B> const& slaves() const { return to_slaves_; }
+  RowsOn<B> const& masters() const { return to_masters_; }
 
   /// v ← P v: sets slaves from their masters, v_s = Σ_i P_si v_i, as v_1 + Σ_i P_si (v_i − v_1) since
   /// weights add up to one: what masters share is not rounded.

@@ -1,14 +1,15 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 
 #include <pliant/formulation/mass.hpp>
+#include <pliant/math/uncontracted.hpp>
 
-// Elements whose map from the cell is affine (parallelepipeds, straight simplices), on the host: what is integrated over
-// them is known but for one factor.
+// Elements whose map from the cell is affine (parallelepipeds, straight simplices), what is integrated over them is
+// known but for one factor.
 namespace pliant {
 
 namespace detail {
@@ -41,8 +42,9 @@ struct AffineFrame {
   }
 };
 
-template <Element E>
-std::optional<Tensor<double, E::dim>> affine_gradient_by_places(Nodal<E, double> const& rest) {
+/// See affine_gradient; false: nothing.
+template <Element E, class S>
+PLIANT_HOST_DEVICE bool find_affine_gradient(Nodal<E, S> const& rest, Tensor<S, E::dim>& gradient) {
   static constexpr AffineFrame<typename E::cell> frame;
   static constexpr auto places = [] {
     Nodal<E, double> p{};
@@ -50,43 +52,76 @@ std::optional<Tensor<double, E::dim>> affine_gradient_by_places(Nodal<E, double>
       for (int k = 0; k < E::dim; ++k) p(a, k) = E::place(a)[k] - E::place(0)[k];
     return p;
   }();
-  Tensor<double, E::dim> edges;
+  Tensor<S, E::dim> edges, inverse;
   for (int j = 0; j < E::dim; ++j)
-    for (int i = 0; i < E::dim; ++i)
-      edges(i, j) = rest(frame.corner[static_cast<std::size_t>(j)], i) - rest(0, i);
-  auto const gradient = edges * frame.inverse;
-  auto const lies_within = [&](int a, double distance) {
     for (int i = 0; i < E::dim; ++i) {
-      double off = rest(a, i) - rest(0, i);
-      for (int k = 0; k < E::dim; ++k) off -= gradient(i, k) * places(a, k);
-      if (!(std::abs(off) <= distance)) return false;
+      edges(i, j) = rest(frame.corner[static_cast<std::size_t>(j)], i) - rest(0, i);
+      inverse(i, j) = S(frame.inverse(i, j));
+    }
+  gradient = edges * inverse;
+  auto const lies_within = [&](int a, S const& distance) {
+    for (int i = 0; i < E::dim; ++i) {
+      S off = rest(a, i) - rest(0, i);
+      for (int k = 0; k < E::dim; ++k) off -= gradient(i, k) * S(places(a, k));
+      if (!(abs(off) <= distance)) return false;
     }
     return true;
   };
-  double size = 0, farthest = 0;  // of an edge; from the origin
+  S size = S(0), farthest = S(0);  // of an edge; from the origin
   for (int j = 0; j < E::dim; ++j)
-    for (int i = 0; i < E::dim; ++i) size = std::max(size, std::abs(edges(i, j)));
+    for (int i = 0; i < E::dim; ++i) size = max(size, abs(edges(i, j)));
   // Of most elements that are not affine this node tells.
-  if (!lies_within(E::nodes - 1, 1e-6 * size)) return {};
+  S const near = S(1e-6) * size;
+  if (!lies_within(E::nodes - 1, near)) return false;
   for (int a = 0; a < E::nodes; ++a)
-    for (int i = 0; i < E::dim; ++i) farthest = std::max(farthest, std::abs(rest(a, i)));
-  double const most = std::min(8 * std::numeric_limits<double>::epsilon() * farthest, 1e-6 * size);
+    for (int i = 0; i < E::dim; ++i) farthest = max(farthest, abs(rest(a, i)));
+  S const most = min(S(8 * std::numeric_limits<double>::epsilon()) * farthest, near);
   for (int a = 1; a < E::nodes; ++a)
-    if (!lies_within(a, most)) return {};
-  return gradient;
+    if (!lies_within(a, most)) return false;
+  return true;
 }
 
+/// The nodal volumes of the element that the cell itself is.
 template <Element E>
-Vector<double, E::nodes> nodal_volumes_by_shape(Nodal<E, double> const& rest) {
+Vector<double, E::nodes> const& nodal_volumes_of_cell() {
   static auto const of_cell = [] {
     Nodal<E, double> cell;
     for (int a = 0; a < E::nodes; ++a)
       for (int k = 0; k < E::dim; ++k) cell(a, k) = E::place(a)[k];
     return nodal_volumes<E>(cell);
   }();
-  if (auto const gradient = affine_gradient_by_places<E>(rest))
-    return determinant(*gradient) * of_cell;
+  return of_cell;
+}
+
+/// host_nodal_volumes on a device too, where `of_cell` has nodal_volumes_of_cell.
+template <Element E, class S>
+PLIANT_HOST_DEVICE Vector<S, E::nodes> nodal_volumes_by_shape(
+    Nodal<E, S> const& rest, Vector<double, E::nodes> const& of_cell) {
+  if constexpr (!LinearSimplex<E>) {
+    Tensor<S, E::dim> gradient;
+    if (find_affine_gradient<E, S>(rest, gradient)) {
+      S const factor = determinant(gradient);
+      Vector<S, E::nodes> volumes;
+      for (int a = 0; a < E::nodes; ++a) volumes[a] = factor * S(of_cell[a]);
+      return volumes;
+    }
+  }
   return nodal_volumes<E>(rest);
+}
+
+/// host_nodal_masses on a device too, with the same bits.
+template <Element E>
+PLIANT_HOST_DEVICE Vector<double, E::nodes> nodal_masses(Nodal<E, double> const& rest,
+                                                         double density,
+                                                         Vector<double, E::nodes> const& of_cell) {
+  using S = Uncontracted;
+  Nodal<E, S> x;
+  for (int a = 0; a < E::nodes; ++a)
+    for (int k = 0; k < E::dim; ++k) x(a, k) = rest(a, k);
+  auto const volumes = nodal_volumes_by_shape<E, S>(x, of_cell);
+  Vector<double, E::nodes> masses;
+  for (int a = 0; a < E::nodes; ++a) masses[a] = (S(density) * volumes[a]).value;
+  return masses;
 }
 
 }  // namespace detail
@@ -96,10 +131,13 @@ Vector<double, E::nodes> nodal_volumes_by_shape(Nodal<E, double> const& rest) {
 /// of an edge. Else nothing.
 template <Element E>
 std::optional<Tensor<double, E::dim>> affine_gradient(Nodal<E, double> const& rest) {
-  if constexpr (LinearSimplex<E>)
+  if constexpr (LinearSimplex<E>) {
     return transpose(Coefficients<E, double>::of(rest).to_corners());
-  else
-    return detail::affine_gradient_by_places<E>(rest);
+  } else {
+    Tensor<double, E::dim> gradient;
+    if (!detail::find_affine_gradient<E, double>(rest, gradient)) return {};
+    return gradient;
+  }
 }
 
 /// nodal_volumes, at the cost of one determinant where the map from the cell is affine.
@@ -108,15 +146,18 @@ inline PLIANT_INLINE Vector<double, E::nodes> host_nodal_volumes(Nodal<E, double
   if constexpr (LinearSimplex<E>)
     return nodal_volumes<E>(rest);
   else
-    return detail::nodal_volumes_by_shape<E>(rest);
+    return detail::nodal_volumes_by_shape<E, double>(rest, detail::nodal_volumes_of_cell<E>());
 }
 
-/// The share that each node has of an element's mass, kg, at a density, kg/m³. Out of line, so that whoever adds these up adds
-/// the same bits, whatever a compiler fuses where it inlines.
+/// The share that each node has of an element's mass, kg, at a density, kg/m³. Nothing is fused, so that whoever adds these up
+/// adds the same bits, on a device too. Out of line, as it is large.
 template <Element E>
 [[gnu::noinline]] Vector<double, E::nodes> host_nodal_masses(Nodal<E, double> const& rest,
                                                              double density) {
-  return density * host_nodal_volumes<E>(rest);
+  if constexpr (LinearSimplex<E>)
+    return detail::nodal_masses<E>(rest, density, {});
+  else
+    return detail::nodal_masses<E>(rest, density, detail::nodal_volumes_of_cell<E>());
 }
 
 }  // namespace pliant

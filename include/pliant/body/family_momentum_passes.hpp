@@ -1,0 +1,188 @@
+#pragma once
+
+#include <cstddef>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/backend/field.hpp>
+#include <pliant/body/exact_sum.hpp>
+#include <pliant/constraint/condition.hpp>
+#include <pliant/topology/refined_elements.hpp>
+
+// Passes over refined elements and the nodes that a refinement touches, for loops of a backend.
+namespace pliant::detail {
+
+/// Lists rows, each once.
+struct TouchOnce {
+  Index* place;  // by row: zero where it is not listed yet
+  Index* list;
+  Index* count;
+
+  PLIANT_HOST_DEVICE void operator()(Index row) const {
+    Index seen = atomic_load(place[row]);
+    while (seen == 0)
+      if (atomic_exchange(place[row], seen, 1)) {
+        list[atomic_add(*count, 1)] = row;
+        return;
+      }
+  }
+};
+template <Element E>
+struct TouchChildren {
+  RefinedElements<E> elements;
+  TouchOnce touch;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const r = i / elements.most_children, k = i % elements.most_children;
+    if (k >= elements.parts[r].cells) return;
+    for (Index const row : elements.rows_of(elements.cell(r, k))) touch(row);
+  }
+};
+struct TouchListed {
+  Index const* rows;
+  TouchOnce touch;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { touch(rows[i]); }
+};
+struct ForgetPlaces {
+  Index const* list;
+  Index* place;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { place[list[i]] = 0; }
+};
+/// Numbers the rows of the list, and notes the masses that nodes have now.
+struct NoteMass {
+  Index const* list;
+  Index* place;
+  SumUnit unit;
+  ExactSum const* own;  // by row
+  double* masses;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    place[list[i]] = i + 1;
+    masses[i] = unit.value_of(own[list[i]]);
+  }
+};
+
+/// Values at the rows of the list.
+template <int Dim>
+struct DoublesByPlace {
+  Index const* place;
+  double* values;  // (places, Dim)
+  PLIANT_HOST_DEVICE double& operator()(Index row, int k) const {
+    return values[static_cast<std::ptrdiff_t>(Dim) * (place[row] - 1) + k];
+  }
+};
+template <class T, int Dim>
+struct TakeVelocities {
+  Index const* list;
+  NodeField<T, Dim> v;
+  double *before, *now;
+  ExactSum* sums;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    auto const own = v.at(list[i]);
+    for (int k = 0; k < Dim; ++k) {
+      auto const to = static_cast<std::ptrdiff_t>(Dim) * i + k;
+      before[to] = now[to] = static_cast<double>(own[k]);
+      sums[to] = {};
+    }
+  }
+};
+
+/// Adds what the nodes of a family must be given so that it keeps its momentum: see list_family_impulse.
+template <Element E>
+struct AddFamilyImpulse {
+  static constexpr int dim = E::dim;
+  RefinedElements<E> elements;
+  double density;
+  DoublesByPlace<dim> before, now;  // velocities, those of slaves as their mass moves
+  SumUnit unit;
+  Index const* place;
+  ExactSum* sums;
+  Index* refused;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    Index const children = elements.parts[r].cells;
+    double base[dim], lost[dim] = {}, volume = 0;
+    // First the parent, as −1, and its children; then the children again, which take their shares.
+    for (Index step = -1; step < 2 * children; ++step) {
+      Index const k = step < children ? step : step - children;
+      auto const rows = elements.rows_of(elements.cell(r, k));
+      auto const own = elements.volumes(rows);
+      if (step < children) {
+        for (int d = 0; d < dim && k < 0; ++d) base[d] = before(rows[0], d);
+        for (int a = 0; a < E::nodes; ++a) {
+          Index const row = rows[static_cast<std::size_t>(a)];
+          for (int d = 0; d < dim; ++d) {
+            double const momentum =
+                density * own[a] * ((k < 0 ? before(row, d) : now(row, d)) - base[d]);
+            lost[d] += k < 0 ? momentum : -momentum;
+          }
+          if (k >= 0) volume += own[a];
+        }
+        if (step < children - 1) continue;
+        bool kept = true;
+        for (double const x : lost) kept = kept && x == 0;
+        if (kept) return;
+      } else {
+        for (int a = 0; a < E::nodes; ++a)
+          for (int d = 0; d < dim; ++d)
+            add(rows[static_cast<std::size_t>(a)], d, lost[d] * (own[a] / volume));
+      }
+    }
+  }
+
+ private:
+  PLIANT_HOST_DEVICE void add(Index row, int d, double x) const {
+    if (unit.holds(abs(x)))
+      sums[static_cast<std::ptrdiff_t>(dim) * (place[row] - 1) + d].add_from_threads(
+          unit.signed_multiple_of(x));
+    else
+      atomic_store(*refused, 1);
+  }
+};
+
+/// What families give a node, and what it must be given where it begins or ceases to hang, or hangs otherwise: the difference in
+/// the velocity at which the mass moves that it has of elements that stay.
+template <int Dim>
+struct AddImpulseOfSlave {
+  SumUnit unit;
+  ExactSum const* sums;
+  double const *staying_mass, *before, *now;
+  double* impulse;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < Dim; ++k) {
+      auto const own = static_cast<std::ptrdiff_t>(Dim) * i + k;
+      impulse[own] = unit.signed_value_of(sums[own]) + staying_mass[i] * (before[own] - now[own]);
+    }
+  }
+};
+template <int Dim>
+struct CheckImpulses {
+  SumUnit unit;
+  double const* impulse;
+  Index* refused;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    for (int k = 0; k < Dim; ++k)
+      if (!unit.holds(abs(impulse[static_cast<std::ptrdiff_t>(Dim) * i + k])))
+        atomic_store(*refused, 1);
+  }
+};
+/// Changes the velocity of a node where it is not held.
+template <class T, int Dim>
+struct GiveImpulses {
+  Index const* list;
+  double const *impulse, *kilograms;
+  DirectionMask const* held;
+  SumUnit unit;
+  NodeField<T, Dim> v;
+  ExactSum* taken;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const row = list[i];
+    for (int k = 0; k < Dim; ++k) {
+      double const own = impulse[static_cast<std::ptrdiff_t>(Dim) * i + k];
+      if (own == 0) continue;
+      if (held != nullptr && (held[row] >> k & 1) != 0)
+        taken[k].add_from_threads(unit.signed_multiple_of(own));
+      else if (kilograms[row] > 0)
+        v(row, k) = static_cast<T>(static_cast<double>(v(row, k)) + own / kilograms[row]);
+    }
+  }
+};
+
+}  // namespace pliant::detail

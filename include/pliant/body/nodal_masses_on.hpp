@@ -1,0 +1,162 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/backend/backend.hpp>
+#include <pliant/backend/grown_array.hpp>
+#include <pliant/body/exact_sum.hpp>
+#include <pliant/constraint/mass_weights_on.hpp>
+#include <pliant/error.hpp>
+#include <pliant/topology/refined_elements.hpp>
+
+namespace pliant {
+
+namespace detail {
+
+/// Adds the shares that nodes have in the masses of refined elements, or of their children, to the nodes' own; or takes them
+/// away. A call for each of the elements, or for each of `most_children`. As share_mass and lumped_masses do.
+template <Element E>
+struct AddShares {
+  RefinedElements<E> elements;
+  bool of_children, takes;
+  double density;
+  SumUnit unit;
+  ExactSum* own;   // by row
+  Index* refused;  // set where a share is no number, or too large
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const r = of_children ? i / elements.most_children : i;
+    Index const k = of_children ? i % elements.most_children : -1;
+    if (k >= elements.parts[r].cells) return;
+    auto const rows = elements.rows_of(elements.cell(r, k));
+    auto const shares = elements.masses(rows, density);
+    for (int a = 0; a < E::nodes; ++a) {
+      if (!unit.holds(shares[a])) {
+        atomic_store(*refused, 1);
+        continue;
+      }
+      auto const share = unit.multiple_of(shares[a]);
+      own[rows[static_cast<std::size_t>(a)]].add_from_threads(takes ? -share : share);
+    }
+  }
+};
+
+struct ReadMasses {
+  SumUnit unit;
+  ExactSum const* own;
+  double* kilograms;
+  PLIANT_HOST_DEVICE void operator()(Index row) const { kilograms[row] = unit.value_of(own[row]); }
+};
+
+/// Masses in a body's precision, as checked_mass has them.
+template <class T>
+struct RoundMasses {
+  double const* kilograms;
+  T* masses;
+  Index* refused;  // set where T cannot hold one
+  PLIANT_HOST_DEVICE void operator()(Index row) const {
+    T const m = static_cast<T>(kilograms[row]);
+    bool const is_held = m - m == T(0) && (m > T(0) || !(kilograms[row] > 0));
+    if (!is_held) atomic_store(*refused, 1);
+    masses[row] = m;
+  }
+};
+
+}  // namespace detail
+
+/// The lumped masses of nodes by their rows, in a backend's memory, of a mesh with elements of one type, as sums that do not
+/// depend on the order of elements: those of a mesh that was refined have the bits of those of one made anew. Rows that no
+/// node has hold zero.
+template <Element E, Backend B>
+class NodalMassesOn {
+  template <class U>
+  using Array = typename B::template Array<U>;
+  using Elements = detail::RefinedElements<E>;
+
+ public:
+  /// `own`: by row, slaves' with them (see lumped_masses). `density`: kg/m³.
+  NodalMassesOn(B const& backend, std::vector<detail::ExactSum> const& own,
+                detail::SumUnit const& unit, double density)
+      : backend_(backend),
+        own_(upload(backend, own)),
+        rows_(static_cast<Index>(own.size())),
+        unit_(unit),
+        density_(density),
+        refused_(zeros<Index>(backend, 1)) {}
+
+  [[nodiscard]] Index rows() const { return rows_; }
+  [[nodiscard]] double density() const { return density_; }
+  [[nodiscard]] detail::SumUnit const& unit() const { return unit_; }
+  /// By row, slaves' with them.
+  [[nodiscard]] detail::ExactSum const* own() const { return own_.data(); }
+
+  /// Makes room for rows of new nodes.
+  void extend(Index rows) {
+    if (rows <= rows_) return;
+    detail::grow_keeping(backend_, own_, at(rows_), at(rows));
+    rows_ = rows;
+  }
+  /// What nodes have of elements that were refined goes.
+  void take_parents(Elements const& elements) { add(elements, false, true); }
+  /// What they have of the children comes.
+  void add_children(Elements const& elements) { add(elements, true, false); }
+  /// Undoes both, to the bit.
+  void take_back(Elements const& elements) {
+    add(elements, true, true);
+    add(elements, false, false);
+  }
+  /// Throws Error where the share of a node in the mass of an element was no number or too large, since the last call. Such
+  /// shares were left out.
+  void check() {
+    if (std::exchange(has_added_, false) && was_refused())
+      throw Error(
+          "body: the share of a node in the mass of an element is too large, or no number, under "
+          "the density ",
+          density_, " kg/m³; take other units");
+  }
+
+  /// Masses in kg by row, of which slaves have handed theirs to their masters. `kilograms`: (rows).
+  void read(MassWeightsOn<B> const& slaves, double* kilograms) const {
+    backend_.for_each(rows_, detail::ReadMasses{unit_, own_.data(), kilograms});
+    slaves.template hand<1>(detail::DoublesByRow<1>{kilograms});
+  }
+  /// The same masses in another precision. Throws Error where that cannot hold one.
+  template <class T>
+  void round(double const* kilograms, T* masses) {
+    check();
+    backend_.for_each(rows_, detail::RoundMasses<T>{kilograms, masses, refused_.data()});
+    if (was_refused() || !std::isfinite(static_cast<T>(density_)))
+      throw Error("body: ", 8 * sizeof(T),
+                  " bits cannot hold the mass of a node under the density ", density_,
+                  " kg/m³; take double, or other units");
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  void add(Elements const& elements, bool of_children, bool takes) {
+    Index const calls = of_children ? Elements::most_children : 1;
+    backend_.for_each(calls * elements.count,
+                      detail::AddShares<E>{elements, of_children, takes, density_, unit_,
+                                           own_.data(), refused_.data()});
+    has_added_ = true;
+  }
+  bool was_refused() {
+    if (download<Index>(refused_)[0] == 0) return false;
+    refused_.upload(std::vector<Index>{0});
+    return true;
+  }
+
+  B backend_;
+  Array<detail::ExactSum> own_;
+  Index rows_;
+  detail::SumUnit unit_;
+  double density_;
+  Array<Index> refused_;
+  bool has_added_ = false;
+};
+
+}  // namespace pliant

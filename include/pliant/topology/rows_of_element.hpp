@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <pliant/topology/shape_weights.hpp>
+#include <pliant/topology/tree_view.hpp>
+
+namespace pliant::detail {
+
+/// The rows of fields that the nodes of an element have, in the element's order.
+template <Element E>
+using RowsOfElement = std::array<Index, static_cast<std::size_t>(E::nodes)>;
+
+/// Those of the element that a cell of a tree is. `of_node`: rows, by the user's numbers of nodes.
+template <Element E>
+PLIANT_HOST_DEVICE RowsOfElement<E> rows_of_element(TreeView const& tree, Index c,
+                                                    Index const* of_node) {
+  RowsOfElement<E> rows;
+  if constexpr (nodes_on_cell<E> == CellNodes::corners) {
+    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
+    for (std::size_t a = 0; a < rows.size(); ++a)
+      rows[a] = of_node[cell.nodes[cell.mirrored && (a == 2 || a == 3) ? 5 - a : a]];
+  } else {
+    auto const nodes = tree.element_nodes(c);
+    for (std::size_t a = 0; a < rows.size(); ++a) rows[a] = of_node[nodes[a]];
+  }
+  return rows;
+}
+
+}  // namespace pliant::detail
