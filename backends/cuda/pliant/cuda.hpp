@@ -66,6 +66,7 @@ class Cuda {
   using Recording = CudaRecording;
   using Timer = CudaTimer;
   static constexpr bool orders_by_group = false;
+  static constexpr bool keeps_trees = true;  // see TopologyOn
   static constexpr char const* name() { return "Cuda"; }
 
   Cuda(CudaOptions const& options = {})

@@ -7,6 +7,7 @@
 #include <pliant/adaptation/rule.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/change_topology.hpp>
+#include <pliant/body/refine_on.hpp>
 #include <pliant/topology/plan.hpp>
 
 namespace pliant {
@@ -112,12 +113,13 @@ auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level
                      detail::kept_parts(parts), detail::element_values_of(parts));
 }
 
-/// Makes a planned change; listeners wait for tell_listeners. Throws Error, with the body as it was, where
-/// fields are not finite, a force term cannot be made anew or memory runs out.
-template <class Parts>
-void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+namespace detail {
+
+/// Puts a ChangedTopology, which change() gives, in force, and books what it does to energies. `actions`, `count`: in words, and
+/// on how many elements it acts.
+template <class Parts, class Change>
+void commit_change(Parts& parts, std::string actions, std::size_t count, Change const& change) {
   constexpr int dim = Parts::dim;
-  HostThreads const threads(parts.backend, *plan.after);
   wake_all(parts);
   auto const energies_but_strain = [](Parts& p) {
     return Energies{0, kinetic_energy_of(p), p.watched_energy ? potential_energy_of(p) : 0};
@@ -126,24 +128,19 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
     return p.watched_energy ? p.watched_energy(p, energies) : WatchedEnergy{energies, 0};
   };
   auto energies = energies_but_strain(parts);
-  auto const give_back = [&](auto const& touched, auto const& layout, auto const& held,
-                             auto v_before, auto& v) {
-    return detail::give_momentum_back(plan, touched, parts.material.density, layout, held,
-                                      std::move(v_before), v);
-  };
-  auto changed = change_topology(parts, plan.after, plan.transfer, give_back);
+  auto changed = change();
   auto& next = changed.parts;
   energies.strain = changed.strain_energy_before;
   auto const before = energy_now(parts, energies);
   energies = energies_but_strain(next);
   energies.strain = changed.strain_energy;
   auto const after = energy_now(next, energies);
-  auto const change = [](double from, double to) { return detail::zero_if_not_finite(to - from); };
+  auto const added_to = [](double from, double to) { return zero_if_not_finite(to - from); };
   LedgerEntry<dim> const entry{next.state.time,
-                               detail::actions_of(plan),
-                               static_cast<double>(detail::count_actions(plan)),
-                               change(before.energies.strain, after.energies.strain),
-                               change(before.energies.kinetic, after.energies.kinetic),
+                               std::move(actions),
+                               static_cast<double>(count),
+                               added_to(before.energies.strain, after.energies.strain),
+                               added_to(before.energies.kinetic, after.energies.kinetic),
                                changed.taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
@@ -151,6 +148,65 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   if (next.watched_energy && next.state.integrator.active)
     next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
   put_in_force(parts, std::move(next));
+}
+
+/// What became of a refinement in a backend's memory.
+struct RefinedOn {
+  std::size_t refined = 0, new_nodes = 0;
+};
+/// Refines elements of a body in its backend's memory, where that can be; else nothing. Errors as of refine; then what was kept
+/// of the mesh there is made anew when it is needed.
+template <class Parts>
+std::optional<RefinedOn> refine_on_backend(Parts& parts,
+                                           std::vector<std::vector<Index>> const& marked,
+                                           int max_level) {
+  if constexpr (refines_on_backend<Parts>) {
+    using On = TopologyOn<typename Parts::mesh_type, typename Parts::backend_type>;
+    if (!can_refine_on_backend(parts)) return std::nullopt;
+    if (marked[0].empty()) return RefinedOn{};
+    auto const& table = std::get<0>(parts.layout.tables);
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    for (Index const e : marked[0])
+      check_number<E>("refine", e, static_cast<std::size_t>(table.count()));
+    auto on = std::exchange(parts.topology_on, nullptr);  // gone where something throws
+    if (!on) on = std::make_shared<On>(std::as_const(parts));
+    auto cells = upload(parts.backend, marked[0]);
+    auto const count = static_cast<Index>(marked[0].size());
+    parts.backend.for_each(count, CellsOfNumbers{on->numbers.cells(), cells.data()});
+    auto const refined = on->tree.refine(cells.data(), count,
+                                         {parts.limits.nodes, parts.limits.elements, max_level});
+    if (refined.leaves > 0) {
+      commit_change(parts, "refine", static_cast<std::size_t>(refined.leaves), [&] {
+        auto changed = RefinedParts<Parts>(parts, *on, refined).make();
+        changed.parts.topology_on = on;
+        return changed;
+      });
+      on->tree.keep();
+      on->numbers.find(parts.backend, on->tree, on->order);
+    }
+    parts.topology_on = on;
+    return RefinedOn{static_cast<std::size_t>(refined.leaves),
+                     static_cast<std::size_t>(refined.new_nodes)};
+  } else {
+    return std::nullopt;
+  }
+}
+
+}  // namespace detail
+
+/// Makes a planned change; listeners wait for tell_listeners. Throws Error, with the body as it was, where
+/// fields are not finite, a force term cannot be made anew or memory runs out.
+template <class Parts>
+void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+  HostThreads const threads(parts.backend, *plan.after);
+  auto const give_back = [&](auto const& touched, auto const& layout, auto const& held,
+                             auto v_before, auto& v) {
+    return detail::give_momentum_back(plan, touched, parts.material.density, layout, held,
+                                      std::move(v_before), v);
+  };
+  detail::commit_change(parts, detail::actions_of(plan), detail::count_actions(plan), [&] {
+    return change_topology(parts, plan.after, plan.transfer, give_back);
+  });
 }
 
 /// Tells a body's listeners of a change that was made. What one throws is the caller's: the mesh is changed,
@@ -177,6 +233,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
+  if (auto const done = detail::refine_on_backend(body.parts(), marked, max_level))
+    return {done->refined, done->new_nodes};
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
   commit(body.parts(), *plan);

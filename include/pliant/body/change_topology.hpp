@@ -106,6 +106,7 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.has_checkpoint = false;
   parts.scratch.reset();
   parts.layout = std::move(next.layout);
+  parts.topology_on = std::move(next.topology_on);
   parts.state = std::move(next.state);
   parts.pressures = std::move(next.pressures);
   parts.upload_pressures = next.upload_pressures;

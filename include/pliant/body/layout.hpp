@@ -80,6 +80,26 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     make(backend, topology, material, groups, &change, {});
   }
 
+  /// What lies in the backend's memory of another topology, and what the host makes of it when it is asked for. Nodes are the
+  /// user's, by number.
+  struct Lists {
+    Index nodes = 0;
+    WhenAsked<NodeRows> node_rows{};
+    WhenAsked<SharedList<detail::ExactSum>> own_masses{};
+    WhenAsked<SharedList<double>> mass_list{};
+    Array<Index> user_nodes{};
+  };
+  /// The same body's, with nothing in it yet but these.
+  Layout(Layout const& before, Index rows_of_nodes, Lists lists)
+      : rows(rows_of_nodes),
+        nodes_(lists.nodes),
+        node_rows_(std::move(lists.node_rows)),
+        own_masses_(std::move(lists.own_masses)),
+        mass_list_(std::move(lists.mass_list)),
+        user_node_array_(std::move(lists.user_nodes)) {
+    keep_from(before);
+  }
+
   /// How many nodes the mesh has.
   Index nodes() const { return nodes_; }
   NodeRows const& node_rows() const { return *node_rows_; }

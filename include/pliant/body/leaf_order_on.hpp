@@ -78,14 +78,17 @@ class LeafOrderOn {
  public:
   /// Of a tree of which nothing is divided.
   LeafOrderOn(B const& backend, CellOrder const& first)
-      : backend_(backend), leaves_(upload(backend, first.cells)), count_(first.count()) {
-    detail::grow(backend_, places_, first.cells.size());
+      : LeafOrderOn(backend, first.cells, first_blocks(first.count()), first.count()) {}
+  /// Of leaves in this order; `first_of_block`: see below; `cells`: how many cells the tree has.
+  LeafOrderOn(B const& backend, std::vector<Index> const& leaves,
+              std::vector<Index> const& first_of_block, Index cells)
+      : backend_(backend),
+        leaves_(upload(backend, leaves)),
+        first_(upload(backend, first_of_block)),
+        count_(static_cast<Index>(leaves.size())),
+        blocks_(static_cast<Index>(first_of_block.size()) - 1) {
+    detail::grow(backend_, places_, static_cast<std::size_t>(cells));
     backend_.for_each(count_, detail::PutPlaces{leaves_.data(), places_.data()});
-    std::vector<Index> blocks;
-    for (Index c = 0; c < first.count(); c += cells_per_block) blocks.push_back(c);
-    blocks.push_back(first.count());
-    blocks_ = static_cast<Index>(blocks.size()) - 1;
-    first_ = upload(backend, blocks);
   }
 
   [[nodiscard]] Index count() const { return count_; }
@@ -129,6 +132,13 @@ class LeafOrderOn {
   }
 
  private:
+  static std::vector<Index> first_blocks(Index count) {
+    std::vector<Index> first;
+    for (Index c = 0; c < count; c += cells_per_block) first.push_back(c);
+    first.push_back(count);
+    return first;
+  }
+
   B backend_;
   Array<Index> leaves_, others_;  // others: those before a change, or room
   Array<Index> places_, from_, start_, first_;

@@ -41,15 +41,20 @@ class NodeRowsOn {
   [[nodiscard]] Index const* of_node() const { return of_node_.data(); }
   /// The user's numbers of nodes by the row; −1: the row is free.
   [[nodiscard]] Index const* node() const { return node_.data(); }
-  /// A copy on the host.
-  [[nodiscard]] NodeRows download_all() const {
-    NodeRows rows{std::vector<Index>(at(nodes_)), std::vector<Index>(at(count())),
-                  std::vector<Index>(at(pages_))};
-    of_node_.download(rows.of_node);
-    node_.download(rows.node);
-    region_.download(rows.region);
-    return rows;
+  /// Copies of the lists, which later changes do not touch.
+  struct Lists {
+    Array<Index> of_node, node, region;
+
+    /// On the host.
+    [[nodiscard]] NodeRows download_all() const {
+      return {download<Index>(of_node), download<Index>(node), download<Index>(region)};
+    }
+  };
+  [[nodiscard]] Lists lists() const {
+    return {copy_of(of_node_, nodes_), copy_of(node_, count()), copy_of(region_, pages_)};
   }
+  /// A copy on the host.
+  [[nodiscard]] NodeRows download_all() const { return lists().download_all(); }
 
   /// Gives rows to the nodes that a refinement made; `order`: of the leaves after it.
   void refine(TreeOn<B> const& tree, LeafOrderOn<B> const& order,
@@ -111,6 +116,11 @@ class NodeRowsOn {
   static constexpr Index blocks_of_region = 16;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  [[nodiscard]] Array<Index> copy_of(Array<Index> const& array, Index count) const {
+    auto copy = zeros<Index>(backend_, at(count));
+    detail::copy_values(backend_, array.data(), copy.data(), at(count));
+    return copy;
+  }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
   template <std::size_t N>
   std::array<Index, N> counted() {

@@ -34,6 +34,9 @@ struct WatchedEnergy {
   double kept() const { return energies.total() - acceleration; }
 };
 
+template <class M, Backend B>
+struct TopologyOn;
+
 /// What it takes where patches sleep: see body/wake.hpp.
 template <class Parts>
 struct SleepVerbs {
@@ -70,6 +73,8 @@ struct Parts {
 
   state_type state{};
   layout_type layout;
+  std::shared_ptr<TopologyOn<M, B>>
+      topology_on{};  // while the mesh is changed in the backend's memory
 
   Terms pressures{};  // of state.prescribed
   /// Makes them; set once there is a pressure, so that other bodies do not compile it.

@@ -60,6 +60,14 @@ RefinementTree<M> tree_of(std::shared_ptr<Topology<M> const> const& topology) {
   return {std::make_shared<Hierarchy<M::dim>>(mesh), std::move(cells)};
 }
 
+/// Throws Error for an element that there is not.
+template <Element E>
+void check_number(char const* verb, Index element, std::size_t count) {
+  if (element < 0 || element >= static_cast<Index>(count))
+    throw Error(verb, ": there is no ", E::name(), " element ", element,
+                "; they are numbered 0 to ", count - 1);
+}
+
 /// The cells of marked elements, which are given by the user's numbers for each element type.
 template <class M>
 std::vector<Index> cells_of(RefinementTree<M> const& old, char const* verb,
@@ -69,9 +77,7 @@ std::vector<Index> cells_of(RefinementTree<M> const& old, char const* verb,
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty()) return;
     for (Index e : marked[type]) {
-      if (e < 0 || e >= static_cast<Index>(cells[type].size()))
-        throw Error(verb, ": there is no ", E::name(), " element ", e, "; they are numbered 0 to ",
-                    cells[type].size() - 1);
+      check_number<E>(verb, e, cells[type].size());
       found.push_back(cells[type][static_cast<std::size_t>(e)]);
     }
   });

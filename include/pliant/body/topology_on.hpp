@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/element_numbers_on.hpp>
+#include <pliant/body/leaf_order_on.hpp>
+#include <pliant/body/nodal_masses_on.hpp>
+#include <pliant/body/node_rows_on.hpp>
+#include <pliant/topology/hanging_nodes_on.hpp>
+#include <pliant/topology/marked_elements.hpp>
+#include <pliant/topology/tree_on.hpp>
+
+namespace pliant {
+
+/// What a body keeps of its topology in a backend's memory while its mesh is changed there.
+template <class M, Backend B>
+struct TopologyOn;
+
+/// Of a mesh with elements of one type.
+template <Element E, Backend B>
+struct TopologyOn<Mesh<E>, B> {
+  static constexpr int dim = E::dim;
+
+  TreeOn<B> tree;
+  LeafOrderOn<B> order;
+  NodeRowsOn<B> rows;
+  ElementNumbersOn<B> numbers;
+  HangingNodesOn<dim, B> hanging;
+  NodalMassesOn<E, B> masses;
+  typename B::template Array<double> points;  // (rows, node_stride), m
+
+  /// Of a body as it is. Takes a look at all of it.
+  template <class Parts>
+  explicit TopologyOn(Parts const& parts)
+      : TopologyOn(parts, detail::tree_of(parts.state.topology.shared())) {}
+
+  [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
+
+ private:
+  template <class Parts>
+  TopologyOn(Parts const& parts, detail::RefinementTree<Mesh<E>> const& known)
+      : tree(parts.backend, known.tree->tree().lists(), *known.tree->tree().cells_at_edges()),
+        order(parts.backend, leaves_of(parts, *known.cells), parts.layout.first_of_block[0],
+              tree.sizes().cells),
+        rows(parts.backend, parts.layout.node_rows()),
+        numbers(parts.backend, tree, order),
+        hanging(parts.backend),
+        masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density) {
+    std::vector<double> values(node_stride * static_cast<std::size_t>(rows.count()));
+    for (Index node = 0; node < parts.layout.nodes(); ++node)
+      for (std::size_t k = 0; k < dim; ++k)
+        values[node_stride * static_cast<std::size_t>(parts.layout.internal_of(node)) + k] =
+            parts.state.topology->point(node)[k];
+    points = upload(parts.backend, values);
+  }
+
+  /// The cells of the elements, in the order of the layout.
+  template <class Parts>
+  static std::vector<Index> leaves_of(Parts const& parts, std::vector<CellSet> const& cells) {
+    std::vector<Index> const by_number(cells[0].begin(), cells[0].end());
+    std::vector<Index> leaves;
+    for (Index const number : std::get<0>(parts.layout.tables).user_elements())
+      leaves.push_back(by_number[static_cast<std::size_t>(number)]);
+    return leaves;
+  }
+  template <class Parts>
+  static std::vector<detail::ExactSum> by_row(Parts const& parts) {
+    std::vector<detail::ExactSum> sums(static_cast<std::size_t>(parts.layout.rows));
+    for (Index node = 0; node < parts.layout.nodes(); ++node)
+      sums[static_cast<std::size_t>(parts.layout.internal_of(node))] =
+          parts.layout.own_masses()[static_cast<std::size_t>(node)];
+    return sums;
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,252 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include <pliant/body/compare.hpp>
+
+#include "support/formulations.hpp"
+#include "support/keeps_trees.hpp"
+
+// Bodies that are refined in their backend's memory, beside bodies that are refined on the host.
+namespace pliant::test::refinement_on_backend_suite {
+
+inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+template <class F>
+using Stiffer = Formulation<typename F::element, typename F::quadrature, Hooke>;
+
+/// A body with elements of two groups, displacements and velocities; some nodes are held. `on_host`: it is refined on the host, as a
+/// listener wants to know.
+template <class F, class B>
+auto body_of(B const& backend, bool on_host, Index cells) {
+  using E = typename F::element;
+  constexpr int dim = E::dim;
+  auto const mesh = distorted_mesh<E>(cells);
+  Body body{backend, mesh, soft, Group<F>{}, Group<Stiffer<F>>{}};
+  std::vector<Point<dim>> u(mesh.nodes.size()), v(u);
+  std::vector<Index> held;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    auto const& x = mesh.nodes[i];
+    for (std::size_t k = 0; k < dim; ++k) {
+      u[i][k] = 0.05 * x[(k + 1) % dim] * x[k] + 0.02 * std::sin(3 * x[0]);
+      v[i][k] = std::cos(2 * x[(k + 1) % dim]) - x[k];
+    }
+    if (i % 7 == 0) held.push_back(static_cast<Index>(i));
+  }
+  body.hold(held, 1);
+  body.set_displacements(u);
+  body.set_velocities(v);
+  std::vector<Index> stiff;
+  for (Index e = 0; e < static_cast<Index>(std::get<0>(mesh.tables).size()); e += 3)
+    stiff.push_back(e);
+  body.template assign<Stiffer<F>>(stiff);
+  body.set_loads(std::vector<Point<dim>>(mesh.nodes.size(), u[1]));
+  if (on_host) body.on_change([](auto const&) {});
+  return body;
+}
+
+template <class TheBody>
+Index count(TheBody const& body) {
+  return std::get<0>(body.parts().layout.tables).count();
+}
+template <class TheBody>
+std::vector<Index> some(TheBody const& body, std::size_t one_in, Random& random) {
+  std::vector<Index> list;
+  for (Index e = 0; e < count(body); ++e)
+    if (random.below(one_in) == 0) list.push_back(e);
+  if (list.empty()) list.push_back(0);
+  return list;
+}
+template <class TheBody>
+bool is_on_backend(TheBody const& body) {
+  return body.parts().topology_on != nullptr;
+}
+
+template <class Points>
+double largest_difference(Points const& a, Points const& b) {
+  REQUIRE(a.size() == b.size());
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < a[i].size(); ++k)
+      most = std::max(most, std::abs(a[i][k] - b[i][k]));
+  return most;
+}
+
+/// All that the host can ask of two bodies. `rounding`: of the body's precision.
+template <class OnBackend, class OnHost>
+void check_same(OnBackend& body, OnHost& host, double rounding) {
+  auto const &layout = body.parts().layout, &other = host.parts().layout;
+  REQUIRE(body.nodes() == host.nodes());
+  CHECK(body.mesh().nodes == host.mesh().nodes);
+  CHECK(body.mesh().tables == host.mesh().tables);
+  auto const &slaves = body.mesh().slaves, &wanted_slaves = host.mesh().slaves;
+  REQUIRE(slaves.size() == wanted_slaves.size());
+  for (std::size_t s = 0; s < slaves.size(); ++s) {
+    CHECK(slaves[s].node == wanted_slaves[s].node);
+    CHECK(slaves[s].masters == wanted_slaves[s].masters);
+  }
+  CHECK(body.mesh().boundaries == host.mesh().boundaries);
+  CHECK(layout.own_masses() == other.own_masses());
+  CHECK(layout.mass_list() == other.mass_list());
+  CHECK(layout.first_of_block == other.first_of_block);
+  CHECK(std::get<0>(layout.tables).user_elements() == std::get<0>(other.tables).user_elements());
+  CHECK(body.displacements() == host.displacements());
+  CHECK(largest_difference(body.velocities(), host.velocities()) < 40 * rounding);
+  using E = typename std::remove_cvref_t<decltype(std::get<0>(layout.tables))>::element;
+  CHECK(user_groups<E>(std::as_const(body.parts())) == user_groups<E>(std::as_const(host.parts())));
+  auto const forces = body.forces(), others = host.forces();
+  CHECK(largest_difference(forces, others) < 100 * rounding);
+  CHECK(nodal_loads_of(body.parts()) == nodal_loads_of(host.parts()));
+  CHECK(kinetic_energy(body) == Approx(kinetic_energy(host)).epsilon(100 * rounding));
+  auto const entries = ledger(body), wanted = ledger(host);
+  REQUIRE(entries.size() == wanted.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    CHECK(entries[i].action == wanted[i].action);
+    CHECK(entries[i].elements == wanted[i].elements);
+    CHECK(entries[i].strain_energy == Approx(wanted[i].strain_energy).margin(100 * rounding));
+    CHECK(entries[i].kinetic_energy == Approx(wanted[i].kinetic_energy).margin(100 * rounding));
+    for (std::size_t k = 0; k < OnHost::dim; ++k)
+      CHECK(entries[i].impulse[k] == Approx(wanted[i].impulse[k]).margin(100 * rounding));
+  }
+}
+
+template <class F, class B>
+void check_rounds(B const& backend, Index cells, std::size_t one_in, int rounds) {
+  double const rounding = std::numeric_limits<typename B::scalar>::epsilon();
+  auto body = body_of<F>(backend, false, cells), host = body_of<F>(backend, true, cells);
+  Random random(3);
+  for (int round = 0; round < rounds; ++round) {
+    auto const marked = some(host, one_in, random);
+    auto const done = refine(body, {marked}, 3), wanted = refine(host, {marked}, 3);
+    CHECK(done.refined == wanted.refined);
+    CHECK(done.new_nodes == wanted.new_nodes);
+    REQUIRE(is_on_backend(body));
+    REQUIRE(!is_on_backend(host));
+    if (round % 2 == 0) check_same(body, host, rounding);  // at times the host waits for two
+  }
+  CHECK(!body.mesh().slaves.empty());
+  check_same(body, host, rounding);
+  CentralDifference step({.step = 0.1 * stable_step(host)}),
+      other({.step = 0.1 * stable_step(host)});
+  step(body, 5);
+  other(host, 5);
+  CHECK(largest_difference(body.displacements(), host.displacements()) < 1000 * rounding);
+}
+
+TEST_CASE("a body that is refined in its backend's memory is the one that the host would make",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_rounds<Formulation<Tri3, Gauss<1>, NeoHookean>>(backend, 6, 6, 4);
+    check_rounds<Formulation<Quad4, Gauss<2>, NeoHookean>>(backend, 6, 6, 4);
+    check_rounds<Formulation<Tet4, Gauss<1>, NeoHookean>>(backend, 4, 20, 3);
+    check_rounds<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 4, 20, 3);
+  });
+  check_rounds<Formulation<Tet4, Gauss<1>, NeoHookean>>(KeepingFloat{}, 4, 20, 2);
+}
+
+TEST_CASE("what moves as one goes on to the bit where it is refined on a backend", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tet4, Gauss<1>, NeoHookean>;
+    auto body = body_of<F>(backend, false, 3);
+    Point<3> const velocity{0.1, -0.7, 1.0 / 3};
+    body.set_velocities(std::vector<Point<3>>(at(body.nodes()), velocity));
+    // Held nodes were stopped.
+    auto free = Body{backend, distorted_mesh<Tet4>(3), soft, Group<F>{}};
+    free.set_velocities(std::vector<Point<3>>(at(free.nodes()), velocity));
+    free.set_displacements(std::vector<Point<3>>(at(free.nodes()), velocity));
+    Random random(9);
+    for (int round = 0; round < 4; ++round) refine(free, {some(free, 20, random)});
+    REQUIRE(is_on_backend(free));
+    int wrong = 0;
+    for (auto const& v : free.velocities()) wrong += v != velocity;
+    for (auto const& u : free.displacements()) wrong += u != velocity;
+    CHECK(wrong == 0);
+  });
+}
+
+TEST_CASE("a body goes on from a refinement on its backend by any other change", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    double const rounding = std::numeric_limits<double>::epsilon();
+    auto body = body_of<F>(backend, false, 5), host = body_of<F>(backend, true, 5);
+    auto const first = body.mesh();
+    auto const masses = body.parts().layout.own_masses();
+    Random random(4);
+    auto const refine_both = [&] {
+      auto const marked = some(host, 5, random);
+      refine(body, {marked});
+      refine(host, {marked});
+    };
+    refine_both();
+    refine_both();
+    REQUIRE(is_on_backend(body));
+    auto const merged = some(host, 2, random);
+    CHECK(coarsen(body, {merged}).merged == coarsen(host, {merged}).merged);
+    CHECK(largest_difference(body.velocities(), host.velocities()) < 40 * rounding);
+    CHECK(body.mesh().tables == host.mesh().tables);
+    refine_both();
+    check_same(body, host, rounding);
+
+    std::ostringstream saved(std::ios::binary);
+    body.save(saved);
+    auto other = body_of<F>(backend, false, 5);
+    std::istringstream stream(saved.str(), std::ios::binary);
+    other.load(stream);
+    CHECK(same_state(other.state(), body.state()));
+    CHECK(other.parts().layout.own_masses() == body.parts().layout.own_masses());
+
+    for (std::size_t merged_now = 1; merged_now > 0;) {
+      std::vector<Index> all(at(count(body)));
+      for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+      merged_now = coarsen(body, {all}).merged;
+    }
+    CHECK(body.mesh().nodes == first.nodes);
+    CHECK(body.mesh().tables == first.tables);
+    CHECK(body.parts().layout.own_masses() == masses);
+  });
+}
+
+TEST_CASE("where a refinement on a backend fails, the body is as it was", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Quad4, Gauss<2>, NeoHookean>;
+    auto body = body_of<F>(backend, false, 5), same = body_of<F>(backend, false, 5);
+    Random random(2);
+    auto const marked = some(body, 4, random);
+    refine(body, {marked});
+    refine(same, {marked});
+    auto const check_unchanged = [&] {
+      CHECK(same_state(body.state(), same.state()));
+      CHECK(body.parts().layout.own_masses() == same.parts().layout.own_masses());
+    };
+    set_mesh_limits(body, {.nodes = at(body.nodes()) + 2});
+    CHECK_THROWS_AS(refine(body, {{0, 1, 2, 3}}), Error);
+    check_unchanged();
+    set_mesh_limits(body, {});
+    CHECK_THROWS_AS(refine(body, {{0, count(body)}}), Error);
+    CHECK_THROWS_AS(refine(body, {{-1}}), Error);
+    check_unchanged();
+    // Set past the body's own checks.
+    auto const before = download<double>(body.parts().state.v);
+    auto broken = before;
+    broken[0] = std::numeric_limits<double>::quiet_NaN();
+    body.parts().state.v.upload(broken);
+    CHECK_THROWS_AS(refine(body, {{0}}), Error);
+    body.parts().state.v.upload(before);
+    check_unchanged();
+
+    auto const next = some(body, 6, random);
+    CHECK(refine(body, {next}).refined == refine(same, {next}).refined);
+    REQUIRE(is_on_backend(body));
+    CHECK(body.mesh().tables == same.mesh().tables);
+    CHECK(body.parts().layout.own_masses() == same.parts().layout.own_masses());
+    CHECK(body.displacements() == same.displacements());
+    CHECK(largest_difference(body.velocities(), same.velocities()) < 1e-14);
+    CHECK(refine(body, {{}}).refined == 0);
+    CHECK(is_on_backend(body));
+  });
+}
+
+}  // namespace pliant::test::refinement_on_backend_suite
