@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -145,6 +146,27 @@ TEST_CASE("a body that is refined in its backend's memory is the one that the ho
     check_rounds<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 4, 20, 3);
   });
   check_rounds<Formulation<Tet4, Gauss<1>, NeoHookean>>(KeepingFloat{}, 4, 20, 2);
+}
+
+TEST_CASE("rules refine a body in its backend's memory as on the host", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    double const rounding = std::numeric_limits<double>::epsilon();
+    auto body = body_of<F>(backend, false, 6), host = body_of<F>(backend, true, 6);
+    Adaptation adapt{when<F>(ForceIntensity<>{}).bulk(0.4).budget(9).refine({.max_level = 2}),
+                     when<Stiffer<F>>(ForceIntensity<>{}).above(1e9).refine({.max_level = 2})};
+    auto other = adapt;
+    for (int round = 0; round < 5; ++round) {
+      adapt.now(body);
+      other.now(host);
+      REQUIRE(is_on_backend(body));
+      REQUIRE(!is_on_backend(host));
+      CHECK(count(body) == count(host));
+    }
+    check_same(body, host, rounding);
+    auto const levels = refinement_levels<Tri3>(body);
+    CHECK(*std::ranges::max_element(levels) == 2);
+  });
 }
 
 TEST_CASE("what moves as one goes on to the bit where it is refined on a backend", "[adaptation]") {

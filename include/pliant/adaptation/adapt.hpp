@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/adaptation/criteria_visitor.hpp>
+#include <pliant/adaptation/lists_on.hpp>
 #include <pliant/body/parts.hpp>
 
 namespace pliant {
@@ -53,7 +54,7 @@ void adapt(TheBody& body, C const& criterion, S const& strategy) {
   using Table = std::remove_cvref_t<decltype(table)>;
   auto& workspace = table.criteria;
   if (workspace.number.size() < static_cast<std::size_t>(table.count()))
-    workspace.number = upload(parts.backend, table.user_elements());
+    workspace.number = detail::numbers_on_backend(parts, table);
   detail::TableRules<Table, detail::Look<F, C>> const rules{{detail::Look<F, C>{criterion}}};
   detail::evaluate_criteria(
       std::as_const(parts), std::as_const(table), detail::active(std::as_const(table).elements),

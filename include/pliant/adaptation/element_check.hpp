@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/adaptation/lists_on.hpp>
 #include <pliant/adaptation/switching.hpp>
 #include <pliant/body/criteria_workspace.hpp>
 #include <pliant/solver/stiffening.hpp>
@@ -96,7 +97,7 @@ class ElementCheck {
     void hold_ranking(std::size_t rankings) {
       auto& w = check_.workspace();
       if (w.number.size() < count()) {
-        w.number = upload(check_.backend(), check_.table_.user_elements());
+        w.number = numbers_on_backend(check_.parts_, check_.table_);
         made = true;
       }
       hold(w.rankings, rankings);

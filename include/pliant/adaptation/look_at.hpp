@@ -145,7 +145,9 @@ class LookAt {
         int max_level = 0;
         auto const& marked = find_marked(max_level);
         auto const measured = parts_.timers.migration.measure();
-        auto found = plan_change(parts_, marked, max_level);
+        std::optional<TopologyPlan<typename Parts::mesh_type>> found;
+        if (refine_on_backend(parts_, marked, max_level)) return found;
+        found = plan_change(parts_, marked, max_level);
         if (found) commit(parts_, *found);
         return found;
       } catch (...) {  // the mesh is the one of before

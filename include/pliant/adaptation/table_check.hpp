@@ -3,6 +3,7 @@
 #include <pliant/adaptation/decision.hpp>
 #include <pliant/adaptation/element_check.hpp>
 #include <pliant/adaptation/gradient_range.hpp>
+#include <pliant/adaptation/lists_on.hpp>
 #include <pliant/adaptation/mesh_lists.hpp>
 #include <pliant/adaptation/move_where_noted.hpp>
 #include <pliant/adaptation/ranking.hpp>
@@ -141,9 +142,8 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
       auto const decision = this->decision();
       if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return MeshRule<R>; });
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
-      auto const masks = download<std::uint32_t>(workspace().mesh_marks);
-      for (std::size_t e = 0; e < static_cast<std::size_t>(table_.count()); ++e)
-        if (masks[e] != 0) lists.add(table_.user_element(static_cast<Index>(e)), masks[e]);
+      visit_marked(parts_, table_, workspace().mesh_marks.data(),
+                   [&](Index element, std::uint32_t by_rules) { lists.add(element, by_rules); });
     }
   }
   void keep() const {
@@ -170,7 +170,7 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
       auto& w = workspace();
       room.hold(w.mesh_marks, room.count());
       if (w.levels.size() < room.count()) {
-        w.levels = upload(backend(), internal_levels());
+        w.levels = levels_on_backend(parts_, table_);
         room.made = true;
       }
     }
@@ -255,13 +255,6 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
              RankedValues<T>{w.values.data() + offset, w.candidates.data(), w.number.data(),
                              table_.count(), marking.below() ? T(-1) : T(1)},
              w.histogram.data(), w.rankings.data() + R);
-  }
-  std::vector<int> internal_levels() const {
-    auto const levels = levels_of<typename Table::element>(parts_);
-    std::vector<int> internal;
-    for (Index element : table_.user_elements())
-      internal.push_back(levels[static_cast<std::size_t>(element)]);
-    return internal;
   }
 
   All rules_;

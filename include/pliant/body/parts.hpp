@@ -73,8 +73,9 @@ struct Parts {
 
   state_type state{};
   layout_type layout;
-  std::shared_ptr<TopologyOn<M, B>>
-      topology_on{};  // while the mesh is changed in the backend's memory
+  /// While the mesh is changed in the backend's memory.
+  std::shared_ptr<TopologyOn<M, B>> topology_on{};
+  bool mesh_is_on_host = false;  // since the host changed it
 
   Terms pressures{};  // of state.prescribed
   /// Makes them; set once there is a pressure, so that other bodies do not compile it.

@@ -44,11 +44,12 @@ inline constexpr bool refines_on_backend = [] {
   }
 }();
 
-/// Whether nothing of a body has to look at lists of the host when its mesh is refined.
+/// Whether nothing of a body has to look at lists of the host when its mesh is refined, and the host has not changed it: what it
+/// does then takes less time than to bring the mesh over again.
 template <class Parts>
 bool can_refine_on_backend(Parts const& parts) {
   auto const& prescribed = *parts.state.prescribed;
-  return parts.listeners.empty() && parts.term_makers.empty() && parts.sleep == nullptr &&
+  return !parts.mesh_is_on_host && parts.listeners.empty() && parts.term_makers.empty() && parts.sleep == nullptr &&
          prescribed.pressures.empty() &&
          std::ranges::none_of(
              prescribed.conditions,

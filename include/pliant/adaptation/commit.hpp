@@ -1,0 +1,177 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pliant/adaptation/family_momentum.hpp>
+#include <pliant/backend/value_at.hpp>
+#include <pliant/body/change_topology.hpp>
+#include <pliant/body/refine_on.hpp>
+#include <pliant/topology/plan.hpp>
+
+// Changes of a body's mesh: planned on the host and put in force, or made in the backend's memory.
+namespace pliant {
+
+namespace detail {
+
+/// What a body's conditions need where elements are merged.
+template <class Parts>
+KeptParts<Parts::dim> kept_parts(Parts const& parts) {
+  KeptParts<Parts::dim> kept;
+  auto const& prescribed = *parts.state.prescribed;
+  for (auto const& condition : prescribed.conditions) {
+    if (condition.facets.empty())
+      kept.nodes.insert(kept.nodes.end(), condition.nodes.begin(), condition.nodes.end());
+    else
+      kept.facets.push_back(&condition.facets);
+  }
+  for (auto const& pressure : prescribed.pressures) kept.facets.push_back(&pressure.facets);
+  return kept;
+}
+
+/// What a change does, in words.
+template <class M>
+std::string actions_of(TopologyPlan<M> const& plan) {
+  std::string words;
+  auto const add = [&](std::size_t count, char const* word) {
+    if (count > 0) words += (words.empty() ? "" : " and ") + std::string(word);
+  };
+  auto const& counts = plan.counts;
+  add(counts.refined, "refine");
+  add(counts.coarsened, "coarsen");
+  add(counts.raised, "raise");
+  add(counts.lowered, "lower");
+  add(counts.split, "split");
+  add(counts.merged, "merge");
+  return words;
+}
+
+/// How many elements a change acts on.
+template <class M>
+std::size_t count_actions(TopologyPlan<M> const& plan) {
+  auto const& counts = plan.counts;
+  return counts.refined + counts.coarsened + counts.raised + counts.lowered + counts.split +
+         counts.merged;
+}
+
+}  // namespace detail
+
+/// Plans a change of a body's mesh: see refine, coarsen, raise, lower, split and merge. Empty where nothing changes. Throws Error where an
+/// element is unknown or the body's limits would be exceeded.
+template <class Parts>
+auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
+  HostThreads const threads(parts.backend, *parts.state.topology);
+  return plan_change(parts.state.topology.shared(), marked,
+                     {parts.limits.nodes, parts.limits.elements, max_level},
+                     detail::kept_parts(parts), detail::element_values_of(parts));
+}
+
+namespace detail {
+
+/// Puts a ChangedTopology, which change() gives, in force, and books what it does to energies. `actions`, `count`: in words, and
+/// on how many elements it acts.
+template <class Parts, class Change>
+void commit_change(Parts& parts, std::string actions, std::size_t count, Change const& change) {
+  constexpr int dim = Parts::dim;
+  wake_all(parts);
+  auto const energies_but_strain = [](Parts& p) {
+    return Energies{0, kinetic_energy_of(p), p.watched_energy ? potential_energy_of(p) : 0};
+  };
+  auto const energy_now = [](Parts& p, Energies const& energies) {
+    return p.watched_energy ? p.watched_energy(p, energies) : WatchedEnergy{energies, 0};
+  };
+  auto energies = energies_but_strain(parts);
+  auto changed = change();
+  auto& next = changed.parts;
+  energies.strain = changed.strain_energy_before;
+  auto const before = energy_now(parts, energies);
+  energies = energies_but_strain(next);
+  energies.strain = changed.strain_energy;
+  auto const after = energy_now(next, energies);
+  auto const added_to = [](double from, double to) { return zero_if_not_finite(to - from); };
+  LedgerEntry<dim> const entry{next.state.time,
+                               std::move(actions),
+                               static_cast<double>(count),
+                               added_to(before.energies.strain, after.energies.strain),
+                               added_to(before.energies.kinetic, after.energies.kinetic),
+                               changed.taken};
+  next.state.record.refinements.push_back(entry);
+  // The energy that an integrator keeps may have changed by more, with masses and forces.
+  double const added = next.watched_energy ? watched_change(next, before, after) : 0;
+  if (next.watched_energy && next.state.integrator.active)
+    next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
+  put_in_force(parts, std::move(next));
+}
+
+/// What became of a refinement in a backend's memory.
+struct RefinedOn {
+  std::size_t refined = 0, new_nodes = 0;
+};
+/// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine; where one comes late, what
+/// was kept of the mesh there is made anew when it is needed.
+template <class Parts>
+std::optional<RefinedOn> refine_on_backend(Parts& parts, MarkedElements const& wanted,
+                                           int max_level) {
+  if constexpr (refines_on_backend<Parts>) {
+    using On = TopologyOn<typename Parts::mesh_type, typename Parts::backend_type>;
+    auto others = wanted;
+    auto const marked = std::exchange(others.refine, {});
+    if (!others.none() || !can_refine_on_backend(parts)) return std::nullopt;
+    if (marked.empty() || marked[0].empty()) return RefinedOn{};
+    auto const& table = std::get<0>(parts.layout.tables);
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    for (Index const e : marked[0])
+      check_number<E>("refine", e, static_cast<std::size_t>(table.count()));
+    auto& on = parts.topology_on;
+    if (!on) on = std::make_shared<On>(std::as_const(parts));
+    auto cells = upload(parts.backend, marked[0]);
+    auto const count = static_cast<Index>(marked[0].size());
+    parts.backend.for_each(count, CellsOfNumbers{on->numbers.cells(), cells.data()});
+    auto const refined = on->tree.refine(cells.data(), count,
+                                         {parts.limits.nodes, parts.limits.elements, max_level});
+    if (refined.leaves > 0) {
+      auto kept = std::exchange(on, nullptr);  // gone where something throws
+      commit_change(parts, "refine", static_cast<std::size_t>(refined.leaves), [&] {
+        auto changed = RefinedParts<Parts>(parts, *kept, refined).make();
+        kept->numbers.find(parts.backend, kept->tree, kept->order);
+        changed.parts.topology_on = kept;
+        return changed;
+      });
+      on->tree.keep();
+    }
+    return RefinedOn{static_cast<std::size_t>(refined.leaves),
+                     static_cast<std::size_t>(refined.new_nodes)};
+  } else {
+    return std::nullopt;
+  }
+}
+
+}  // namespace detail
+
+/// Makes a planned change; listeners wait for tell_listeners. Throws Error, with the body as it was, where
+/// fields are not finite, a force term cannot be made anew or memory runs out.
+template <class Parts>
+void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+  HostThreads const threads(parts.backend, *plan.after);
+  auto const give_back = [&](auto const& touched, auto const& layout, auto const& held,
+                             auto v_before, auto& v) {
+    return detail::give_momentum_back(plan, touched, parts.material.density, layout, held,
+                                      std::move(v_before), v);
+  };
+  detail::commit_change(parts, detail::actions_of(plan), detail::count_actions(plan), [&] {
+    return change_topology(parts, plan.after, plan.transfer, give_back);
+  });
+  parts.mesh_is_on_host = true;
+}
+
+/// Tells a body's listeners of a change that was made. What one throws is the caller's: the mesh is changed,
+/// and listeners after it are not told.
+template <class Parts>
+void tell_listeners(Parts const& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+  for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
+}
+
+}  // namespace pliant

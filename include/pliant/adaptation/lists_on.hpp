@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <pliant/adaptation/refinement.hpp>
+#include <pliant/backend/copy_values.hpp>
+
+// What rules know of the elements of a table by their internal numbers, in the backend's memory: where the mesh is changed
+// there, the host is not asked.
+namespace pliant::detail {
+
+struct LevelOfLeaf {
+  TreeView tree;
+  Index const* leaves;
+  int* levels;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    levels[i] = tree.cells[static_cast<std::size_t>(leaves[i])].level;
+  }
+};
+template <class U>
+struct TakeListed {
+  U const* from;
+  Index const* places;
+  U* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[places[i]]; }
+};
+struct IsMarked {
+  std::uint32_t const* masks;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return masks[i] != 0; }
+};
+
+/// The user's numbers.
+template <class Parts, class Table>
+auto numbers_on_backend(Parts const& parts, Table const& table) {
+  if constexpr (refines_on_backend<Parts>)
+    if (parts.topology_on) {
+      auto numbers = zeros<Index>(parts.backend, static_cast<std::size_t>(table.count()));
+      copy_values(parts.backend, parts.topology_on->numbers.numbers(), numbers.data(),
+                  numbers.size());
+      return numbers;
+    }
+  return upload(parts.backend, table.user_elements());
+}
+/// How often each element was refined.
+template <class Parts, class Table>
+auto levels_on_backend(Parts const& parts, Table const& table) {
+  if constexpr (refines_on_backend<Parts>)
+    if (auto const& on = parts.topology_on) {
+      auto levels = zeros<int>(parts.backend, static_cast<std::size_t>(table.count()));
+      parts.backend.for_each(table.count(),
+                             LevelOfLeaf{on->tree.view(), on->order.leaves(), levels.data()});
+      return levels;
+    }
+  auto const levels = levels_of<typename Table::element>(parts);
+  std::vector<int> internal;
+  for (Index element : table.user_elements())
+    internal.push_back(levels[static_cast<std::size_t>(element)]);
+  return upload(parts.backend, internal);
+}
+
+/// Calls visit(the user's number, mask) for the elements of which the mask is not zero, in internal order. `masks`: by the
+/// internal number, in the backend's memory.
+template <class Parts, class Table, class Visit>
+void visit_marked(Parts const& parts, Table const& table, std::uint32_t const* masks,
+                  Visit const& visit) {
+  auto const& backend = parts.backend;
+  auto places = backend.select(table.count(), IsMarked{masks});
+  if (places.empty()) return;
+  auto const count = static_cast<Index>(places.size());
+  auto const list = upload(backend, places);
+  auto some = zeros<std::uint32_t>(backend, places.size());
+  backend.for_each(count, TakeListed<std::uint32_t>{masks, list.data(), some.data()});
+  auto const own = download<std::uint32_t>(some);
+  auto const number_all = [&] {
+    if constexpr (refines_on_backend<Parts>)
+      if (auto const& on = parts.topology_on) {
+        auto numbers = zeros<Index>(backend, places.size());
+        backend.for_each(count,
+                         TakeListed<Index>{on->numbers.numbers(), list.data(), numbers.data()});
+        {
+          numbers.download(places);
+          return;
+        }
+      }
+    for (Index& place : places) place = table.user_element(place);
+  };
+  number_all();
+  for (std::size_t k = 0; k < places.size(); ++k) visit(places[k], own[k]);
+}
+
+}  // namespace pliant::detail
