@@ -38,6 +38,8 @@ auto body_of(B const& backend, bool on_host, Index cells) {
     if (i % 7 == 0) held.push_back(static_cast<Index>(i));
   }
   body.hold(held, 1);
+  body.hold(mesh.boundary("left"), 2);
+  body.hold(mesh.boundary("bottom"), 3);
   body.set_displacements(u);
   body.set_velocities(v);
   std::vector<Index> stiff;
@@ -93,6 +95,21 @@ void check_same(OnBackend& body, OnHost& host, double rounding) {
   CHECK(layout.own_masses() == other.own_masses());
   CHECK(layout.mass_list() == other.mass_list());
   CHECK(layout.first_of_block == other.first_of_block);
+  auto const &conditions = body.state().prescribed->conditions,
+             &wanted_conditions = host.state().prescribed->conditions;
+  REQUIRE(conditions.size() == wanted_conditions.size());
+  for (std::size_t c = 0; c < conditions.size(); ++c) {
+    CHECK(conditions[c].nodes == wanted_conditions[c].nodes);
+    CHECK(conditions[c].facets == wanted_conditions[c].facets);
+  }
+  auto const held_in = [](auto const& parts) {
+    auto const by_row = download<DirectionMask>(parts.layout.held);
+    std::vector<int> by_node;
+    for (Index node = 0; node < parts.layout.nodes(); ++node)
+      by_node.push_back(by_row[at(parts.layout.internal_of(node))]);
+    return by_node;
+  };
+  CHECK(held_in(body.parts()) == held_in(host.parts()));
   CHECK(std::get<0>(layout.tables).user_elements() == std::get<0>(other.tables).user_elements());
   CHECK(body.displacements() == host.displacements());
   CHECK(largest_difference(body.velocities(), host.velocities()) < 40 * rounding);

@@ -127,6 +127,7 @@ std::optional<RefinedOn> refine_on_backend(Parts& parts, MarkedElements const& w
       check_number<E>("refine", e, static_cast<std::size_t>(table.count()));
     auto& on = parts.topology_on;
     if (!on) on = std::make_shared<On>(std::as_const(parts));
+    on->follow_conditions(std::as_const(parts));
     auto cells = upload(parts.backend, marked[0]);
     auto const count = static_cast<Index>(marked[0].size());
     parts.backend.for_each(count, CellsOfNumbers{on->numbers.cells(), cells.data()});

@@ -61,7 +61,7 @@ struct MarkBeside {
 template <class Parts>
 void mark_driven(Parts& parts) {
   auto& rows = *parts.patch_nodes;
-  if (rows.driven_by == parts.state.prescribed) return;
+  if (rows.driven_by == parts.state.prescribed.shared()) return;
   std::vector<std::uint8_t> driven(rows.driven.size());
   for (auto const& condition : parts.state.prescribed->conditions) {
     if (!condition.motion) continue;
@@ -72,7 +72,7 @@ void mark_driven(Parts& parts) {
     }
   }
   for (auto* marks : {&rows.driven, &rows.stirred}) marks->upload(driven);
-  rows.driven_by = parts.state.prescribed;
+  rows.driven_by = parts.state.prescribed.shared();
 }
 
 /// Marks the pieces of patches that are not at rest, by 1, so many rings of neighbours around them, by more, and leaves the

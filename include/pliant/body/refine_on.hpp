@@ -11,6 +11,7 @@
 #include <pliant/body/change_topology.hpp>
 #include <pliant/body/element_rows_on.hpp>
 #include <pliant/body/fill_new_nodes_on.hpp>
+#include <pliant/body/refine_passes.hpp>
 #include <pliant/body/topology_on.hpp>
 #include <pliant/topology/plan.hpp>
 
@@ -48,82 +49,33 @@ inline constexpr bool refines_on_backend = [] {
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>
 bool can_refine_on_backend(Parts const& parts) {
-  auto const& prescribed = *parts.state.prescribed;
-  return !parts.mesh_is_on_host && parts.listeners.empty() && parts.term_makers.empty() && parts.sleep == nullptr &&
-         prescribed.pressures.empty() &&
-         std::ranges::none_of(
-             prescribed.conditions,
-             [](auto const& condition) { return !condition.facets.empty() || condition.motion; }) &&
-         parts.first->interpolation.empty();
+  if (parts.mesh_is_on_host || !parts.listeners.empty() || !parts.term_makers.empty() ||
+      parts.sleep != nullptr || !parts.pressures.empty() || !parts.driven.empty())
+    return false;
+  return parts.first->interpolation.empty();
 }
 
-/// cells[k] = of[cells[k]], from numbers of elements.
-struct CellsOfNumbers {
-  Index const* of;
-  Index* numbers;
-  PLIANT_HOST_DEVICE void operator()(Index k) const { numbers[k] = of[numbers[k]]; }
+/// What the host knows of a mesh that was refined in a backend's memory.
+template <class M>
+struct RefinedOnHost {
+  std::shared_ptr<Topology<M> const> topology;
+  std::shared_ptr<Prescribed<M::dim> const> prescribed;
 };
-struct CellOfSplit {
-  CellSplit const* splits;
-  Index* cells;
-  PLIANT_HOST_DEVICE void operator()(Index r) const { cells[r] = splits[r].cell; }
-};
-/// Where a new node is at rest.
-template <class T, int Dim>
-struct PlaceAtRest {
-  PlacedNode const* nodes;
-  Index const* of_node;
-  NodeField<double const, Dim> points;
-  Point<Dim> middle;
-  NodeField<T, Dim> rest;
-  PLIANT_HOST_DEVICE void operator()(Index k) const {
-    Index const row = of_node[nodes[k].node];
-    for (int d = 0; d < Dim; ++d)
-      rest(row, d) = static_cast<T>(points(row, d) - middle[static_cast<std::size_t>(d)]);
-  }
-};
-/// The rows of nodes, and groups, of refined elements or of all of their children.
-template <Element E, int Width>
-struct TakeFamilies {
-  RefinedElements<E> elements;
-  bool children;
-  Tag const* tags_before;  // by the place before; null: all are of group 0
-  Index const *places, *from;
-  Index* rows;
-  Tag* tags;
-
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    constexpr Index per_family = RefinedElements<E>::most_children;
-    Index const r = children ? i / per_family : i;
-    Index const c = elements.cell(r, children ? i % per_family : -1);
-    auto const own = elements.rows_of(c);
-    for (std::size_t a = 0; a < own.size(); ++a)
-      rows[static_cast<std::ptrdiff_t>(Width) * i + static_cast<std::ptrdiff_t>(a)] = own[a];
-    if (tags_before != nullptr) tags[i] = tags_before[from[places[elements.cell(r, 0)]]];
-  }
-};
-
-/// An array of `count` values of which the first are those of another one.
-template <class B, class Array>
-Array extended(B const& backend, Array const& from, std::size_t count) {
-  using U = ValueOf<Array>;
-  auto longer = zeros<U>(backend, count);
-  copy_values<B, U>(backend, from.data(), longer.data(), std::min(count, from.size()));
-  return longer;
-}
-
-/// The topology before a change, with some of its cells refined, when it is asked for.
+/// The topology of a body, with some of its cells refined, and conditions there, when they are asked for.
 template <class Parts, class Cells>
-WhenAsked<Topology<typename Parts::mesh_type>> refined_when_asked(Parts const& parts,
-                                                                  std::shared_ptr<Cells> cells) {
+auto refined_when_asked(Parts const& parts, std::shared_ptr<Cells> cells) {
   using M = typename Parts::mesh_type;
-  return WhenAsked<Topology<M>>::by(
-      [before = parts.state.topology, cells = std::move(cells),
-       values = element_values_of(parts)]() -> std::shared_ptr<Topology<M> const> {
+  using Refined = RefinedOnHost<M>;
+  return WhenAsked<Refined>::by(
+      [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
+       values = element_values_of(parts)]() -> std::shared_ptr<Refined const> {
         MarkedElements marked{.refine = {download<Index>(*cells)}};
         if (before->tree)
           for (Index& number : marked.refine[0]) number = before->cells[0].rank(number);
-        return plan_change(before.shared(), marked, {}, {}, values)->after;
+        auto const plan = plan_change(before.shared(), marked, {}, {}, values);
+        return std::make_shared<Refined>(Refined{
+            plan->after,
+            std::make_shared<Prescribed<M::dim> const>(carried(*prescribed, plan->transfer))});
       });
 }
 
@@ -177,7 +129,7 @@ class RefinedParts {
     double const energy_before = strain_energy(elements, false, layout, parts_.state.u);
 
     ChangedTopology<Parts> changed{
-        parts_on(parts_, std::move(layout), topology_, parts_.state.prescribed), {}, energy_before};
+        parts_on(parts_, std::move(layout), topology_, prescribed_), {}, energy_before};
     auto& next = changed.parts;
     auto& state = next.state;
     state.record.totals = closed_totals(parts_);
@@ -230,7 +182,9 @@ class RefinedParts {
   Layout new_layout() {
     auto cells = std::make_shared<Array<Index>>(zeros<Index>(backend_, at(refined_.leaves)));
     backend_.for_each(refined_.leaves, CellOfSplit{refined_.cells, cells->data()});
-    topology_ = refined_when_asked(parts_, std::move(cells));
+    auto const refined = refined_when_asked(parts_, std::move(cells));
+    topology_ = WhenAsked<Topology<M>>::by([refined] { return refined->topology; });
+    prescribed_ = WhenAsked<Prescribed<dim>>::by([refined] { return refined->prescribed; });
 
     auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_.rows.lists());
     WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
@@ -258,6 +212,8 @@ class RefinedParts {
     auto const scratch = std::get<0>(layout.tables).elements.scratch_nodes();
     layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
     layout.held = extended(backend_, before.held, at(rows_));
+    on_.held.refine(backend_, on_.tree, refined_, on_.rows.of_node(), layout.held.data());
+    on_.prescribed = prescribed_;
     layout.mass = zeros<T>(backend_, at(rows_));
     layout.interpolation =
         InterpolationOn<B>(backend_, on_.hanging.rows(on_.tree, on_.rows.of_node()));
@@ -319,6 +275,7 @@ class RefinedParts {
   B const& backend_;
   Index rows_ = 0;
   WhenAsked<Topology<M>> topology_;
+  WhenAsked<Prescribed<dim>> prescribed_;
   std::shared_ptr<Array<ExactSum>> own_masses_;
   std::shared_ptr<Array<double>> kilograms_;
 };

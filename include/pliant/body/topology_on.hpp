@@ -6,9 +6,11 @@
 #include <vector>
 
 #include <pliant/body/element_numbers_on.hpp>
+#include <pliant/body/held_sides_on.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/body/nodal_masses_on.hpp>
 #include <pliant/body/node_rows_on.hpp>
+#include <pliant/body/when_asked.hpp>
 #include <pliant/topology/hanging_nodes_on.hpp>
 #include <pliant/topology/marked_elements.hpp>
 #include <pliant/topology/tree_on.hpp>
@@ -31,6 +33,8 @@ struct TopologyOn<Mesh<E>, B> {
   HangingNodesOn<dim, B> hanging;
   NodalMassesOn<E, B> masses;
   typename B::template Array<double> points;  // (rows, node_stride), m
+  HeldSidesOn<dim, B> held;
+  WhenAsked<Prescribed<dim>> prescribed{};  // that `held` is of
 
   /// Of a body as it is. Takes a look at all of it.
   template <class Parts>
@@ -38,6 +42,14 @@ struct TopologyOn<Mesh<E>, B> {
       : TopologyOn(parts, detail::tree_of(parts.state.topology.shared())) {}
 
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
+  /// Brings what is held up to a body's conditions, where these have changed.
+  template <class Parts>
+  void follow_conditions(Parts const& parts) {
+    if (prescribed.is(parts.state.prescribed)) return;
+    held.set(parts.backend, *detail::tree_of(parts.state.topology.shared()).tree,
+             parts.state.prescribed->conditions);
+    prescribed = parts.state.prescribed;
+  }
 
  private:
   template <class Parts>
