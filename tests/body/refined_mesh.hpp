@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include <pliant/body/cell_order.hpp>
@@ -19,7 +21,7 @@ std::vector<U> taken(B const& backend, U const* values, Index count) {
   return download<U>(array);
 }
 
-/// A mesh that is refined on the host and in a backend's memory.
+/// A mesh that is refined and coarsened on the host and in a backend's memory.
 template <class B, Element... Es>
 struct RefinedMesh {
   using M = Mesh<Es...>;
@@ -33,6 +35,10 @@ struct RefinedMesh {
   NodeRows rows_before;
   std::vector<Index> leaves_before;
   typename TreeOn<B>::Refined refined{};
+  Coarsened coarsened{};
+  // Of the last change: new numbers of cells and nodes, −1: gone; and families that were merged.
+  Renumbering renumbered;
+  std::vector<MergedFamily> families;
 
   RefinedMesh(B const& on, M const& mesh)
       : backend(on),
@@ -45,15 +51,51 @@ struct RefinedMesh {
 
   void refine(std::vector<Index> const& marked) {
     auto const list = upload(backend, marked);
-    rows_before = rows.download_all();
-    leaves_before = leaves();
+    note_before();
     refined = tree.refine(list.data(), static_cast<Index>(marked.size()));
     host->refine(marked);
     order.refine(tree, refined);
     rows.refine(tree, order, refined);
     tree.keep();
   }
+  /// Merges families of marked leaves; returns how many.
+  Index coarsen(std::vector<Index> const& marked) {
+    auto const list = upload(backend, marked);
+    note_before();
+    auto const parents = host->families(marked);
+    for (Index const c : parents) {
+      auto const& cell = host->cell(c);
+      auto const first = std::ranges::find(leaves_before, cell.first_child);
+      families.push_back({.first_before = static_cast<Index>(first - leaves_before.begin()),
+                          .children = cell.divided().children});
+    }
+    auto const wanted = host->merge(parents);
+    if (!parents.empty()) renumbered = wanted.renumbered;
+    coarsened = tree.coarsen(list.data(), static_cast<Index>(marked.size()));
+    order.coarsen(tree, coarsened);
+    rows.coarsen(coarsened);
+    tree.keep();
+    auto const now = leaves();
+    for (std::size_t r = 0; r < parents.size(); ++r) {
+      families[r].cell = renumbered.cells[at(parents[r])];
+      auto const place = std::ranges::find(now, families[r].cell);
+      families[r].place = static_cast<Index>(place - now.begin());
+    }
+    return static_cast<Index>(parents.size());
+  }
   std::vector<Index> leaves() const { return taken(backend, order.leaves(), order.count()); }
+
+ private:
+  void note_before() {
+    rows_before = rows.download_all();
+    leaves_before = leaves();
+    families.clear();
+    renumbered = {};
+    renumbered.nodes.resize(host->points().size());
+    renumbered.cells.resize(host->cells().size());
+    std::iota(renumbered.nodes.begin(), renumbered.nodes.end(), 0);
+    std::iota(renumbered.cells.begin(), renumbered.cells.end(), 0);
+  }
 };
 
 }  // namespace pliant::test

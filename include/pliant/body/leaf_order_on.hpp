@@ -8,65 +8,11 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/body/cell_order.hpp>
+#include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 // The order of elements that a body keeps, in a backend's memory.
 namespace pliant {
-
-namespace detail {
-
-/// Notes where leaves were divided, by their places: into how many.
-struct MarkDividedPlaces {
-  CellSplit const* leaves;
-  LeafParts const* parts;
-  Index const* places;
-  std::uint8_t* into;
-  PLIANT_HOST_DEVICE void operator()(Index r) const {
-    into[places[leaves[r].cell]] = static_cast<std::uint8_t>(parts[r].cells);
-  }
-};
-/// How many leaves stand in the place of one.
-struct LeavesInPlace {
-  std::uint8_t const* into;
-  PLIANT_HOST_DEVICE Index operator()(Index i) const { return into[i] == 0 ? 1 : Index{into[i]}; }
-};
-/// Puts leaves, or the children in their place, where they stand now.
-struct PutLeaves {
-  TreeView tree;
-  std::uint8_t const* into;
-  Index const* before;  // leaves, by their places
-  Index const* start;   // their places now
-  Index* leaves;
-  Index* places;  // by cell
-  Index* from;    // by the place now: that before, of a child its parent's
-
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const cell = before[i];
-    if (into[i] == 0) return put(start[i], cell, i);
-    Index const first = tree.cells[static_cast<std::size_t>(cell)].first_child;
-    for (Index k = 0; k < Index{into[i]}; ++k) put(start[i] + k, first + k, i);
-  }
-
- private:
-  PLIANT_HOST_DEVICE void put(Index place, Index cell, Index old) const {
-    leaves[place] = cell;
-    places[cell] = place;
-    from[place] = old;
-  }
-};
-struct PutPlaces {
-  Index const* leaves;
-  Index* places;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { places[leaves[i]] = i; }
-};
-/// numbers[k] = of[numbers[k]]
-struct LookUp {
-  Index const* of;
-  Index* numbers;
-  PLIANT_HOST_DEVICE void operator()(Index k) const { numbers[k] = of[numbers[k]]; }
-};
-
-}  // namespace detail
 
 /// The leaves of a tree in a backend's memory, in the order that a body keeps (see CellOrder): children stand in the place of
 /// their parents.
@@ -95,11 +41,15 @@ class LeafOrderOn {
   /// The leaves by their places, and places by cell, of those that are leaves.
   [[nodiscard]] Index const* leaves() const { return leaves_.data(); }
   [[nodiscard]] Index const* places() const { return places_.data(); }
-  /// By the place: that before the last change, of a child its parent's.
+  /// By the place: that before the last change, of a child its parent's, of a merged parent its first child's.
   [[nodiscard]] Index const* from() const { return from_.data(); }
-  /// The leaves before the last change, by their places then. There is no such change of a first mesh.
+  /// The leaves before the last change, by their places then and by the numbers that they have now; −1: merged into others. So
+  /// a leaf was there before where before()[from()[i]] is the same. There is no such change of a first mesh.
   [[nodiscard]] Index const* before() const { return others_.data(); }
   [[nodiscard]] Index count_before() const { return count_before_; }
+  /// What the last change merged: (merged_count()), in the order of Coarsened::parents. Nothing, if that was a refinement.
+  [[nodiscard]] MergedFamily const* merged_families() const { return families_.data(); }
+  [[nodiscard]] Index merged_count() const { return merged_; }
   /// The place of the first leaf of each block, and behind the last one.
   [[nodiscard]] Index const* first_of_block() const { return first_.data(); }
   [[nodiscard]] Index blocks() const { return blocks_; }
@@ -129,6 +79,30 @@ class LeafOrderOn {
     backend_.for_each(blocks_ + 1, detail::LookUp{start_.data(), first_.data()});
     std::swap(leaves_, others_);
     count_before_ = std::exchange(count_, after);
+    merged_ = 0;
+  }
+
+  /// Puts merged parents in the place where their children stood. `tree`: after that.
+  void coarsen(TreeOn<B> const& tree, Coarsened const& done) {
+    auto const before = static_cast<std::size_t>(count_);
+    Index const after = tree.leaves();
+    auto merged = zeros<std::uint8_t>(backend_, before);
+    detail::grow(backend_, families_, static_cast<std::size_t>(done.merged));
+    detail::grow(backend_, start_, before + 1);
+    detail::grow(backend_, others_, static_cast<std::size_t>(after));
+    detail::grow(backend_, from_, static_cast<std::size_t>(after));
+    backend_.for_each(done.merged, detail::FindFamilies{tree.view(), done, places_.data(),
+                                                        families_.data(), merged.data()});
+    backend_.scan(count_, detail::PlacesKept{merged.data()}, start_.data());
+    backend_.for_each(
+        count_, detail::MoveLeaves{detail::new_cells(done), merged.data(), start_.data(),
+                                   leaves_.data(), others_.data(), places_.data(), from_.data()});
+    backend_.for_each(done.merged, detail::PutMerged{families_.data(), start_.data(),
+                                                     others_.data(), places_.data(), from_.data()});
+    backend_.for_each(blocks_ + 1, detail::LookUp{start_.data(), first_.data()});
+    std::swap(leaves_, others_);
+    count_before_ = std::exchange(count_, after);
+    merged_ = done.merged;
   }
 
  private:
@@ -142,7 +116,8 @@ class LeafOrderOn {
   B backend_;
   Array<Index> leaves_, others_;  // others: those before a change, or room
   Array<Index> places_, from_, start_, first_;
-  Index count_ = 0, count_before_ = 0, blocks_ = 0;
+  Array<MergedFamily> families_;
+  Index count_ = 0, count_before_ = 0, blocks_ = 0, merged_ = 0;
 };
 
 }  // namespace pliant

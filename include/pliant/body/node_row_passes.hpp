@@ -5,6 +5,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/node_rows.hpp>
+#include <pliant/topology/compaction_view.hpp>
 #include <pliant/topology/tree_view.hpp>
 
 // Passes that give rows to new nodes, for loops of a backend. Nodes are in the order of the leaves that they were made for,
@@ -179,6 +180,25 @@ struct TakeFoundRows {
     Index const own = made[order[i]].node;
     of_node[own] = found[i];
     node[found[i]] = own;
+  }
+};
+
+/// Which of the nodes from a first one on go, by their new numbers.
+struct GoesAway {
+  Index const* numbers;
+  PLIANT_HOST_DEVICE bool operator()(Index k) const { return numbers[k] < 0; }
+};
+/// Gives nodes that moved up the rows they had; rows of those that go are free.
+struct MoveRows {
+  NewNumbers numbers;
+  Index const* of_node;  // by old numbers
+  Index* node;
+  Index* moved;  // rows by new numbers, from the same first node on
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const now = numbers.others[k], row = of_node[numbers.first + k];
+    node[row] = now;
+    if (now >= 0) moved[now - numbers.first] = row;
   }
 };
 

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/body/leaf_order_on.hpp>
+#include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/body/node_row_passes.hpp>
 #include <pliant/body/node_rows.hpp>
 
@@ -41,6 +43,9 @@ class NodeRowsOn {
   [[nodiscard]] Index const* of_node() const { return of_node_.data(); }
   /// The user's numbers of nodes by the row; −1: the row is free.
   [[nodiscard]] Index const* node() const { return node_.data(); }
+  /// The rows that were a node's before the last change and are free now: (freed_count()), in the backend's memory.
+  [[nodiscard]] Index const* freed() const { return freed_.data(); }
+  [[nodiscard]] Index freed_count() const { return freed_count_; }
   /// Copies of the lists, which later changes do not touch.
   struct Lists {
     Array<Index> of_node, node, region;
@@ -60,6 +65,7 @@ class NodeRowsOn {
   void refine(TreeOn<B> const& tree, LeafOrderOn<B> const& order,
               typename TreeOn<B>::Refined const& refined) {
     Index const n = refined.new_nodes;
+    freed_count_ = 0;
     if (n == 0) return;
     need(keys_, n);
     need(order_, n);
@@ -111,6 +117,25 @@ class NodeRowsOn {
     pages_ = in_all;
     nodes_ += n;
   }
+  /// Frees the rows of nodes that a coarsening took away; the others keep theirs. There are as many rows as before: pages
+  /// without nodes wait for a refinement, those at the end too. Waits for nothing.
+  void coarsen(Coarsened const& done) {
+    Index const staying = done.now.nodes - done.initial.nodes;
+    freed_count_ = done.before.nodes - done.now.nodes;
+    if (freed_count_ == 0) return;
+    Index const n = done.before.nodes - done.initial.nodes;
+    Index* const of_node = of_node_.data() + done.initial.nodes;
+    need(freed_, freed_count_);
+    need(counters_, 2);
+    need(found_, staying);
+    backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counters_.data());
+    backend_.for_each(freed_count_, detail::LookUp{of_node, freed_.data()});
+    backend_.for_each(
+        n, detail::MoveRows{
+               {done.initial.nodes, done.nodes}, of_node_.data(), node_.data(), found_.data()});
+    detail::copy_values<B, Index>(backend_, found_.data(), of_node, at(staying));
+    nodes_ = done.now.nodes;
+  }
 
  private:
   static constexpr Index blocks_of_region = 16;
@@ -131,10 +156,10 @@ class NodeRowsOn {
 
   B backend_;
   Array<Index> of_node_, node_, region_;
-  Index nodes_ = 0, pages_ = 0;
+  Index nodes_ = 0, pages_ = 0, freed_count_ = 0;
   // Of a change.
   Array<std::uint64_t> keys_, page_keys_;
-  Array<Index> order_, found_, partial_, free_pages_, counters_, free_before_, before_;
+  Array<Index> order_, found_, partial_, free_pages_, counters_, free_before_, before_, freed_;
 };
 
 }  // namespace pliant

@@ -82,13 +82,15 @@ struct MarkKnowing {
   }
 };
 
-/// Makes divided cells leaves of the degree of their children.
+/// Makes divided cells leaves of the degree of their children. Notes the first of these.
 struct MergeCells {
   TreeView tree;
   Index const* parents;
+  Index* first_children;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto& cell = tree.cells[static_cast<std::size_t>(parents[k])];
+    first_children[k] = cell.first_child;
     cell.has = tree.cells[static_cast<std::size_t>(cell.first_child)].has;
     merge_cell(tree, parents[k]);
   }

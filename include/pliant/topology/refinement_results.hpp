@@ -37,6 +37,8 @@ struct Coarsening {
 struct Coarsened {
   Index merged = 0;                ///< how many cells are leaves again; of none, there are no lists
   Index const* parents = nullptr;  ///< (merged): these, by their old numbers, ascending
+  /// (merged): the old number of the first child of each; the others followed it.
+  Index const* first_children = nullptr;
   TreeSizes initial;      ///< of the initial mesh, whose cells and nodes keep their numbers
   TreeSizes before, now;  ///< how many there were, and are
   /// (before.nodes - initial.nodes): the new number of node initial.nodes + k is nodes[k]; −1: gone.

@@ -33,11 +33,13 @@ class TreeCoarsening {
       backend.for_each(merged, MarkMerged{parents_.data(), marks});
       backend.for_each(knowing, MarkKnowing{knowing_.data(), marks});
     });
-    backend.for_each(merged, MergeCells{tree.view(), parents_.data()});
+    grow(backend, first_children_, at(merged));
+    backend.for_each(merged, MergeCells{tree.view(), parents_.data(), first_children_.data()});
     auto const view = number(backend, tree, done, knowing);
     move_up(backend, tree, done, view, knowing);
     done.merged = merged;
     done.parents = parents_.data();
+    done.first_children = first_children_.data();
     done.nodes = numbers_[0].data();
     done.cells = numbers_[1].data();
     return done;
@@ -134,7 +136,7 @@ class TreeCoarsening {
     backend.for_each(knowing, TellCells{view, tree.view(), knowing_.data()});
   }
 
-  Array<Index> families_, parents_, knowing_, counters_, before_;
+  Array<Index> families_, parents_, first_children_, knowing_, counters_, before_;
   Array<std::uint64_t> keys_;
   Stamps<B> used_;                       // by nodes behind the initial mesh's
   Stamps<B> edge_stamps_, side_stamps_;  // of the initial mesh
