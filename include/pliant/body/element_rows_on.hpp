@@ -1,18 +1,20 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/element_blocks.hpp>
 #include <pliant/body/leaf_order_on.hpp>
+#include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/element/element.hpp>
 #include <pliant/topology/rows_of_element.hpp>
 #include <pliant/topology/tree_on.hpp>
 
-// The elements of a mesh of one type after a refinement, in a backend's memory: what belongs to each is taken from where it
-// was before, or comes from the tree.
+// The elements of a mesh of one type after a refinement or a coarsening, in a backend's memory: what belongs to each is taken
+// from where it was before, or comes from the tree.
 namespace pliant {
 
 namespace detail {
@@ -45,11 +47,13 @@ struct IsNewLeaf {
   Index const *leaves, *leaves_before, *from;
   PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves_before[from[i]] != leaves[i]; }
 };
-/// Whether the leaf that was at a place is divided.
-struct WasDivided {
+/// Whether the leaf that was at a place is divided, or merged into another.
+struct IsGoneLeaf {
   TreeView tree;
   Index const* leaves_before;
-  PLIANT_HOST_DEVICE bool operator()(Index i) const { return !tree.is_leaf(leaves_before[i]); }
+  PLIANT_HOST_DEVICE bool operator()(Index i) const {
+    return leaves_before[i] < 0 || !tree.is_leaf(leaves_before[i]);
+  }
 };
 
 /// to[i] = from[places[i]] in each of several columns.
@@ -65,10 +69,55 @@ struct InheritValues {
           from[static_cast<std::ptrdiff_t>(count_before) * k + places[i]];
   }
 };
+/// Gives merged leaves what Transfer gives them: of integers the most frequent of their children's, of equal ones the first;
+/// else the mean by volume.
+template <class U>
+struct MergeValues {
+  MergedFamily const* families;
+  U const* from;
+  U const* volumes;  // by the place before; null: children have the same
+  U* to;
+  Index count_before, count, columns;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const& own = families[r];
+    for (Index k = 0; k < columns; ++k)
+      to[static_cast<std::ptrdiff_t>(count) * k + own.place] =
+          merged(from + static_cast<std::ptrdiff_t>(count_before) * k + own.first_before, own);
+  }
+
+ private:
+  PLIANT_HOST_DEVICE U merged(U const* values, MergedFamily const& own) const {
+    if constexpr (std::is_integral_v<U> || std::is_enum_v<U>) {
+      Index best = 0, most = 0;
+      for (Index i = 0; i < own.children; ++i) {
+        Index equal = 0;
+        for (Index j = 0; j < own.children; ++j) equal += values[j] == values[i];
+        if (equal > most) {
+          most = equal;
+          best = i;
+        }
+      }
+      return values[best];
+    } else {
+      auto const volume_of = [&](Index i) {
+        return volumes == nullptr ? U(1) : volumes[own.first_before + i];
+      };
+      U volume = 0, sum = 0;
+      for (Index i = 0; i < own.children; ++i) volume += volume_of(i);
+      bool same = true;  // what all have is not rounded
+      for (Index i = 0; i < own.children; ++i) {
+        same = same && values[i] == values[0];
+        sum += volume_of(i) / volume * values[i];
+      }
+      return same ? values[0] : sum;
+    }
+  }
+};
 
 }  // namespace detail
 
-/// The rows of nodes of all elements after a refinement, for elements_of_rows: (elements, Width). Those of leaves that were
+/// The rows of nodes of all elements after a change, for elements_of_rows: (elements, Width). Those of leaves that were
 /// there before are taken from `before`, the rows of the table of then; without nodes there, all come from the tree.
 /// `of_node`: the row of each node, by the user's number, in the backend's memory.
 template <Element E, int Width, Backend B>
@@ -83,8 +132,8 @@ typename B::template Array<Index> element_rows(B const& backend, TreeView const&
   return rows;
 }
 
-/// The blocks of the elements after a refinement; those of which no leaf was divided stay, as they have as many leaves as before.
-/// `first_before`: the blocks before it. Waits for the backend.
+/// The blocks of the elements after a refinement or a coarsening; those of which no leaf was divided or merged stay, which are
+/// those with as many leaves as before. `first_before`: the blocks before it. Waits for the backend.
 template <Backend B>
 ElementBlocks blocks_after_refinement(LeafOrderOn<B> const& order,
                                       std::vector<Index> first_before) {
@@ -95,25 +144,31 @@ ElementBlocks blocks_after_refinement(LeafOrderOn<B> const& order,
   return blocks;
 }
 
-/// Values per element after a refinement, (columns, elements): each has those that it had before, or that its parent had.
+/// Values per element after a change, (columns, elements): each has those that it had before, or that its parent had. Merged
+/// ones have the most frequent of their children's, of equal ones the first, where values are integers; of others the mean
+/// by `volumes` of the elements before, by their places, in the backend's memory. Without volumes all children count alike.
 template <class U, Backend B>
 typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> const& order,
-                                               U const* before, Index columns = 1) {
+                                               U const* before, Index columns = 1,
+                                               U const* volumes = nullptr) {
   auto values = zeros<U>(
       backend, static_cast<std::size_t>(order.count()) * static_cast<std::size_t>(columns));
   backend.for_each(order.count(),
                    detail::InheritValues<U>{order.from(), before, values.data(),
                                             order.count_before(), order.count(), columns});
+  backend.for_each(order.merged_count(),
+                   detail::MergeValues<U>{order.merged_families(), before, volumes, values.data(),
+                                          order.count_before(), order.count(), columns});
   return values;
 }
 
-/// The places of the elements that come in a refinement, and of those that go, before it; ascending, in a backend's memory.
+/// The places of the elements that come in a change, and of those that go, before it; ascending, in a backend's memory.
 template <Backend B>
 struct RefinedPlaces {
   typename B::template Array<Index> come, go;
   Index come_count = 0, go_count = 0;
 
-  /// `divided`: how many leaves were. Waits for nothing.
+  /// After a refinement; `divided`: how many leaves were. Waits for nothing.
   RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order, Index divided)
       : come_count(order.count() - order.count_before() + divided), go_count(divided) {
     come = zeros<Index>(backend, static_cast<std::size_t>(come_count) + 1);
@@ -121,9 +176,13 @@ struct RefinedPlaces {
     // How many there are is behind them.
     backend.select(order.count(), detail::IsNewLeaf{order.leaves(), order.before(), order.from()},
                    come.data(), come.data() + come_count);
-    backend.select(order.count_before(), detail::WasDivided{tree, order.before()}, go.data(),
+    backend.select(order.count_before(), detail::IsGoneLeaf{tree, order.before()}, go.data(),
                    go.data() + go_count);
   }
+  /// After a coarsening. Waits for nothing.
+  RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order)
+      : RefinedPlaces(backend, tree, order,
+                      order.count_before() - order.count() + order.merged_count()) {}
 };
 
 }  // namespace pliant
