@@ -3,21 +3,20 @@
 #include <memory>
 #include <optional>
 
-#include <pliant/adaptation/family_momentum.hpp>
 #include <pliant/body/family_momentum_on.hpp>
 #include <pliant/body/fill_new_nodes_on.hpp>
 #include <pliant/body/node_rows_on.hpp>
 #include <pliant/topology/hanging_nodes_on.hpp>
 #include <pliant/topology/plan.hpp>
 
+#include "body/changed_nodes.hpp"
 #include "support/formulations.hpp"
 #include "topology/trees_on.hpp"
 
 // What belongs to the nodes of a mesh that is refined in a backend's memory, beside what the host makes of it.
 namespace pliant::test::refined_nodes_suite {
 
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-inline constexpr double density = 1.3;
+using namespace changed_nodes;
 
 /// Whether the host may fuse products with sums, as it does function by function.
 #if defined(__FMA__) || defined(__FP_FAST_FMA) || defined(__aarch64__)
@@ -31,31 +30,6 @@ bool same(double a, double b, double epsilon = std::numeric_limits<double>::epsi
   if constexpr (E::degree == 1 || !host_fuses) return a == b;
   return std::abs(a - b) <= 8 * epsilon * (std::abs(a) + std::abs(b));
 }
-
-/// What give_momentum_back looks at of a body's layout.
-struct MassesOnHost {
-  std::vector<detail::ExactSum> own;
-  detail::SumUnit mass_unit;
-  std::vector<double> kilograms;
-  std::vector<detail::ExactSum> const& own_masses() const { return own; }
-  std::vector<double> const& mass_list() const { return kilograms; }
-};
-template <class M>
-MassesOnHost masses_on_host(Topology<M> const& topology) {
-  MassesOnHost masses{{}, detail::unit_of_masses(density, 1), {}};
-  masses.own = detail::lumped_masses(topology.mesh(), density, masses.mass_unit);
-  for (auto const& sum : masses.own) masses.kilograms.push_back(masses.mass_unit.value_of(sum));
-  topology.interpolation.hand_masses(
-      [&](Index i, int) -> double& { return masses.kilograms[at(i)]; }, 1);
-  return masses;
-}
-/// No element that stays.
-struct NoneStays {
-  template <Element E>
-  std::vector<Index> of() const {
-    return {};
-  }
-};
 
 /// A mesh that is refined on the host and in a backend's memory, with fields at its nodes.
 template <Element E, class B>
@@ -163,9 +137,9 @@ struct RefinedNodes {
     auto const elements_now = detail::refined_elements<E>(
         tree, refined, of_node, NodeField<double const, dim>{points.data(), rows.count()});
     masses.extend(rows.count());
-    masses.take_parents(elements_now);
+    masses.take_gone(elements_now);
     momentum.begin(elements_now, before_weights, weights, masses);
-    masses.add_children(elements_now);
+    masses.add_come(elements_now);
     masses.read(weights, kilograms.data());
     masses.round(kilograms.data(), mass.data());
     auto const taken =
@@ -198,27 +172,6 @@ struct RefinedNodes {
     hold(std::vector<DirectionMask>(mesh.nodes.size(), 0));
   }
 };
-
-/// Values at all nodes.
-template <int Dim>
-detail::ValuesAt<Point<Dim>> at_all(detail::NodeSubset const& all,
-                                    std::vector<Point<Dim>> const& values) {
-  detail::ValuesAt<Point<Dim>> list(all);
-  std::ranges::copy(values, list.values.begin());
-  return list;
-}
-inline detail::NodeSubset all_nodes(Index count) {
-  std::vector<Index> all(at(count));
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
-  return {all, all.size()};
-}
-template <int Dim>
-Point<Dim> momentum_of(std::vector<double> const& kilograms, std::vector<Point<Dim>> const& v) {
-  Point<Dim> sum{};
-  for (std::size_t i = 0; i < v.size(); ++i)
-    for (std::size_t k = 0; k < Dim; ++k) sum[k] += kilograms[i] * v[i][k];
-  return sum;
-}
 
 template <class B, Element E>
 void check_rounds(B const& backend, Mesh<E> const& mesh, std::size_t one_in, int rounds) {

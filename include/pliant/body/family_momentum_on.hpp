@@ -16,8 +16,8 @@
 
 namespace pliant {
 
-/// Gives refined elements their momentum back, as give_momentum_back does on the host, in a backend's memory: by the rows of
-/// fields, of a mesh with elements of one type.
+/// Gives elements that are refined or merged their momentum back, as give_momentum_back does on the host, in a backend's memory:
+/// by the rows of fields, of a mesh with elements of one type.
 template <Element E, Backend B>
 class FamilyMomentumOn {
   using T = typename B::scalar;
@@ -28,17 +28,20 @@ class FamilyMomentumOn {
  public:
   explicit FamilyMomentumOn(B const& backend) : backend_(backend) {}
 
-  /// Looks up which nodes a refinement touches, and what these have of the masses of elements that stay; between
-  /// NodalMassesOn::take_parents and add_children. `before`, `now`: of the slaves that there were, and are.
-  void begin(detail::RefinedElements<E> const& elements, MassWeightsOn<B> const& before,
-             MassWeightsOn<B> const& now, NodalMassesOn<E, B> const& masses) {
+  /// Looks up which nodes a change touches, and what these have of the masses of elements that stay; between
+  /// NodalMassesOn::take_gone and add_come. `before`, `now`: of the slaves that there were, and are.
+  template <detail::ChangedFamilies<E> Families>
+  void begin(Families const& families, MassWeightsOn<B> const& before, MassWeightsOn<B> const& now,
+             NodalMassesOn<E, B> const& masses) {
     auto const rows = at(masses.rows());
     detail::grow(backend_, place_, rows);
     detail::grow(backend_, list_, rows);
     counters_ = zeros<Index>(backend_, 2);
     detail::TouchOnce const touch{place_.data(), list_.data(), counters_.data()};
-    backend_.for_each(elements.most_children * elements.count,
-                      detail::TouchChildren<E>{elements, touch});
+    // The many have the nodes of the few.
+    using Members = detail::MembersOf<Families, (Families::most_come > Families::most_gone)>;
+    Members const members{families};
+    backend_.for_each(members.places(), detail::TouchMembers<Members>{members, touch});
     for (auto const* weights : {&before, &now})
       for (auto const* some :
            {&weights->interpolation().slaves(), &weights->interpolation().masters()})
@@ -49,12 +52,14 @@ class FamilyMomentumOn {
                                                masses.own(), staying_mass_.data()});
   }
 
-  /// Changes the velocities `v`, to which the refinement gave new nodes theirs, so that each family keeps its momentum; returns
-  /// what held nodes took of it, N s. Slaves keep their velocities, and have to follow their masters then. `kilograms`: masses
+  /// Changes the velocities `v`, to which a refinement gave new nodes theirs, so that each family keeps its momentum; returns
+  /// what held nodes took of it, N s. Slaves keep their velocities, and have to follow their masters then; nodes that went keep
+  /// theirs. `kilograms`: masses
   /// by row, as NodalMassesOn::read gives them. `held`: directions by row; null: none. `bound`: kg m/s, more than the sum of all
   /// impulses that nodes could be given, 8 times the body's mass at the largest speed, say. Throws Error, with velocities as
   /// they were, where an impulse exceeds it or is no number.
-  Point<dim> give_back(detail::RefinedElements<E> const& elements, MassWeightsOn<B> const& before,
+  template <detail::ChangedFamilies<E> Families>
+  Point<dim> give_back(Families const& families, MassWeightsOn<B> const& before,
                        MassWeightsOn<B> const& now, double density, double bound,
                        double const* kilograms, DirectionMask const* held, NodeField<T, dim> v) {
     detail::SumUnit const unit(bound);
@@ -70,9 +75,9 @@ class FamilyMomentumOn {
     before.template apply<dim>(v_before);
     now.template apply<dim>(v_now);
     Index* const refused = counters_.data() + 1;
-    backend_.for_each(elements.count,
-                      detail::AddFamilyImpulse<E>{elements, density, v_before, v_now, unit,
-                                                  place_.data(), sums_.data(), refused});
+    backend_.for_each(families.count, detail::AddFamilyImpulse<E, Families>{
+                                          families, density, v_before, v_now, unit, place_.data(),
+                                          sums_.data(), refused});
     backend_.for_each(count_,
                       detail::AddImpulseOfSlave<dim>{unit, sums_.data(), staying_mass_.data(),
                                                      before_.data(), now_.data(), impulse_.data()});
@@ -87,8 +92,9 @@ class FamilyMomentumOn {
     count_ = 0;
     if (was_refused)
       throw Error(
-          "refine: the momentum that a node is given is no number, or exceeds the bound of ", bound,
-          " kg m/s; give one for all nodes together");
+          "change of the mesh: the momentum that a node is given is no number, or exceeds the "
+          "bound of ",
+          bound, " kg m/s; give one for all nodes together");
     auto const taken = download<detail::ExactSum>(taken_);
     Point<dim> sum{};
     for (std::size_t k = 0; k < dim; ++k) sum[k] = unit.signed_value_of(taken[k]);

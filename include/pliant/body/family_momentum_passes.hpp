@@ -6,9 +6,9 @@
 #include <pliant/backend/field.hpp>
 #include <pliant/body/exact_sum.hpp>
 #include <pliant/constraint/condition.hpp>
-#include <pliant/topology/refined_elements.hpp>
+#include <pliant/topology/changed_elements.hpp>
 
-// Passes over refined elements and the nodes that a refinement touches, for loops of a backend.
+// Passes over elements that go or come in a change of a mesh, and the nodes that it touches, for loops of a backend.
 namespace pliant::detail {
 
 /// Lists rows, each once.
@@ -26,14 +26,13 @@ struct TouchOnce {
       }
   }
 };
-template <Element E>
-struct TouchChildren {
-  RefinedElements<E> elements;
+template <class Members>
+struct TouchMembers {
+  Members members;
   TouchOnce touch;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const r = i / elements.most_children, k = i % elements.most_children;
-    if (k >= elements.parts[r].cells) return;
-    for (Index const row : elements.rows_of(elements.cell(r, k))) touch(row);
+    if (!members.is_one(i)) return;
+    for (Index const row : members.rows(i)) touch(row);
   }
 };
 struct TouchListed {
@@ -85,10 +84,10 @@ struct TakeVelocities {
 };
 
 /// Adds what the nodes of a family must be given so that it keeps its momentum: see list_family_impulse.
-template <Element E>
+template <Element E, ChangedFamilies<E> Families>
 struct AddFamilyImpulse {
   static constexpr int dim = E::dim;
-  RefinedElements<E> elements;
+  Families families;
   double density;
   DoublesByPlace<dim> before, now;  // velocities, those of slaves as their mass moves
   SumUnit unit;
@@ -97,25 +96,27 @@ struct AddFamilyImpulse {
   Index* refused;
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    Index const children = elements.parts[r].cells;
+    Index const gone = families.gone(r), members = gone + families.come(r),
+                steps = members + families.come(r);
     double base[dim], lost[dim] = {}, volume = 0;
-    // First the parent, as −1, and its children; then the children again, which take their shares.
-    for (Index step = -1; step < 2 * children; ++step) {
-      Index const k = step < children ? step : step - children;
-      auto const rows = elements.rows_of(elements.cell(r, k));
-      auto const own = elements.volumes(rows);
-      if (step < children) {
-        for (int d = 0; d < dim && k < 0; ++d) base[d] = before(rows[0], d);
+    // First those that go, then those that come; then these again, which take their shares.
+    for (Index step = 0; step < steps; ++step) {
+      bool const goes = step < gone;
+      auto const rows = goes ? families.rows_gone(r, step)
+                             : families.rows_come(r, step < members ? step - gone : step - members);
+      auto const own = families.elements.volumes(rows);
+      if (step < members) {
+        for (int d = 0; d < dim && step == 0; ++d) base[d] = before(rows[0], d);
         for (int a = 0; a < E::nodes; ++a) {
           Index const row = rows[static_cast<std::size_t>(a)];
           for (int d = 0; d < dim; ++d) {
             double const momentum =
-                density * own[a] * ((k < 0 ? before(row, d) : now(row, d)) - base[d]);
-            lost[d] += k < 0 ? momentum : -momentum;
+                density * own[a] * ((goes ? before(row, d) : now(row, d)) - base[d]);
+            lost[d] += goes ? momentum : -momentum;
           }
-          if (k >= 0) volume += own[a];
+          if (!goes) volume += own[a];
         }
-        if (step < children - 1) continue;
+        if (step < members - 1) continue;
         bool kept = true;
         for (double const x : lost) kept = kept && x == 0;
         if (kept) return;

@@ -11,29 +11,27 @@
 #include <pliant/body/exact_sum.hpp>
 #include <pliant/constraint/mass_weights_on.hpp>
 #include <pliant/error.hpp>
-#include <pliant/topology/refined_elements.hpp>
+#include <pliant/topology/changed_elements.hpp>
 
 namespace pliant {
 
 namespace detail {
 
-/// Adds the shares that nodes have in the masses of refined elements, or of their children, to the nodes' own; or takes them
-/// away. A call for each of the elements, or for each of `most_children`. As share_mass and lumped_masses do.
-template <Element E>
+/// Adds the shares that nodes have in the masses of some elements to the nodes' own; or takes them away. As share_mass and
+/// lumped_masses do.
+template <Element E, class Members>
 struct AddShares {
-  RefinedElements<E> elements;
-  bool of_children, takes;
+  Members members;
+  bool takes;
   double density;
   SumUnit unit;
   ExactSum* own;   // by row
   Index* refused;  // set where a share is no number, or too large
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const r = of_children ? i / elements.most_children : i;
-    Index const k = of_children ? i % elements.most_children : -1;
-    if (k >= elements.parts[r].cells) return;
-    auto const rows = elements.rows_of(elements.cell(r, k));
-    auto const shares = elements.masses(rows, density);
+    if (!members.is_one(i)) return;
+    auto const rows = members.rows(i);
+    auto const shares = members.families.elements.masses(rows, density);
     for (int a = 0; a < E::nodes; ++a) {
       if (!unit.holds(shares[a])) {
         atomic_store(*refused, 1);
@@ -69,13 +67,12 @@ struct RoundMasses {
 }  // namespace detail
 
 /// The lumped masses of nodes by their rows, in a backend's memory, of a mesh with elements of one type, as sums that do not
-/// depend on the order of elements: those of a mesh that was refined have the bits of those of one made anew. Rows that no
+/// depend on the order of elements: those of a mesh that was changed have the bits of those of one made anew. Rows that no
 /// node has hold zero.
 template <Element E, Backend B>
 class NodalMassesOn {
   template <class U>
   using Array = typename B::template Array<U>;
-  using Elements = detail::RefinedElements<E>;
 
  public:
   /// `own`: by row, slaves' with them (see lumped_masses). `density`: kg/m³.
@@ -100,14 +97,21 @@ class NodalMassesOn {
     detail::grow_keeping(backend_, own_, at(rows_), at(rows));
     rows_ = rows;
   }
-  /// What nodes have of elements that were refined goes.
-  void take_parents(Elements const& elements) { add(elements, false, true); }
-  /// What they have of the children comes.
-  void add_children(Elements const& elements) { add(elements, true, false); }
+  /// What nodes have of elements that go in a change goes: of nodes that go, all.
+  template <detail::ChangedFamilies<E> Families>
+  void take_gone(Families const& families) {
+    add<false>(families, true);
+  }
+  /// What they have of those that come comes.
+  template <detail::ChangedFamilies<E> Families>
+  void add_come(Families const& families) {
+    add<true>(families, false);
+  }
   /// Undoes both, to the bit.
-  void take_back(Elements const& elements) {
-    add(elements, true, true);
-    add(elements, false, false);
+  template <detail::ChangedFamilies<E> Families>
+  void take_back(Families const& families) {
+    add<true>(families, true);
+    add<false>(families, false);
   }
   /// Throws Error where the share of a node in the mass of an element was no number or too large, since the last call. Such
   /// shares were left out.
@@ -137,11 +141,13 @@ class NodalMassesOn {
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  void add(Elements const& elements, bool of_children, bool takes) {
-    Index const calls = of_children ? Elements::most_children : 1;
-    backend_.for_each(calls * elements.count,
-                      detail::AddShares<E>{elements, of_children, takes, density_, unit_,
-                                           own_.data(), refused_.data()});
+  template <bool Come, class Families>
+  void add(Families const& families, bool takes) {
+    using Members = detail::MembersOf<Families, Come>;
+    Members const members{families};
+    backend_.for_each(members.places(),
+                      detail::AddShares<E, Members>{members, takes, density_, unit_, own_.data(),
+                                                    refused_.data()});
     has_added_ = true;
   }
   bool was_refused() {

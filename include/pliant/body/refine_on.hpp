@@ -14,6 +14,7 @@
 #include <pliant/body/refine_passes.hpp>
 #include <pliant/body/topology_on.hpp>
 #include <pliant/topology/plan.hpp>
+#include <pliant/topology/refined_elements.hpp>
 
 // Refinement of bodies in their backend's memory: what the host knows of the mesh follows when it is asked for.
 namespace pliant {
@@ -121,8 +122,8 @@ class RefinedParts {
     auto layout = new_layout();
     MassWeightsOn<B> const weights(backend_, layout.interpolation, rows_);
     on_.masses.extend(rows_);
-    on_.masses.take_parents(elements);
-    on_.masses.add_children(elements);
+    on_.masses.take_gone(elements);
+    on_.masses.add_come(elements);
     on_.masses.read(weights, kilograms_->data());
     on_.masses.round(kilograms_->data(), layout.mass.data());
     *own_masses_ = copy_of(on_.masses.own());

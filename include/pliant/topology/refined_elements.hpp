@@ -3,25 +3,26 @@
 #include <cstddef>
 
 #include <pliant/backend/field.hpp>
-#include <pliant/formulation/affine.hpp>
+#include <pliant/topology/changed_elements.hpp>
 #include <pliant/topology/division_view.hpp>
 #include <pliant/topology/rows_of_element.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant::detail {
 
-/// Cells of a tree that are refined, and their children, as elements of one type, for loops of a backend.
+/// Cells of a tree that are refined, and their children, as elements of one type, for loops of a backend: ChangedFamilies of
+/// which one goes.
 template <Element E>
 struct RefinedElements {
   static constexpr Index most_children = 1 << E::dim;
+  static constexpr Index most_gone = 1, most_come = most_children;
 
   TreeView tree;
   CellSplit const* cells;
   LeafParts const* parts;
   Index count;           // of these
   Index const* of_node;  // rows, by the user's number
-  NodeField<double const, E::dim> points;
-  Vector<double, E::nodes> of_cell;  // see nodal_volumes_of_cell
+  ElementsByRows<E> elements;
 
   /// Child k of the refined cell r; the cell itself for k = −1.
   [[nodiscard]] PLIANT_HOST_DEVICE Index cell(Index r, Index k) const {
@@ -31,16 +32,13 @@ struct RefinedElements {
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_of(Index c) const {
     return rows_of_element<E>(tree, c, of_node);
   }
-  [[nodiscard]] PLIANT_HOST_DEVICE Nodal<E, double> rest(RowsOfElement<E> const& rows) const {
-    return gather<E::nodes>(points, rows.data());
+  [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index) const { return 1; }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const { return parts[r].cells; }
+  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_gone(Index r, Index) const {
+    return rows_of(cell(r, -1));
   }
-  [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, E::nodes> masses(RowsOfElement<E> const& rows,
-                                                                   double density) const {
-    return nodal_masses<E>(rest(rows), density, of_cell);
-  }
-  [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, E::nodes> volumes(
-      RowsOfElement<E> const& rows) const {
-    return nodal_volumes_by_shape<E, double>(rest(rows), of_cell);
+  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_come(Index r, Index k) const {
+    return rows_of(cell(r, k));
   }
 };
 
@@ -49,10 +47,8 @@ template <Element E, Backend B>
 RefinedElements<E> refined_elements(TreeOn<B> const& tree,
                                     typename TreeOn<B>::Refined const& refined,
                                     Index const* of_node, NodeField<double const, E::dim> points) {
-  RefinedElements<E> elements{
-      tree.view(), refined.cells, refined.parts, refined.leaves, of_node, points, {}};
-  if constexpr (!LinearSimplex<E>) elements.of_cell = nodal_volumes_of_cell<E>();
-  return elements;
+  return {tree.view(),    refined.cells, refined.parts,
+          refined.leaves, of_node,       ElementsByRows<E>(points)};
 }
 
 }  // namespace pliant::detail
