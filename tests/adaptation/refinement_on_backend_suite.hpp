@@ -131,27 +131,96 @@ void check_same(OnBackend& body, OnHost& host, double rounding) {
   }
 }
 
+/// A body whose mesh is changed in its backend's memory, and one that the host changes.
 template <class F, class B>
-void check_rounds(B const& backend, Index cells, std::size_t one_in, int rounds) {
-  double const rounding = std::numeric_limits<typename B::scalar>::epsilon();
-  auto body = body_of<F>(backend, false, cells), host = body_of<F>(backend, true, cells);
-  Random random(3);
-  for (int round = 0; round < rounds; ++round) {
+struct TwoBodies {
+  using Body = decltype(body_of<F>(std::declval<B const&>(), false, 2));
+  double rounding = std::numeric_limits<typename B::scalar>::epsilon();
+  Body body, host;
+  Random random{3};
+
+  TwoBodies(B const& backend, Index cells)
+      : body(body_of<F>(backend, false, cells)), host(body_of<F>(backend, true, cells)) {}
+
+  void refine_one_in(std::size_t one_in) {
     auto const marked = some(host, one_in, random);
     auto const done = refine(body, {marked}, 3), wanted = refine(host, {marked}, 3);
     CHECK(done.refined == wanted.refined);
     CHECK(done.new_nodes == wanted.new_nodes);
+    check_place();
+  }
+  /// Most, so that some families are merged.
+  std::size_t coarsen_all_but_one_in(std::size_t one_in) {
+    auto const left = some(host, one_in, random);
+    std::vector<Index> marked;
+    for (Index e = 0; e < count(host); ++e)
+      if (!std::ranges::binary_search(left, e)) marked.push_back(e);
+    auto const done = coarsen(body, {marked}), wanted = coarsen(host, {marked});
+    CHECK(done.merged == wanted.merged);
+    CHECK(done.gone_nodes == wanted.gone_nodes);
+    check_place();
+    return done.merged;
+  }
+  void check_all() { check_same(body, host, rounding); }
+  void check_place() {
     REQUIRE(is_on_backend(body));
     REQUIRE(!is_on_backend(host));
-    if (round % 2 == 0) check_same(body, host, rounding);  // at times the host waits for two
   }
-  CHECK(!body.mesh().slaves.empty());
-  check_same(body, host, rounding);
-  CentralDifference step({.step = 0.1 * stable_step(host)}),
-      other({.step = 0.1 * stable_step(host)});
-  step(body, 5);
-  other(host, 5);
-  CHECK(largest_difference(body.displacements(), host.displacements()) < 1000 * rounding);
+};
+
+template <class F, class B>
+void check_rounds(B const& backend, Index cells, std::size_t one_in, int rounds) {
+  TwoBodies<F, B> both(backend, cells);
+  for (int round = 0; round < rounds; ++round) {
+    both.refine_one_in(one_in);
+    if (round % 2 == 0) both.check_all();  // at times the host waits for two
+  }
+  CHECK(!both.body.mesh().slaves.empty());
+  both.check_all();
+  double const dt = 0.1 * stable_step(both.host);
+  CentralDifference step({.step = dt}), other({.step = dt});
+  step(both.body, 5);
+  other(both.host, 5);
+  CHECK(largest_difference(both.body.displacements(), both.host.displacements()) <
+        1000 * both.rounding);
+}
+
+template <class F, class B>
+void check_both_ways(B const& backend, Index cells, std::size_t one_in, int rounds) {
+  TwoBodies<F, B> both(backend, cells);
+  auto const first = both.body.mesh();
+  auto const masses = both.body.parts().layout.own_masses();
+  auto const conditions = *both.body.state().prescribed;
+  std::size_t merged = 0;
+  for (int round = 0; round < rounds; ++round) {
+    both.refine_one_in(one_in);
+    both.refine_one_in(one_in);
+    merged += both.coarsen_all_but_one_in(12);
+    both.check_all();
+    merged += both.coarsen_all_but_one_in(9);
+    both.refine_one_in(one_in);
+    if (round % 2 == 1) both.check_all();
+  }
+  CHECK(merged > static_cast<std::size_t>(4 * rounds));
+  while (both.coarsen_all_but_one_in(1u << 20) > 0) {  // all but one
+  }
+  auto coarsen_rest = [](auto& body) {
+    for (std::size_t now = 1; now > 0;) {
+      std::vector<Index> all(at(count(body)));
+      for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+      now = coarsen(body, {all}).merged;
+    }
+  };
+  coarsen_rest(both.body);
+  coarsen_rest(both.host);
+  both.check_place();
+  both.check_all();
+  CHECK(both.body.mesh().nodes == first.nodes);
+  CHECK(both.body.mesh().tables == first.tables);
+  CHECK(both.body.mesh().boundaries == first.boundaries);
+  CHECK(both.body.parts().layout.own_masses() == masses);
+  for (std::size_t c = 0; c < conditions.conditions.size(); ++c)
+    CHECK(both.body.state().prescribed->conditions[c].nodes == conditions.conditions[c].nodes);
 }
 
 TEST_CASE("a body that is refined in its backend's memory is the one that the host would make",
@@ -163,6 +232,17 @@ TEST_CASE("a body that is refined in its backend's memory is the one that the ho
     check_rounds<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 4, 20, 3);
   });
   check_rounds<Formulation<Tet4, Gauss<1>, NeoHookean>>(KeepingFloat{}, 4, 20, 2);
+}
+
+TEST_CASE("a body that is coarsened in its backend's memory is the one that the host would make",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_both_ways<Formulation<Tri3, Gauss<1>, NeoHookean>>(backend, 6, 5, 3);
+    check_both_ways<Formulation<Quad4, Gauss<2>, NeoHookean>>(backend, 6, 5, 2);
+    check_both_ways<Formulation<Tet4, Gauss<1>, NeoHookean>>(backend, 3, 12, 2);
+    check_both_ways<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 3, 8, 2);
+  });
+  check_both_ways<Formulation<Tri3, Gauss<1>, NeoHookean>>(KeepingFloat{}, 6, 5, 2);
 }
 
 TEST_CASE("rules refine a body in its backend's memory as on the host", "[adaptation]") {

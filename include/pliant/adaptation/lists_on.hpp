@@ -34,7 +34,7 @@ struct IsMarked {
 /// The user's numbers.
 template <class Parts, class Table>
 auto numbers_on_backend(Parts const& parts, Table const& table) {
-  if constexpr (refines_on_backend<Parts>)
+  if constexpr (changes_on_backend<Parts>)
     if (parts.topology_on) {
       auto numbers = zeros<Index>(parts.backend, static_cast<std::size_t>(table.count()));
       copy_values(parts.backend, parts.topology_on->numbers.numbers(), numbers.data(),
@@ -46,7 +46,7 @@ auto numbers_on_backend(Parts const& parts, Table const& table) {
 /// How often each element was refined.
 template <class Parts, class Table>
 auto levels_on_backend(Parts const& parts, Table const& table) {
-  if constexpr (refines_on_backend<Parts>)
+  if constexpr (changes_on_backend<Parts>)
     if (auto const& on = parts.topology_on) {
       auto levels = zeros<int>(parts.backend, static_cast<std::size_t>(table.count()));
       parts.backend.for_each(table.count(),
@@ -74,7 +74,7 @@ void visit_marked(Parts const& parts, Table const& table, std::uint32_t const* m
   backend.for_each(count, TakeListed<std::uint32_t>{masks, list.data(), some.data()});
   auto const own = download<std::uint32_t>(some);
   auto const number_all = [&] {
-    if constexpr (refines_on_backend<Parts>)
+    if constexpr (changes_on_backend<Parts>)
       if (auto const& on = parts.topology_on) {
         auto numbers = zeros<Index>(backend, places.size());
         backend.for_each(count,

@@ -146,7 +146,7 @@ class LookAt {
         auto const& marked = find_marked(max_level);
         auto const measured = parts_.timers.migration.measure();
         std::optional<TopologyPlan<typename Parts::mesh_type>> found;
-        if (refine_on_backend(parts_, marked, max_level)) return found;
+        if (change_on_backend(parts_, marked, max_level)) return found;
         found = plan_change(parts_, marked, max_level);
         if (found) commit(parts_, *found);
         return found;

@@ -75,7 +75,7 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
-  if (auto const done = detail::refine_on_backend(body.parts(), {.refine = marked}, max_level))
+  if (auto const done = detail::change_on_backend(body.parts(), {.refine = marked}, max_level))
     return {done->refined, done->new_nodes};
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
@@ -96,6 +96,8 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
+  if (auto const done = detail::change_on_backend(body.parts(), {.coarsen = marked}))
+    return {done->merged, done->gone_nodes};
   auto const plan = plan_change(body.parts(), {.coarsen = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);

@@ -2,138 +2,141 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
-#include <pliant/constraint/condition.hpp>
+#include <pliant/body/held_passes.hpp>
 #include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
 
-namespace detail {
-
-/// Calls visit(side) for the sides of a cell that are facets, by their numbers: in the plane its edges.
-template <int Dim, class Visit>
-PLIANT_HOST_DEVICE void visit_facets(TreeCell const& cell, Visit const& visit) {
-  auto const& p = cell.pattern();
-  if constexpr (Dim == 2) {
-    for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) visit(cell.edges[e]);
-  } else {
-    for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) visit(cell.sides[s]);
-  }
-}
-
-/// Parts of facets that were divided are held as these are. A call for each refined cell.
-template <int Dim>
-struct InheritHeld {
-  TreeView tree;
-  CellSplit const* cells;
-  DirectionMask* of_side;
-
-  PLIANT_HOST_DEVICE void operator()(Index r) const {
-    visit_facets<Dim>(tree.cells[static_cast<std::size_t>(cells[r].cell)], [&](Index side) {
-      DirectionMask const mask = of_side[side];
-      if (mask == 0) return;
-      auto const i = static_cast<std::size_t>(side);
-      if constexpr (Dim == 2) {
-        for (Index k = 0; k < 2; ++k) of_side[tree.edges[i].first_half + k] = mask;
-      } else {
-        for (Index k = 0; k < 4; ++k) of_side[tree.sides[i].first_child + k] = mask;
-      }
-    });
-  }
-};
-/// Holds the nodes between the corners of divided facets that are held, in one direction: all that is written is the same.
-template <int Dim>
-struct HoldNodesBetween {
-  TreeView tree;
-  CellSplit const* cells;
-  DirectionMask const* of_side;
-  DirectionMask direction;
-  Index const* of_node;
-  DirectionMask* held;  // by row
-
-  PLIANT_HOST_DEVICE void operator()(Index r) const {
-    visit_facets<Dim>(tree.cells[static_cast<std::size_t>(cells[r].cell)], [&](Index side) {
-      if ((of_side[side] & direction) == 0) return;
-      if constexpr (Dim == 2) {
-        hold(tree.edges[static_cast<std::size_t>(side)].middle);
-      } else {
-        auto const& own = tree.sides[static_cast<std::size_t>(side)];
-        hold(own.centre);
-        for (std::size_t e = 0; e < own.corners(); ++e)
-          hold(tree.edges[static_cast<std::size_t>(own.edges[e])].middle);
-      }
-    });
-  }
-
- private:
-  PLIANT_HOST_DEVICE void hold(Index node) const {
-    if (node < 0) return;
-    auto& own = held[of_node[node]];
-    own = static_cast<DirectionMask>(own | direction);
-  }
-};
-
-}  // namespace detail
-
-/// The facets of linear elements that conditions hold, as sides of a tree, in a backend's memory.
+/// What conditions hold of a mesh of linear elements in a backend's memory: facets, as sides of its tree, and nodes.
 template <int Dim, Backend B>
 class HeldSidesOn {
+  template <class U>
+  using Array = typename B::template Array<U>;
+
  public:
-  /// Finds those of conditions. `tree`: as it is in the backend's memory. Throws Error for a facet that is no side of it.
-  void set(B const& backend, Hierarchy<Dim> const& tree,
-           std::vector<Condition<Dim>> const& conditions) {
-    std::map<std::vector<Index>, DirectionMask> known;
+  /// Finds what conditions hold; whether there is room for so many. `tree`: as it is in the backend's memory; row_of(the user's
+  /// number): the row of a node, of `rows`.
+  template <class RowOf>
+  bool set(B const& backend, Hierarchy<Dim> const& tree,
+           std::vector<Condition<Dim>> const& conditions, RowOf const& row_of, Index rows) {
+    std::map<std::vector<Index>, detail::ConditionBits> known;
     std::vector<char> is_corner(tree.points().size(), 0);
-    for (auto const& condition : conditions)
-      for (auto const& facet : condition.facets) {
-        known[sorted(facet)] |= condition.directions;
-        for (Index node : facet) is_corner[static_cast<std::size_t>(node)] = 1;
+    std::vector<DirectionMask> held(at(rows), 0);
+    std::vector<std::uint8_t> named(at(rows), 0);
+    std::size_t count = 0;
+    directions_ = {};
+    for (auto const& condition : conditions) {
+      if (condition.facets.empty()) {
+        for (Index const node : condition.nodes) {
+          held[at(row_of(node))] |= condition.directions;
+          named[at(row_of(node))] = 1;
+        }
+        continue;
       }
-    any_ = !known.empty();
-    if (!any_) return;
-    std::size_t found = 0;
-    auto const mask_of = [&](auto const& nodes) {
-      for (Index node : nodes)
-        if (node >= 0 && is_corner[static_cast<std::size_t>(node)] == 0) return DirectionMask{0};
-      auto const own = known.find(sorted(nodes));
-      found += own != known.end();
-      return own == known.end() ? DirectionMask{0} : own->second;
-    };
-    std::vector<DirectionMask> masks;
-    if constexpr (Dim == 2) {
-      for (auto const& edge : tree.tree().edges()) masks.push_back(mask_of(edge.nodes));
-    } else {
-      for (auto const& side : tree.tree().sides()) masks.push_back(mask_of(side.nodes));
+      if (count == detail::most_conditions) return false;
+      directions_.of_condition[count] = condition.directions;
+      for (auto const& facet : condition.facets) {
+        known[sorted(facet)] |= detail::ConditionBits{1} << count;
+        for (Index const node : facet) is_corner[at(node)] = 1;
+      }
+      ++count;
     }
-    if (found < known.size())
-      throw Error("refine: of ", known.size(), " facets that conditions hold, ",
-                  known.size() - found, " are no sides of elements; give such");
-    of_side_ = upload(backend, masks);
-    count_ = masks.size();
+    held_ = upload(backend, held);
+    named_ = upload(backend, named);
+    rows_ = rows;
+    auto const bits_of = [&](auto const& nodes) {
+      for (Index const node : nodes)
+        if (node >= 0 && is_corner[at(node)] == 0) return detail::ConditionBits{0};
+      auto const own = known.find(sorted(nodes));
+      return own == known.end() ? detail::ConditionBits{0} : own->second;
+    };
+    auto const list_all = [&](auto const& sides) {
+      std::vector<detail::ConditionBits> bits;
+      for (auto const& side : sides) bits.push_back(bits_of(side.nodes));
+      return bits;
+    };
+    std::vector<detail::ConditionBits> bits;
+    if constexpr (Dim == 2)
+      bits = list_all(tree.tree().edges());
+    else
+      bits = list_all(tree.tree().sides());
+    // Sides know of their parts, which come behind them.
+    detail::SidesView<Dim> const sides{tree.tree().lists().view()};
+    for (auto side = static_cast<Index>(bits.size()) - 1; side >= 0; --side) {
+      Index const first = sides.first_part(side);
+      if (first < 0) continue;
+      bool same = true;
+      for (Index k = 1; k < sides.parts; ++k) same = same && bits[at(first + k)] == bits[at(first)];
+      bits[at(side)] = same ? bits[at(first)] : detail::differs;
+    }
+    bits_ = upload(backend, bits);
+    count_ = static_cast<Index>(bits.size());
+    return true;
   }
 
-  /// Holds the parts of facets that a refinement divided, and their nodes. `held`: directions by row.
+  /// Holds the parts of facets that a refinement divided, and their nodes. `held`: directions by row, of `rows`.
   void refine(B const& backend, TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
-              Index const* of_node, DirectionMask* held) {
-    if (!any_) return;
-    auto const sizes = tree.sizes();
-    auto const now = static_cast<std::size_t>(Dim == 2 ? sizes.edges : sizes.sides);
-    detail::grow_keeping(backend, of_side_, count_, now);
+              Index const* of_node, Index rows, DirectionMask* held) {
+    Index const now = count_in(tree.sizes());
+    detail::grow_keeping(backend, bits_, at(count_), at(now));
     count_ = now;
+    detail::grow_keeping(backend, held_, at(rows_), at(rows));
+    detail::grow_keeping(backend, named_, at(rows_), at(rows));
+    rows_ = rows;
+    detail::SidesView<Dim> const sides{tree.view()};
     backend.for_each(refined.leaves,
-                     detail::InheritHeld<Dim>{tree.view(), refined.cells, of_side_.data()});
+                     detail::InheritConditions<Dim>{sides, refined.cells, bits_.data()});
     for (int k = 0; k < Dim; ++k)
-      backend.for_each(refined.leaves, detail::HoldNodesBetween<Dim>{
-                                           tree.view(), refined.cells, of_side_.data(),
-                                           static_cast<DirectionMask>(1 << k), of_node, held});
+      backend.for_each(refined.leaves,
+                       detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
+                                              direction(k), of_node, held});
+  }
+
+  /// Follows a coarsening, and whether it may be: not where a node would go that a condition names, or a side be whole again of
+  /// which conditions hold a part only. Then nothing has changed. `tree`: after it; `of_node`: before it.
+  bool coarsen(B const& backend, TreeOn<B> const& tree, Coarsened const& done,
+               Index const* of_node) {
+    auto found = zeros<Index>(backend, 1);
+    Index const first = Dim == 2 ? done.initial.edges : done.initial.sides,
+                now = count_in(done.now);
+    auto moved = zeros<detail::ConditionBits>(backend, at(now));
+    backend.for_each(
+        count_,
+        detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved.data()});
+    backend.for_each(done.merged, detail::FindCutSides<Dim>{{tree.view()},
+                                                            {done.initial.cells, done.cells},
+                                                            done.parents,
+                                                            moved.data(),
+                                                            found.data()});
+    backend.for_each(done.before.nodes - done.initial.nodes,
+                     detail::FindNamedNodes{done.nodes, of_node + done.initial.nodes, named_.data(),
+                                            found.data()});
+    if (download<Index>(found)[0] != 0) return false;
+    bits_ = std::move(moved);
+    count_ = now;
+    return true;
+  }
+  /// All that is held, by row.
+  void hold(B const& backend, TreeOn<B> const& tree, Index const* of_node, Index rows,
+            DirectionMask* held) const {
+    detail::copy_values<B, DirectionMask>(backend, held_.data(), held, at(rows));
+    for (int k = 0; k < Dim; ++k)
+      backend.for_each(count_,
+                       detail::HoldSides<Dim>{
+                           {tree.view()}, bits_.data(), directions_, direction(k), of_node, held});
   }
 
  private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  static DirectionMask direction(int k) { return static_cast<DirectionMask>(1 << k); }
+  static Index count_in(TreeSizes const& sizes) { return Dim == 2 ? sizes.edges : sizes.sides; }
   template <class Nodes>
   static std::vector<Index> sorted(Nodes const& nodes) {
     std::vector<Index> list(nodes.begin(), nodes.end());
@@ -142,9 +145,11 @@ class HeldSidesOn {
     return list;
   }
 
-  typename B::template Array<DirectionMask> of_side_;
-  std::size_t count_ = 0;  // of these
-  bool any_ = false;
+  detail::DirectionsOf directions_;
+  Array<detail::ConditionBits> bits_;  // by side
+  Array<DirectionMask> held_;          // by row: by conditions on nodes
+  Array<std::uint8_t> named_;          // by row: whether these name the node
+  Index count_ = 0, rows_ = 0;
 };
 
 }  // namespace pliant

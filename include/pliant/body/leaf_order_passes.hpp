@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <pliant/body/merged_family.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/compaction_view.hpp>
 #include <pliant/topology/refinement_results.hpp>
@@ -11,14 +12,6 @@
 
 // Passes over the leaves of a tree in the order that a body keeps, for loops of a backend.
 namespace pliant {
-
-/// Leaves that a coarsening merged, in the place of their parent.
-struct MergedFamily {
-  Index cell = -1;          ///< the parent, by its new number
-  Index place = -1;         ///< and its place now
-  Index first_before = -1;  ///< the place of its first child before; the others followed it
-  Index children = 0;       ///< how many these were
-};
 
 namespace detail {
 

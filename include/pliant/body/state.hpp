@@ -71,7 +71,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   template <class E>
   static constexpr int groups_on = detail::FormulationsOf<E, detail::TypeList<>, Fs...>::type::size;
 
-  WhenAsked<Topology<Mesh<Es...>>> topology;          // shared by copies
+  WhenAsked<Topology<Mesh<Es...>>> topology;  // shared by copies
   WhenAsked<Prescribed<dim>> prescribed;      // shared by copies
   Array<T> u, v;       // (nodes, 4), m and m/s; v is a pending half-kick behind `time`
   Array<T> load;       // (nodes, 4), N, as the user set it; empty while there is none

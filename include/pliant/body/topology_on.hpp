@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <pliant/body/element_numbers_on.hpp>
+#include <pliant/body/family_momentum_on.hpp>
+#include <pliant/body/gone_nodes_on.hpp>
 #include <pliant/body/held_sides_on.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/body/nodal_masses_on.hpp>
@@ -32,6 +34,8 @@ struct TopologyOn<Mesh<E>, B> {
   ElementNumbersOn<B> numbers;
   HangingNodesOn<dim, B> hanging;
   NodalMassesOn<E, B> masses;
+  FamilyMomentumOn<E, B> momentum;
+  GoneNodesOn<E, B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
   HeldSidesOn<dim, B> held;
   WhenAsked<Prescribed<dim>> prescribed{};  // that `held` is of
@@ -42,13 +46,17 @@ struct TopologyOn<Mesh<E>, B> {
       : TopologyOn(parts, detail::tree_of(parts.state.topology.shared())) {}
 
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
-  /// Brings what is held up to a body's conditions, where these have changed.
+  /// Brings what is held up to a body's conditions, where these have changed; whether that can be.
   template <class Parts>
-  void follow_conditions(Parts const& parts) {
-    if (prescribed.is(parts.state.prescribed)) return;
-    held.set(parts.backend, *detail::tree_of(parts.state.topology.shared()).tree,
-             parts.state.prescribed->conditions);
+  bool follow_conditions(Parts const& parts) {
+    if (prescribed.is(parts.state.prescribed)) return true;
+    if (!held.set(
+            parts.backend, *detail::tree_of(parts.state.topology.shared()).tree,
+            parts.state.prescribed->conditions,
+            [&](Index node) { return parts.layout.internal_of(node); }, rows.count()))
+      return false;
     prescribed = parts.state.prescribed;
+    return true;
   }
 
  private:
@@ -60,7 +68,9 @@ struct TopologyOn<Mesh<E>, B> {
         rows(parts.backend, parts.layout.node_rows()),
         numbers(parts.backend, tree, order),
         hanging(parts.backend),
-        masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density) {
+        masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
+        momentum(parts.backend),
+        gone(parts.backend) {
     std::vector<double> values(node_stride * static_cast<std::size_t>(rows.count()));
     for (Index node = 0; node < parts.layout.nodes(); ++node)
       for (std::size_t k = 0; k < dim; ++k)

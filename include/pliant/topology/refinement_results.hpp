@@ -44,6 +44,8 @@ struct Coarsened {
   /// (before.nodes - initial.nodes): the new number of node initial.nodes + k is nodes[k]; −1: gone.
   Index const* nodes = nullptr;
   Index const* cells = nullptr;  ///< (before.cells - initial.cells): the same for cells
+  Index const* edges = nullptr;  ///< and edges
+  Index const* sides = nullptr;  ///< and sides
 };
 
 /// Beyond what Hierarchy::refine throws Error, or leaves cells alone.

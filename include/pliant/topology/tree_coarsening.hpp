@@ -42,6 +42,8 @@ class TreeCoarsening {
     done.first_children = first_children_.data();
     done.nodes = numbers_[0].data();
     done.cells = numbers_[1].data();
+    done.edges = numbers_[2].data();
+    done.sides = numbers_[3].data();
     return done;
   }
 

@@ -8,7 +8,7 @@
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/refined_elements.hpp>
 
-// What a refinement does to arrays of a body, for loops of a backend.
+// What a change of the mesh does to arrays of a body, for loops of a backend.
 namespace pliant::detail {
 
 /// cells[k] = of[cells[k]], from numbers of elements.
@@ -36,25 +36,12 @@ struct PlaceAtRest {
       rest(row, d) = static_cast<T>(points(row, d) - middle[static_cast<std::size_t>(d)]);
   }
 };
-/// The rows of nodes, and groups, of refined elements or of all of their children.
-template <Element E, int Width>
-struct TakeFamilies {
-  RefinedElements<E> elements;
-  bool children;
-  Tag const* tags_before;  // by the place before; null: all are of group 0
-  Index const *places, *from;
-  Index* rows;
-  Tag* tags;
-
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    constexpr Index per_family = RefinedElements<E>::most_children;
-    Index const r = children ? i / per_family : i;
-    Index const c = elements.cell(r, children ? i % per_family : -1);
-    auto const own = elements.rows_of(c);
-    for (std::size_t a = 0; a < own.size(); ++a)
-      rows[static_cast<std::ptrdiff_t>(Width) * i + static_cast<std::ptrdiff_t>(a)] = own[a];
-    if (tags_before != nullptr) tags[i] = tags_before[from[places[elements.cell(r, 0)]]];
-  }
+/// Sets listed rows to zero.
+template <class T, int Dim>
+struct ClearListed {
+  Index const* rows;
+  NodeField<T, Dim> field;
+  PLIANT_HOST_DEVICE void operator()(Index k) const { field.set(rows[k], Vector<T, Dim>::zero()); }
 };
 
 /// An array of `count` values of which the first are those of another one.

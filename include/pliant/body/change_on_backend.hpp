@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/change_topology.hpp>
+#include <pliant/body/topology_on.hpp>
+#include <pliant/topology/plan.hpp>
+
+// Which bodies are refined and coarsened in their backend's memory, and what the host knows of their meshes, which follows when
+// it is asked for.
+namespace pliant {
+
+namespace detail {
+
+/// Whether meshes of a backend are changed in its memory: where it says so by `keeps_trees`.
+template <class B>
+inline constexpr bool keeps_trees = false;
+template <class B>
+  requires requires { requires B::keeps_trees; }
+inline constexpr bool keeps_trees<B> = true;
+
+template <class M>
+inline constexpr bool is_of_one_refinable_type = false;
+template <Element E>
+inline constexpr bool is_of_one_refinable_type<Mesh<E>> =
+    E::degree == 1 && (LinearSimplex<E> || TensorCell<typename E::cell>);
+
+/// Whether bodies of a kind may be refined and coarsened in their backend's memory.
+template <class Parts>
+inline constexpr bool changes_on_backend = [] {
+  if constexpr (keeps_trees<typename Parts::backend_type> &&
+                is_of_one_refinable_type<typename Parts::mesh_type>) {
+    using Laws = typename std::tuple_element_t<0, decltype(Parts::layout_type::tables)>::Laws;
+    return !Parts::has_internal_variables && Laws::value_count == 0;
+  } else {
+    return false;
+  }
+}();
+
+/// Whether nothing of a body has to look at lists of the host when its mesh changes, and the host has not changed it: what it
+/// does then takes less time than to bring the mesh over again.
+template <class Parts>
+bool can_change_on_backend(Parts const& parts) {
+  if (parts.mesh_is_on_host || !parts.listeners.empty() || !parts.term_makers.empty() ||
+      parts.sleep != nullptr || !parts.pressures.empty() || !parts.driven.empty())
+    return false;
+  return parts.first->interpolation.empty();
+}
+
+/// What the host knows of a mesh that was changed in a backend's memory.
+template <class M>
+struct ChangedOnHost {
+  std::shared_ptr<Topology<M> const> topology;
+  std::shared_ptr<Prescribed<M::dim> const> prescribed;
+};
+/// The topology of a body, with some of its cells refined, or some merged, and conditions there, when they are asked for. `cells`:
+/// those that are refined, or of which the children are merged.
+template <class Parts, class Cells>
+auto changed_when_asked(Parts const& parts, std::shared_ptr<Cells> cells, bool merged) {
+  using M = typename Parts::mesh_type;
+  using Changed = ChangedOnHost<M>;
+  return WhenAsked<Changed>::by(
+      [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
+       merged, values = element_values_of(parts)]() -> std::shared_ptr<Changed const> {
+        auto numbers = download<Index>(*cells);
+        if (merged) {
+          std::vector<Index> children;
+          for (Index const c : numbers) {
+            auto const& parent = before->tree->cell(c);
+            for (Index k = 0; k < parent.divided().children; ++k)
+              children.push_back(parent.first_child + k);
+          }
+          numbers = std::move(children);
+        }
+        if (before->tree)
+          for (Index& number : numbers) number = before->cells[0].rank(number);
+        MarkedElements marked;
+        (merged ? marked.coarsen : marked.refine).push_back(std::move(numbers));
+        auto const plan = plan_change(before.shared(), marked, {}, {}, values);
+        return std::make_shared<Changed>(Changed{
+            plan->after,
+            std::make_shared<Prescribed<M::dim> const>(carried(*prescribed, plan->transfer))});
+      });
+}
+
+/// Values by the row, by the user's number of a node.
+template <class U>
+std::vector<U> by_user(NodeRows const& rows, std::vector<U> const& by_row) {
+  std::vector<U> values(rows.of_node.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = by_row[static_cast<std::size_t>(rows.of_node[i])];
+  return values;
+}
+
+}  // namespace detail
+
+}  // namespace pliant

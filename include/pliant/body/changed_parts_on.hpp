@@ -1,0 +1,267 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include <pliant/backend/elements_of_rows.hpp>
+#include <pliant/body/change_on_backend.hpp>
+#include <pliant/body/change_passes.hpp>
+#include <pliant/body/element_rows_on.hpp>
+#include <pliant/body/fill_new_nodes_on.hpp>
+#include <pliant/body/gone_nodes_on.hpp>
+#include <pliant/topology/refined_elements.hpp>
+
+namespace pliant::detail {
+
+/// A body's parts behind a change of its mesh in the backend's memory. `On` has the tree after it, and follows.
+template <class Parts>
+class ChangedPartsOn {
+  using B = typename Parts::backend_type;
+  using M = typename Parts::mesh_type;
+  using T = typename Parts::T;
+  using Layout = typename Parts::layout_type;
+  using Table = std::tuple_element_t<0, decltype(Layout::tables)>;
+  using E = typename Table::element;
+  using On = TopologyOn<M, B>;
+  using Elements = typename B::template Elements<E::nodes>;
+  static constexpr int dim = Parts::dim;
+  template <class U>
+  using Array = typename Parts::template Array<U>;
+
+ public:
+  ChangedPartsOn(Parts& parts, On& on) : parts_(parts), on_(on), backend_(parts.backend) {}
+
+  /// Linear elements keep their momentum: what their children interpolate is what they did, and lumped masses are the integrals
+  /// of shape functions.
+  ChangedTopology<Parts> refined(typename TreeOn<B>::Refined const& done) {
+    begin();
+    auto cells = std::make_shared<Array<Index>>(zeros<Index>(backend_, at(done.leaves)));
+    backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
+    follow_on_host(std::move(cells), false);
+    on_.order.refine(on_.tree, done);
+    on_.rows.refine(on_.tree, on_.order, done);
+    rows_ = on_.rows.count();
+    on_.points = extended(backend_, on_.points, values());
+    auto const filled = [&](auto field) {
+      fill_new_nodes<E>(backend_, on_.tree, done, on_.rows.of_node(), node_field<dim>(field));
+      return field;
+    };
+    on_.points = filled(std::move(on_.points));
+    auto u = filled(extended(backend_, parts_.state.u, values()));
+    auto v = filled(extended(backend_, parts_.state.v, values()));
+    auto layout = new_layout();
+    backend_.for_each(done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
+                                                          on_.rows.of_node(),
+                                                          {on_.points.data()},
+                                                          layout.middle,
+                                                          node_field<dim>(layout.rest)});
+    on_.held.refine(backend_, on_.tree, done, on_.rows.of_node(), rows_, layout.held.data());
+    on_.masses.extend(rows_);
+    auto const families = refined_elements<E>(on_.tree, done, on_.rows.of_node(), at_rest());
+    on_.masses.take_gone(families);
+    on_.masses.add_come(families);
+    read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
+    RefinedPlaces<B> const places(backend_, on_.tree.view(), on_.order, done.leaves);
+    double const before = strain_energy(parts_.layout, std::get<0>(parts_.state.elements).tags,
+                                        places.go, places.go_count, parts_.state.u);
+    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), {}, before);
+    if (parts_.state.load.size() > 0)
+      changed.parts.state.load = extended(backend_, parts_.state.load, values());
+    finish(changed.parts);
+    changed.strain_energy =
+        strain_energy(changed.parts.layout, std::get<0>(changed.parts.state.elements).tags,
+                      places.come, places.come_count, changed.parts.state.u);
+    return changed;
+  }
+
+  /// Energies are of all elements: nodes that begin to hang displace some that stay.
+  ChangedTopology<Parts> coarsened(Coarsened const& done) {
+    double const speed = begin();
+    double const before = strain_energy(parts_.layout, parts_.state.u);
+    auto parents = std::make_shared<Array<Index>>(zeros<Index>(backend_, at(done.merged)));
+    copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
+    follow_on_host(std::move(parents), true);
+    on_.order.coarsen(on_.tree, done);
+    on_.rows.coarsen(done);
+    rows_ = on_.rows.count();
+    auto u = extended(backend_, parts_.state.u, values());
+    auto v = extended(backend_, parts_.state.v, values());
+    auto layout = new_layout();
+    on_.held.hold(backend_, on_.tree, on_.rows.of_node(), rows_, layout.held.data());
+    MergedElements<E> const families{on_.order.merged_families(), on_.order.merged_count(),
+                                     std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
+                                     std::get<0>(layout.tables).elements.rows_of_nodes(),
+                                     ElementsByRows<E>(at_rest())};
+    MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_),
+        weights(backend_, layout.interpolation, rows_);
+    on_.masses.take_gone(families);
+    on_.momentum.begin(families, weights_before, weights, on_.masses);
+    on_.masses.add_come(families);
+    read_masses(layout, weights);
+    double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);
+    auto const taken =
+        on_.momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
+                               kilograms_->data(), layout.held.data(), node_field<dim>(v));
+    auto const clear = [&](Array<T>& field) {
+      backend_.for_each(on_.rows.freed_count(),
+                        ClearListed<T, dim>{on_.rows.freed(), node_field<dim>(field)});
+    };
+    for (auto* field : {&u, &v, &layout.rest}) clear(*field);
+    Array<T> load;
+    if (parts_.state.load.size() > 0) {
+      load = extended(backend_, parts_.state.load, values());
+      InterpolationOn<B>(backend_,
+                         on_.gone.rows(families, on_.rows.freed(), on_.rows.freed_count(), rows_))
+          .apply_transpose(backend_, node_field<dim>(load));
+    }
+    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), taken, before);
+    changed.parts.state.load = std::move(load);
+    finish(changed.parts);
+    changed.strain_energy = strain_energy(changed.parts.layout, changed.parts.state.u);
+    return changed;
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  [[nodiscard]] std::size_t values() const { return node_stride * at(rows_); }
+  NodeField<double const, dim> at_rest() const { return {on_.points.data()}; }
+
+  /// Throws Error where a field is not finite. Returns the largest component of a velocity, m/s.
+  double begin() {
+    synchronize_velocities(parts_);
+    auto const largest = [&](char const* what, Array<T> const& field) {
+      double const most =
+          backend_.maximum(parts_.layout.rows, RowSize<T, dim>{node_field<dim>(field)});
+      if (!is_finite(most))
+        check_field(what, parts_.layout.in_user_order(field), parts_.layout.nodes());
+      return most;
+    };
+    largest("change of the mesh (displacements)", parts_.state.u);
+    return largest("change of the mesh (velocities)", parts_.state.v);
+  }
+  void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
+    auto const changed = changed_when_asked(parts_, std::move(cells), merged);
+    topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
+    prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
+    on_.prescribed = prescribed_;
+  }
+  template <class U>
+  Array<U> copy_of(U const* from) {
+    auto copy = zeros<U>(backend_, at(rows_));
+    copy_values<B, U>(backend_, from, copy.data(), at(rows_));
+    return copy;
+  }
+
+  /// With all but masses, which are left zero; what it takes of rows is that of before.
+  Layout new_layout() {
+    auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_.rows.lists());
+    WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
+        [snapshot] { return std::make_shared<NodeRows>(snapshot->download_all()); });
+    own_masses_ = std::make_shared<Array<ExactSum>>();
+    kilograms_ = std::make_shared<Array<double>>(zeros<double>(backend_, at(rows_)));
+    auto const listed = [node_rows]<class U>(std::shared_ptr<Array<U>> by_row) {
+      return WhenAsked<SharedList<U>>::by([node_rows, by_row = std::move(by_row)] {
+        return std::make_shared<SharedList<U>>(by_user(*node_rows, download<U>(*by_row)));
+      });
+    };
+    auto const& before = parts_.layout;
+    Layout layout(before, rows_,
+                  {on_.rows.nodes(), node_rows, listed(own_masses_), listed(kilograms_),
+                   copy_of(on_.rows.node())});
+    auto blocks = blocks_after_refinement(on_.order, before.first_of_block[0]);
+    make_table(std::get<0>(layout.tables), blocks);
+    layout.first_of_block[0] = std::move(blocks.first);
+    layout.rest = extended(backend_, before.rest, values());
+    auto const scratch = std::get<0>(layout.tables).elements.scratch_nodes();
+    layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
+    layout.held = extended(backend_, before.held, at(rows_));
+    layout.mass = zeros<T>(backend_, at(rows_));
+    layout.interpolation =
+        InterpolationOn<B>(backend_, on_.hanging.rows(on_.tree, on_.rows.of_node()));
+    return layout;
+  }
+  void make_table(Table& table, ElementBlocks const& blocks) {
+    auto const& before = std::get<0>(parts_.layout.tables);
+    auto rows = element_rows<E, row_width<Elements>>(
+        backend_, on_.tree.view(), on_.order, on_.rows.of_node(), before.elements.rows_of_nodes());
+    Array<Tag> tags;
+    if constexpr (Table::groups > 1)
+      tags = inherited_values<Tag>(backend_, on_.order,
+                                   std::get<0>(parts_.state.elements).tags.data());
+    table.elements =
+        elements_of_rows<Elements>(backend_, std::move(rows), Table::groups, std::move(tags), rows_,
+                                   node_order<E>, blocks, &before.elements);
+    table.laws = before.laws;
+    table.straight = before.straight;
+    table.numbers = WhenAsked<ElementNumbers>::by(
+        [topology = topology_, order = parts_.layout.first_order, first = blocks.first] {
+          auto ordered = elements_in_order(*topology, *order);
+          return std::make_shared<ElementNumbers>(std::move(ordered.cells[0]), first,
+                                                  topology->cells[0]);
+        });
+  }
+  void read_masses(Layout& layout, MassWeightsOn<B> const& weights) {
+    on_.masses.read(weights, kilograms_->data());
+    on_.masses.round(kilograms_->data(), layout.mass.data());
+    *own_masses_ = copy_of(on_.masses.own());
+  }
+  ChangedTopology<Parts> with_fields(Layout layout, Array<T> u, Array<T> v, Point<dim> const& taken,
+                                     double energy_before) {
+    ChangedTopology<Parts> changed{parts_on(parts_, std::move(layout), topology_, prescribed_),
+                                   taken, energy_before};
+    auto& next = changed.parts;
+    next.state.u = std::move(u);
+    next.state.v = std::move(v);
+    next.layout.interpolation.apply(next.backend, next.u());
+    next.layout.interpolation.apply(next.backend, next.v());
+    return changed;
+  }
+  void finish(Parts& next) {
+    auto& state = next.state;
+    state.record.totals = closed_totals(parts_);
+    state.record.born = state.steps;
+    if (state.load.size() > 0) make_loads(next);
+    std::get<0>(state.elements).statistics = {};
+    std::get<0>(next.layout.tables).elements.regroup();
+    make_room_for_forces(next);
+    state.integrator.next_check = state.integrator.next_refresh = state.steps;
+    state.implicit = {};
+  }
+
+  /// Of all elements, J.
+  double strain_energy(Layout const& layout, Array<T> const& u) {
+    return strain_energy_of(std::get<0>(layout.tables).elements, layout, u);
+  }
+  /// Of elements at some places.
+  double strain_energy(Layout const& layout, Array<Tag> const& tags, Array<Index> const& places,
+                       Index count, Array<T> const& u) {
+    return strain_energy_of(element_list(backend_, std::get<0>(layout.tables).elements, tags.data(),
+                                         places.data(), count, Table::groups, layout.rows),
+                            layout, u);
+  }
+  template <class List>
+  double strain_energy_of(List const& elements, Layout const& layout, Array<T> const& u) {
+    auto const& table = std::get<0>(layout.tables);
+    double sum = 0;
+    table.with_geometry([&](auto geometry) {
+      sum = backend_.template sum_elements<Table::groups>(
+          elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
+          node_field<dim>(layout.rest), node_field<dim>(u));
+    });
+    return sum;
+  }
+
+  Parts& parts_;
+  On& on_;
+  B const& backend_;
+  Index rows_ = 0;
+  WhenAsked<Topology<M>> topology_;
+  WhenAsked<Prescribed<dim>> prescribed_;
+  std::shared_ptr<Array<ExactSum>> own_masses_;
+  std::shared_ptr<Array<double>> kilograms_;
+};
+
+}  // namespace pliant::detail

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/constraint/condition.hpp>
+#include <pliant/topology/compaction_view.hpp>
+#include <pliant/topology/refinement_results.hpp>
+#include <pliant/topology/tree_view.hpp>
+
+// Passes over sides of a tree that conditions hold, for loops of a backend. In the plane sides are edges.
+namespace pliant::detail {
+
+/// Which conditions on facets hold a side, a bit for each; the last one: some of its parts are held otherwise than others.
+using ConditionBits = std::uint32_t;
+inline constexpr std::size_t most_conditions = 31;
+inline constexpr ConditionBits differs = ConditionBits{1} << most_conditions;
+
+template <int Dim>
+struct SidesView {
+  TreeView tree;
+
+  /// Calls visit(side) for the sides of a cell.
+  template <class Visit>
+  PLIANT_HOST_DEVICE void visit_sides(Index cell, Visit const& visit) const {
+    auto const& own = tree.cells[at(cell)];
+    auto const& p = own.pattern();
+    if constexpr (Dim == 2) {
+      for (std::size_t e = 0; e < at(p.edges); ++e) visit(own.edges[e]);
+    } else {
+      for (std::size_t s = 0; s < at(p.sides); ++s) visit(own.sides[s]);
+    }
+  }
+  /// Where the parts of a side begin; negative: it has none.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index first_part(Index side) const {
+    if constexpr (Dim == 2)
+      return tree.edges[at(side)].first_half;
+    else
+      return tree.sides[at(side)].first_child;
+  }
+  static constexpr Index parts = Dim == 2 ? 2 : 4;
+  /// Calls visit(node) for the corners of a side.
+  template <class Visit>
+  PLIANT_HOST_DEVICE void visit_corners(Index side, Visit const& visit) const {
+    if constexpr (Dim == 2) {
+      for (Index const node : tree.edges[at(side)].nodes) visit(node);
+    } else {
+      auto const& own = tree.sides[at(side)];
+      for (std::size_t k = 0; k < own.corners(); ++k) visit(own.nodes[k]);
+    }
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+};
+
+/// In which directions conditions hold.
+struct DirectionsOf {
+  std::array<DirectionMask, most_conditions> of_condition{};
+
+  [[nodiscard]] PLIANT_HOST_DEVICE bool holds(ConditionBits bits, DirectionMask direction) const {
+    for (std::size_t c = 0; bits != 0 && c < most_conditions; ++c, bits >>= 1)
+      if ((bits & 1) != 0 && (of_condition[c] & direction) != 0) return true;
+    return false;
+  }
+};
+
+/// Parts of sides that were divided are held as these are. A call for each refined cell.
+template <int Dim>
+struct InheritConditions {
+  SidesView<Dim> sides;
+  CellSplit const* cells;
+  ConditionBits* bits;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    sides.visit_sides(cells[r].cell, [&](Index side) {
+      ConditionBits const own = bits[side];
+      if (own == 0 || own == differs) return;
+      for (Index k = 0; k < sides.parts; ++k) bits[sides.first_part(side) + k] = own;
+    });
+  }
+};
+/// Holds the corners of the parts of held sides of refined cells, in one direction: all that is written is the same.
+template <int Dim>
+struct HoldParts {
+  SidesView<Dim> sides;
+  CellSplit const* cells;
+  ConditionBits const* bits;
+  DirectionsOf directions;
+  DirectionMask direction;
+  Index const* of_node;
+  DirectionMask* held;  // by row
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    sides.visit_sides(cells[r].cell, [&](Index side) {
+      if (bits[side] == differs || !directions.holds(bits[side], direction)) return;
+      for (Index k = 0; k < sides.parts; ++k)
+        sides.visit_corners(sides.first_part(side) + k, [&](Index node) {
+          auto& own = held[of_node[node]];
+          own = static_cast<DirectionMask>(own | direction);
+        });
+    });
+  }
+};
+/// The same for all sides without parts.
+template <int Dim>
+struct HoldSides {
+  SidesView<Dim> sides;
+  ConditionBits const* bits;
+  DirectionsOf directions;
+  DirectionMask direction;
+  Index const* of_node;
+  DirectionMask* held;  // by row
+
+  PLIANT_HOST_DEVICE void operator()(Index side) const {
+    if (bits[side] == 0 || sides.first_part(side) >= 0) return;
+    if (!directions.holds(bits[side], direction)) return;
+    sides.visit_corners(side, [&](Index node) {
+      auto& own = held[of_node[node]];
+      own = static_cast<DirectionMask>(own | direction);
+    });
+  }
+};
+
+/// to[new number] = from[old number] of sides that stay.
+struct MoveBits {
+  NewNumbers numbers;
+  ConditionBits const* from;
+  ConditionBits* to;
+  PLIANT_HOST_DEVICE void operator()(Index side) const {
+    if (Index const now = numbers(side); now >= 0) to[now] = from[side];
+  }
+};
+/// Notes where a merged side would have parts that are held otherwise than others.
+template <int Dim>
+struct FindCutSides {
+  SidesView<Dim> sides;
+  NewNumbers cells;
+  Index const* parents;  // old numbers of merged cells
+  ConditionBits const* bits;
+  Index* found;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    sides.visit_sides(cells(parents[r]), [&](Index side) {
+      if (bits[side] == differs && sides.first_part(side) < 0) atomic_store(*found, 1);
+    });
+  }
+};
+/// Notes where a node goes that a condition on nodes names.
+struct FindNamedNodes {
+  Index const* numbers;       // new, of nodes from `first` on; −1: gone
+  Index const* of_node;       // from the same on
+  std::uint8_t const* named;  // by row
+  Index* found;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (numbers[k] < 0 && named[of_node[k]] != 0) atomic_store(*found, 1);
+  }
+};
+
+}  // namespace pliant::detail
