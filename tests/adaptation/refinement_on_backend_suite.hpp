@@ -266,6 +266,35 @@ TEST_CASE("rules refine a body in its backend's memory as on the host", "[adapta
   });
 }
 
+TEST_CASE("rules refine and coarsen a body at once in its backend's memory as on the host",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    TwoBodies<F, B> both(backend, 6);
+    std::size_t merged = 0;
+    for (int round = 0; round < 4; ++round) {
+      both.refine_one_in(4);
+      // Some of the families to merge lie beside what is refined.
+      MarkedElements marked{.refine = {{}}, .coarsen = {{}}};
+      for (Index e = 0; e < count(both.host); ++e) {
+        bool const finer = both.random.below(12) == 0;
+        (finer ? marked.refine : marked.coarsen)[0].push_back(e);
+      }
+      auto const plan = plan_change(both.host.parts(), marked, 3);
+      REQUIRE(plan);
+      commit(both.host.parts(), *plan);
+      auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
+      REQUIRE(done);
+      CHECK(done->refined == plan->counts.refined);
+      CHECK(done->merged == plan->counts.coarsened);
+      merged += done->merged;
+      both.check_place();
+      both.check_all();
+    }
+    CHECK(merged > 20);
+  });
+}
+
 TEST_CASE("what moves as one goes on to the bit where it is refined on a backend", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using F = Formulation<Tet4, Gauss<1>, NeoHookean>;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,10 +8,9 @@
 #include <pliant/adaptation/family_momentum.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/change_topology.hpp>
-#include <pliant/body/changed_parts_on.hpp>
 #include <pliant/topology/plan.hpp>
 
-// Changes of a body's mesh: planned on the host and put in force, or made in the backend's memory.
+// Changes of a body's mesh that are planned on the host, and how changes are put in force.
 namespace pliant {
 
 namespace detail {
@@ -104,108 +102,6 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   if (next.watched_energy && next.state.integrator.active)
     next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
   put_in_force(parts, std::move(next));
-}
-
-/// What became of a change in a backend's memory.
-struct ChangeOn {
-  std::size_t refined = 0, new_nodes = 0, merged = 0, gone_nodes = 0;
-};
-
-/// Changes of a body's mesh in its backend's memory. What goes wrong late leaves the body as it was; what was kept of the mesh
-/// there is made anew then when it is needed.
-template <class Parts>
-class ChangesOnBackend {
-  using B = typename Parts::backend_type;
-  using On = TopologyOn<typename Parts::mesh_type, B>;
-  using Cells = typename B::template Array<Index>;
-
- public:
-  ChangesOnBackend(Parts& parts, int max_level) : parts_(parts), max_level_(max_level) {}
-
-  /// Nothing where the host has to do it.
-  std::optional<ChangeOn> operator()(std::vector<Index> const& refine,
-                                     std::vector<Index> const& coarsen) {
-    ChangeOn done;
-    if (!parts_.topology_on) {
-      if (refine.empty() && !parts_.state.topology->tree) return done;  // there is nothing to merge
-      parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
-    }
-    if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
-    if (!coarsen.empty()) {
-      if (!refine.empty()) return std::nullopt;
-      auto const marked = cells_of(coarsen);
-      auto const merged = on().tree.coarsen(marked.data(), size(coarsen));
-      if (merged.merged > 0) {
-        if (!on().held.coarsen(parts_.backend, on().tree, merged, on().rows.of_node())) {
-          on().tree.take_back();
-          return std::nullopt;
-        }
-        done.merged = static_cast<std::size_t>(merged.merged);
-        done.gone_nodes = static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
-        commit("coarsen", done.merged, [&](auto& changed) { return changed.coarsened(merged); });
-      }
-    }
-    if (!refine.empty()) {
-      auto const marked = cells_of(refine);
-      auto const refined = on().tree.refine(
-          marked.data(), size(refine), {parts_.limits.nodes, parts_.limits.elements, max_level_});
-      if (refined.leaves > 0) {
-        done.refined = static_cast<std::size_t>(refined.leaves);
-        done.new_nodes = static_cast<std::size_t>(refined.new_nodes);
-        commit("refine", done.refined, [&](auto& changed) { return changed.refined(refined); });
-      }
-    }
-    return done;
-  }
-
- private:
-  static Index size(std::vector<Index> const& list) { return static_cast<Index>(list.size()); }
-  On& on() { return *parts_.topology_on; }
-  Cells cells_of(std::vector<Index> const& numbers) {
-    auto cells = upload(parts_.backend, numbers);
-    parts_.backend.for_each(size(numbers), CellsOfNumbers{on().numbers.cells(), cells.data()});
-    return cells;
-  }
-  template <class Change>
-  void commit(char const* action, std::size_t count, Change const& change) {
-    auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
-    commit_change(parts_, action, count, [&] {
-      ChangedPartsOn<Parts> parts(parts_, *kept);
-      auto changed = change(parts);
-      kept->numbers.find(parts_.backend, kept->tree, kept->order);
-      changed.parts.topology_on = kept;
-      return changed;
-    });
-    kept->tree.keep();
-  }
-
-  Parts& parts_;
-  int max_level_;
-};
-
-/// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.
-template <class Parts>
-std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedElements const& wanted,
-                                          int max_level = 30) {
-  if constexpr (changes_on_backend<Parts>) {
-    auto others = wanted;
-    auto const refine = std::exchange(others.refine, {});
-    auto const coarsen = std::exchange(others.coarsen, {});
-    if (!others.none() || !can_change_on_backend(parts)) return std::nullopt;
-    auto const& table = std::get<0>(parts.layout.tables);
-    using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto const listed = [&](char const* verb, std::vector<std::vector<Index>> const& lists) {
-      if (lists.empty()) return std::vector<Index>{};
-      for (Index const e : lists[0])
-        check_number<E>(verb, e, static_cast<std::size_t>(table.count()));
-      return lists[0];
-    };
-    auto const to_refine = listed("refine", refine), to_coarsen = listed("coarsen", coarsen);
-    if (to_refine.empty() && to_coarsen.empty()) return ChangeOn{};
-    return ChangesOnBackend<Parts>(parts, max_level)(to_refine, to_coarsen);
-  } else {
-    return std::nullopt;
-  }
 }
 
 }  // namespace detail

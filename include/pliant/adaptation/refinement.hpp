@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <pliant/adaptation/commit.hpp>
+#include <pliant/adaptation/change_on_backend.hpp>
 #include <pliant/adaptation/rule.hpp>
 
 namespace pliant {

@@ -1,0 +1,182 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pliant/adaptation/commit.hpp>
+#include <pliant/body/changed_parts_on.hpp>
+
+// Changes of a body's mesh that are made in its backend's memory.
+namespace pliant::detail {
+
+/// What became of a change.
+struct ChangeOn {
+  std::size_t refined = 0, new_nodes = 0, merged = 0, gone_nodes = 0;
+};
+
+/// Changes of a body's mesh in its backend's memory. What goes wrong leaves the body as it was, but for elements that were merged
+/// where memory runs out as others are refined; what was kept of the mesh there is made anew then when it is needed.
+template <class Parts>
+class ChangesOnBackend {
+  using B = typename Parts::backend_type;
+  using On = TopologyOn<typename Parts::mesh_type, B>;
+  using Cells = typename B::template Array<Index>;
+  using Refined = typename TreeOn<B>::Refined;
+
+ public:
+  ChangesOnBackend(Parts& parts, int max_level)
+      : parts_(parts), limits_{parts.limits.nodes, parts.limits.elements, max_level} {}
+
+  /// Elements by the user's numbers. Nothing where the host has to do it.
+  std::optional<ChangeOn> operator()(std::vector<Index> const& refine,
+                                     std::vector<Index> const& coarsen) {
+    if (!parts_.topology_on) {
+      if (refine.empty() && !parts_.state.topology->tree) return ChangeOn{};  // nothing to merge
+      parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
+    }
+    if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
+    try {
+      return change(refine, coarsen);
+    } catch (...) {
+      if (parts_.topology_on) on().tree.take_back();
+      throw;
+    }
+  }
+
+ private:
+  static Index size(auto const& list) { return static_cast<Index>(list.size()); }
+  On& on() { return *parts_.topology_on; }
+  B const& backend() const { return parts_.backend; }
+  Cells cells_of(std::vector<Index> const& numbers) {
+    auto cells = upload(backend(), numbers);
+    backend().for_each(size(numbers), CellsOfNumbers{on().numbers.cells(), cells.data()});
+    return cells;
+  }
+
+  std::optional<ChangeOn> change(std::vector<Index> const& refine,
+                                 std::vector<Index> const& coarsen) {
+    ChangeOn done;
+    auto to_refine = cells_of(refine), to_merge = cells_of(coarsen);
+    if (!refine.empty() && !coarsen.empty()) leave_what_is_refined(to_refine, to_merge);
+    if (to_merge.size() > 0) {
+      auto const merged = on().tree.coarsen(to_merge.data(), size(to_merge));
+      if (merged.merged > 0) {
+        if (!on().held.coarsen(backend(), on().tree, merged, on().rows.of_node())) {
+          on().tree.take_back();
+          return std::nullopt;
+        }
+        done.merged = static_cast<std::size_t>(merged.merged);
+        done.gone_nodes = static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
+        renumber(to_refine, merged);
+        commit("coarsen", done.merged, [&](auto& parts) { return parts.coarsened(merged); });
+      }
+    }
+    if (to_refine.size() > 0) {
+      auto const refined = on().tree.refine(to_refine.data(), size(to_refine), limits_);
+      if (refined.leaves > 0) {
+        done.refined = static_cast<std::size_t>(refined.leaves);
+        done.new_nodes = static_cast<std::size_t>(refined.new_nodes);
+        commit("refine", done.refined, [&](auto& parts) { return parts.refined(refined); });
+      }
+    }
+    if (done.merged > 0 && done.refined > 0) enter_as_one();
+    return done;
+  }
+  void renumber(Cells& cells, Coarsened const& merged) {
+    backend().for_each(size(cells),
+                       RenumberCells{{merged.initial.cells, merged.cells}, cells.data()});
+  }
+
+  /// Tries a change on the tree, and takes from the elements to merge those of families that a refinement beside them would
+  /// divide again. Throws Error where a limit would be exceeded.
+  void leave_what_is_refined(Cells const& refine, Cells& merge) {
+    while (merge.size() > 0) {
+      auto const merged = on().tree.coarsen(merge.data(), size(merge));
+      if (merged.merged == 0) return;
+      auto cells = extended(backend(), refine, refine.size());
+      renumber(cells, merged);
+      auto const refined = on().tree.refine(cells.data(), size(cells), limits_);
+      auto const families = static_cast<std::size_t>(merged.merged);
+      auto parents = zeros<Index>(backend(), families);
+      copy_values<B, Index>(backend(), merged.parents, parents.data(), families);
+      auto again = zeros<Index>(backend(), families + 1);  // and whether there are any
+      backend().for_each(refined.leaves, FindMergedAgain{refined.cells,
+                                                         parents.data(),
+                                                         {merged.initial.cells, merged.cells},
+                                                         merged.merged,
+                                                         again.data()});
+      auto any = zeros<Index>(backend(), 1);
+      copy_values<B, Index>(backend(), again.data() + families, any.data(), 1);
+      bool const some_are = download<Index>(any)[0] != 0;
+      on().tree.take_back();
+      if (!some_are) return;
+      auto left = zeros<Index>(backend(), merge.size());
+      auto count = zeros<Index>(backend(), 1);
+      backend().select(size(merge),
+                       IsMergedForGood{on().tree.view(), merge.data(), parents.data(),
+                                       merged.merged, again.data()},
+                       left.data(), count.data());
+      auto const n = download<Index>(count)[0];
+      backend().for_each(n, LookUp{merge.data(), left.data()});
+      merge = extended(backend(), left, static_cast<std::size_t>(n));
+    }
+  }
+
+  template <class Change>
+  void commit(char const* action, std::size_t count, Change const& make) {
+    auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
+    commit_change(parts_, action, count, [&] {
+      ChangedPartsOn<Parts> parts(parts_, *kept);
+      auto changed = make(parts);
+      kept->numbers.find(backend(), kept->tree, kept->order);
+      changed.parts.topology_on = kept;
+      return changed;
+    });
+    kept->tree.keep();
+  }
+  /// The last two entries of the ledger become one.
+  void enter_as_one() {
+    auto& entries = parts_.state.record.refinements;
+    auto const merged = entries[entries.size() - 2];
+    auto& entry = entries.back();
+    entry.action = "refine and coarsen";
+    entry.elements += merged.elements;
+    entry.strain_energy += merged.strain_energy;
+    entry.kinetic_energy += merged.kinetic_energy;
+    for (std::size_t k = 0; k < entry.impulse.size(); ++k) entry.impulse[k] += merged.impulse[k];
+    entries.erase(entries.end() - 2);
+  }
+
+  Parts& parts_;
+  RefinementLimits limits_;
+};
+
+/// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.
+template <class Parts>
+std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedElements const& wanted,
+                                          int max_level = 30) {
+  if constexpr (changes_on_backend<Parts>) {
+    auto others = wanted;
+    auto const refine = std::exchange(others.refine, {});
+    auto const coarsen = std::exchange(others.coarsen, {});
+    if (!others.none() || !can_change_on_backend(parts)) return std::nullopt;
+    auto const& table = std::get<0>(parts.layout.tables);
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    auto const listed = [&](char const* verb, std::vector<std::vector<Index>> const& lists) {
+      if (lists.empty()) return std::vector<Index>{};
+      for (Index const e : lists[0])
+        check_number<E>(verb, e, static_cast<std::size_t>(table.count()));
+      return lists[0];
+    };
+    auto const to_refine = listed("refine", refine), to_coarsen = listed("coarsen", coarsen);
+    if (to_refine.empty() && to_coarsen.empty()) return ChangeOn{};
+    return ChangesOnBackend<Parts>(parts, max_level)(to_refine, to_coarsen);
+  } else {
+    return std::nullopt;
+  }
+}
+
+}  // namespace pliant::detail
