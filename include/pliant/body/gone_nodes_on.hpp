@@ -35,13 +35,13 @@ struct GoneBetween {
   /// visit(k, a, b) for the nodes that went between nodes a and b of the parent, which k is among them. Some come again.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit(Index r, Visit const& visit_one) const {
-    auto const parent = families.rows_come(r, 0);
     for (int a = 0; a < nodes - 1; ++a) {
-      auto const at = static_cast<std::size_t>(a);
       auto child = families.rows_gone(r, a);
       // Mirrored tetrahedra have the nodes of their last two corners in the other order.
-      if constexpr (SimplexCell<typename E::cell> && E::dim == 3)
-        if (child[at] != parent[at]) child = families.rows_gone(r, 5 - a);
+      if constexpr (SimplexCell<typename E::cell> && E::dim == 3) {
+        auto const at = static_cast<std::size_t>(a);
+        if (child[at] != families.rows_come(r, 0)[at]) child = families.rows_gone(r, 5 - a);
+      }
       for (int b = a + 1; b < nodes; ++b) {
         Index const k = place[child[static_cast<std::size_t>(b)]] - 1;
         if (k >= 0) visit_one(k, a, b);
