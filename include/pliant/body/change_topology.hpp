@@ -58,7 +58,7 @@ Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfe
 template <class Parts>
 Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
                WhenAsked<Topology<typename Parts::mesh_type>> topology,
-               WhenAsked<Prescribed<Parts::dim>> prescribed) {
+               decltype(Parts::state.prescribed) prescribed) {
   Parts next{.backend = parts.backend,
              .material = parts.material,
              .groups = parts.groups,

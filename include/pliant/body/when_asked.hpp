@@ -1,6 +1,5 @@
 #pragma once
 
-#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -18,11 +17,10 @@ class WhenAsked {
   WhenAsked() = default;
   WhenAsked(std::nullptr_t) {}
   /// One that is there; null: none.
-  template <class Other>
-    requires std::convertible_to<std::shared_ptr<Other>, std::shared_ptr<V const>>
-  WhenAsked(std::shared_ptr<Other> value) {
+  WhenAsked(std::shared_ptr<V const> value) {
     if (value) slot_ = std::make_shared<Slot>(std::move(value));
   }
+  WhenAsked(std::shared_ptr<V> value) : WhenAsked(std::shared_ptr<V const>(std::move(value))) {}
   WhenAsked(V value) : WhenAsked(std::make_shared<V const>(std::move(value))) {}
   /// `make`() gives it. Where that throws, it is called again when the value is asked for again.
   static WhenAsked by(std::function<std::shared_ptr<V const>()> make) {
