@@ -10,6 +10,7 @@
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/element/element.hpp>
+#include <pliant/math/uncontracted.hpp>
 #include <pliant/topology/rows_of_element.hpp>
 #include <pliant/topology/tree_on.hpp>
 
@@ -108,7 +109,8 @@ struct MergeValues {
       bool same = true;  // what all have is not rounded
       for (Index i = 0; i < own.children; ++i) {
         same = same && values[i] == values[0];
-        sum += volume_of(i) / volume * values[i];
+        Uncontracted const share = volume_of(i) / volume;
+        sum += static_cast<U>((share * Uncontracted(values[i])).value);
       }
       return same ? values[0] : sum;
     }
