@@ -315,6 +315,36 @@ TEST_CASE("what moves as one goes on to the bit where it is refined on a backend
   });
 }
 
+TEST_CASE("where a condition holds a part of what would be merged, the host does it",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    for (bool const of_nodes : {true, false}) {
+      TwoBodies<F, B> both(backend, 4);
+      auto const nodes = both.body.nodes();
+      std::vector<Index> all;
+      for (Index e = 0; e < count(both.body); ++e) all.push_back(e);
+      refine(both.body, {all});
+      refine(both.host, {all});
+      auto const hold = [&](auto& body) {
+        if (of_nodes)
+          body.hold(std::vector<Index>{nodes}, 1);  // one that the refinement made
+        else
+          body.hold({body.mesh().boundary("right")[0]}, 1);
+      };
+      hold(both.body);
+      hold(both.host);
+      all.clear();
+      for (Index e = 0; e < count(both.body); ++e) all.push_back(e);
+      auto const merged = coarsen(both.body, {all}).merged;
+      CHECK(merged == coarsen(both.host, {all}).merged);
+      CHECK(merged > 20);
+      CHECK(!is_on_backend(both.body));
+      both.check_all();
+    }
+  });
+}
+
 TEST_CASE("a body goes on from a refinement on its backend by any other change", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, NeoHookean>;

@@ -169,8 +169,8 @@ class ChangedPartsOn {
     };
     auto const& before = parts_.layout;
     Layout layout(before, rows_,
-                  {on_.rows.nodes(), node_rows, listed(own_masses_), listed(kilograms_),
-                   copy_of(on_.rows.node())});
+                  NodeLists<B>(on_.rows.nodes(), node_rows, listed(own_masses_), listed(kilograms_),
+                               copy_of(on_.rows.node())));
     auto blocks = blocks_after_refinement(on_.order, before.first_of_block[0]);
     make_table(std::get<0>(layout.tables), blocks);
     layout.first_of_block[0] = std::move(blocks.first);

@@ -12,9 +12,9 @@
 #include <pliant/body/layout_change.hpp>
 #include <pliant/body/lumped_masses.hpp>
 #include <pliant/body/motion.hpp>
+#include <pliant/body/node_lists.hpp>
 #include <pliant/body/state.hpp>
 #include <pliant/body/straight.hpp>
-#include <pliant/body/when_asked.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
 
 namespace pliant {
@@ -25,7 +25,9 @@ template <Backend B, class M, class... Fs>
 struct Layout;
 
 template <Backend B, Element... Es, class... Fs>
-struct Layout<B, Mesh<Es...>, Fs...> {
+struct Layout<B, Mesh<Es...>, Fs...> : NodeLists<B> {
+  using NodeLists<B>::nodes, NodeLists<B>::node_rows, NodeLists<B>::mass_list,
+      NodeLists<B>::internal_of;
   static constexpr int dim = Mesh<Es...>::dim;
   using T = typename B::scalar;
   template <class U>
@@ -80,44 +82,11 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     make(backend, topology, material, groups, &change, {});
   }
 
-  /// What lies in the backend's memory of another topology, and what the host makes of it when it is asked for. Nodes are the
-  /// user's, by number.
-  struct Lists {
-    Index nodes = 0;
-    WhenAsked<NodeRows> node_rows{};
-    WhenAsked<SharedList<detail::ExactSum>> own_masses{};
-    WhenAsked<SharedList<double>> mass_list{};
-    Array<Index> user_nodes{};
-  };
   /// The same body's, with nothing in it yet but these.
-  Layout(Layout const& before, Index rows_of_nodes, Lists lists)
-      : rows(rows_of_nodes),
-        nodes_(lists.nodes),
-        node_rows_(std::move(lists.node_rows)),
-        own_masses_(std::move(lists.own_masses)),
-        mass_list_(std::move(lists.mass_list)),
-        user_node_array_(std::move(lists.user_nodes)) {
+  Layout(Layout const& before, Index rows_of_nodes, NodeLists<B> lists)
+      : NodeLists<B>(std::move(lists)), rows(rows_of_nodes) {
     keep_from(before);
   }
-
-  /// How many nodes the mesh has.
-  Index nodes() const { return nodes_; }
-  NodeRows const& node_rows() const { return *node_rows_; }
-  /// Sums of the nodes' lumped masses in the user's order, slaves' with them.
-  SharedList<detail::ExactSum> const& own_masses() const { return *own_masses_; }
-  /// The same in kg, slaves' handed on.
-  SharedList<double> const& mass_list() const { return *mass_list_; }
-  /// The user's numbers of nodes by the row, in the backend's memory; −1: the row is free.
-  Array<Index> const& user_nodes_on(B const& backend) const {
-    if (user_node_array_.size() == 0) user_node_array_ = upload(backend, node_rows().node);
-    return user_node_array_;
-  }
-  /// The row of a node by the user's number.
-  Index internal_of(Index user) const {
-    return node_rows().of_node[static_cast<std::size_t>(user)];
-  }
-  /// The inverse.
-  Index user_of(Index row) const { return node_rows().node[static_cast<std::size_t>(row)]; }
 
   template <class E>
   Table<E>& table() {
@@ -192,8 +161,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
       mass_unit = detail::unit_of_masses(material.density, box.volume);
     }
     rows = known.count();
-    nodes_ = static_cast<Index>(known.of_node.size());
-    node_rows_ = std::move(known);
+    this->set_rows(std::move(known));
 
     Index scratch = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -297,8 +265,7 @@ struct Layout<B, Mesh<Es...>, Fs...> {
         [&](Index i, int) -> double& { return list.edit(static_cast<std::size_t>(i)); }, 1);
     if (mass_in_all == 0)
       for (double m : list) mass_in_all += m;
-    own_masses_ = std::move(own);
-    mass_list_ = std::move(list);
+    this->set_masses(std::move(own), std::move(list));
   }
 
   void make_mass(B const& backend, double density, Change const* change) {
@@ -318,12 +285,6 @@ struct Layout<B, Mesh<Es...>, Fs...> {
     });
     mass = upload(backend, masses);
   }
-
-  Index nodes_ = 0;
-  WhenAsked<NodeRows> node_rows_;
-  WhenAsked<SharedList<detail::ExactSum>> own_masses_;
-  WhenAsked<SharedList<double>> mass_list_;
-  mutable Array<Index> user_node_array_;  // empty until it is asked for
 };
 
 }  // namespace pliant
