@@ -345,6 +345,26 @@ TEST_CASE("where a condition holds a part of what would be merged, the host does
   });
 }
 
+TEST_CASE("the host falls behind by so many changes and no more", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    auto body = body_of<F>(backend, false, 2);
+    auto const first = body.mesh();
+    int most = 0;
+    for (int round = 0; round < 200; ++round) {
+      refine(body, {{0}});
+      std::vector<Index> all;
+      for (Index e = 0; e < count(body); ++e) all.push_back(e);
+      CHECK(coarsen(body, {all}).merged == 1);
+      REQUIRE(is_on_backend(body));
+      most = std::max(most, body.parts().topology_on->changes_behind);
+    }
+    CHECK(most == 256);
+    CHECK(body.parts().topology_on->changes_behind == 400 - 256);
+    CHECK(body.mesh().tables == first.tables);
+  });
+}
+
 TEST_CASE("a body goes on from a refinement on its backend by any other change", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, NeoHookean>;

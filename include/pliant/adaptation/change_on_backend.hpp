@@ -24,7 +24,6 @@ class ChangesOnBackend {
   using B = typename Parts::backend_type;
   using On = TopologyOn<typename Parts::mesh_type, B>;
   using Cells = typename B::template Array<Index>;
-  using Refined = typename TreeOn<B>::Refined;
 
  public:
   ChangesOnBackend(Parts& parts, int max_level)
@@ -38,6 +37,10 @@ class ChangesOnBackend {
       parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
     }
     if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
+    if (on().changes_behind == On::most_changes_behind) {
+      (void)*parts_.state.topology;
+      on().changes_behind = 0;
+    }
     try {
       return change(refine, coarsen);
     } catch (...) {
@@ -52,7 +55,7 @@ class ChangesOnBackend {
   B const& backend() const { return parts_.backend; }
   Cells cells_of(std::vector<Index> const& numbers) {
     auto cells = upload(backend(), numbers);
-    backend().for_each(size(numbers), CellsOfNumbers{on().numbers.cells(), cells.data()});
+    backend().for_each(size(numbers), LookUp{on().numbers.cells(), cells.data()});
     return cells;
   }
 
@@ -136,6 +139,7 @@ class ChangesOnBackend {
       return changed;
     });
     kept->tree.keep();
+    ++kept->changes_behind;
   }
   /// The last two entries of the ledger become one.
   void enter_as_one() {

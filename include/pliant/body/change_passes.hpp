@@ -13,12 +13,6 @@
 // What a change of the mesh does to arrays of a body, for loops of a backend.
 namespace pliant::detail {
 
-/// cells[k] = of[cells[k]], from numbers of elements.
-struct CellsOfNumbers {
-  Index const* of;
-  Index* numbers;
-  PLIANT_HOST_DEVICE void operator()(Index k) const { numbers[k] = of[numbers[k]]; }
-};
 struct CellOfSplit {
   CellSplit const* splits;
   Index* cells;

@@ -27,6 +27,8 @@ struct TopologyOn;
 template <Element E, Backend B>
 struct TopologyOn<Mesh<E>, B> {
   static constexpr int dim = E::dim;
+  /// After so many changes the host makes them too, so that what it would have to do has an end.
+  static constexpr int most_changes_behind = 256;
 
   TreeOn<B> tree;
   LeafOrderOn<B> order;
@@ -39,6 +41,7 @@ struct TopologyOn<Mesh<E>, B> {
   typename B::template Array<double> points;  // (rows, node_stride), m
   HeldSidesOn<dim, B> held;
   WhenAsked<Prescribed<dim>> prescribed{};  // that `held` is of
+  int changes_behind = 0;                   // that the host may not have made yet
 
   /// Of a body as it is. Takes a look at all of it.
   template <class Parts>
