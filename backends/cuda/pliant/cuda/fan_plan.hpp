@@ -36,6 +36,11 @@ class FanPlanner {
     return static_cast<std::ptrdiff_t>(patch) * (most_fan_visits * capacity.fans);
   }
 
+  /// What patches of a size have in most meshes, at most.
+  static PatchCounts usual(int patch_size) {
+    return {patch_size / 2, 32, patch_size / 3, 2 * patch_size};
+  }
+
   /// For patches of at most `patch_size` elements, FanSplitter::most_elements or fewer, and one of `size`.
   PLIANT_HOST_DEVICE FanPlanner(PlanMemory& memory, int threads, int patch_size, int size)
       : size_(size),
@@ -72,6 +77,18 @@ class FanPlanner {
     share_out(threads, capacity.fans, [&](int f) {
       for (int j = 0; j < most_fan_visits; ++j)
         visits[j * capacity.fans + f] = f < counts_.fans ? visit(f, j) : FanVisit{};
+    });
+  }
+
+  /// The visits of a patch that has a plan of another capacity.
+  template <class Threads>
+  PLIANT_HOST_DEVICE static void take(Threads const& threads, PatchCounts const& own,
+                                      int /* size */, PatchCounts const& from,
+                                      FanVisit const* known, PatchCounts const& capacity,
+                                      FanVisit* visits) {
+    share_out(threads, capacity.fans, [&](int f) {
+      for (int j = 0; j < most_fan_visits; ++j)
+        visits[j * capacity.fans + f] = f < own.fans ? known[j * from.fans + f] : FanVisit{};
     });
   }
 

@@ -218,7 +218,8 @@ class FanSplitter {
   template <class Threads>
   PLIANT_HOST_DEVICE int sort(Threads const& threads, int size) const {
     // A run of elements for each of the first threads: how many fans of each size are at home there, then their places.
-    int const runs = threads.lanes(), run = threads.first(), each = (size + runs - 1) / runs;
+    int const runs = threads.stride() < most_runs ? threads.stride() : most_runs,
+              run = threads.first(), each = (size + runs - 1) / runs;
     auto const place = [&](int k, int r) -> int& {
       return places_[(most_fan_elements - k) * most_runs + r];
     };

@@ -17,7 +17,7 @@ class PatchNumbering {
         keys_(memory.take<Index>(mask_ + 1)),
         share_(memory.take<int>(mask_ + 1)),
         place_(memory.take<std::uint16_t>(patch_size * Nodes)),
-        new_(memory.take<int>(threads + 1)) {}
+        new_(memory.take<int>(threads)) {}
 
   /// Of `size` elements, rows of `width` numbers that were checked before: local[share], for each share (an element's
   /// node), and the node that each of these is. How many there are; all threads have met then.
@@ -45,25 +45,13 @@ class PatchNumbering {
       for (int i = threads.first() * each; i < (threads.first() + 1) * each && i < shares; ++i)
         if (share_[place_[i]] == i) f(i);
     };
-    int count = 0;
+    int count = 0, total = 0;
     for_each_new([&](int) { ++count; });
-    new_[threads.first()] = count;
-    threads.meet();
-    if (threads.first() == 0) {
-      int before = 0;
-      for (int t = 0; t <= threads.stride(); ++t) {
-        int const own = t < threads.stride() ? new_[t] : 0;
-        new_[t] = before;
-        before += own;
-      }
-    }
-    threads.meet();
-    int next = new_[threads.first()];
+    int next = sum_before(threads, count, new_, total);
     for_each_new([&](int i) {
       nodes[next] = keys_[place_[i]];
       local[i] = static_cast<std::uint16_t>(next++);
     });
-    int const total = new_[threads.stride()];
     threads.meet();
     share_out(threads, shares, [&](int i) {
       int const first = share_[place_[i]];

@@ -28,6 +28,11 @@ class PatchPlanner {
     return first_element;
   }
 
+  /// What patches of a size have in most meshes, at most.
+  static PatchCounts usual(int patch_size) {
+    return {patch_size * (Nodes > 4 ? 2 : 1), 32, 0, Nodes * patch_size};
+  }
+
   /// For patches of at most `patch_size` elements, and one of `size`.
   PLIANT_HOST_DEVICE PatchPlanner(PlanMemory& memory, int threads, int patch_size, int size)
       : size_(size),
@@ -60,6 +65,15 @@ class PatchPlanner {
       }
       rows[e] = row;
     });
+  }
+
+  /// The rows of a patch of `size` elements that has a plan of another capacity.
+  template <class Threads>
+  PLIANT_HOST_DEVICE static void take(Threads const& threads, PatchCounts const& /* own */,
+                                      int size, PatchCounts const& /* from */,
+                                      PatchRow<Nodes> const* known,
+                                      PatchCounts const& /* capacity */, PatchRow<Nodes>* rows) {
+    share_out(threads, size, [&](int e) { rows[e] = known[e]; });
   }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/patch_cuts.hpp>
@@ -22,16 +23,14 @@ struct PatchPlan {
   DeviceArray<PatchCounts> counts;            // (patches): what each has
 };
 
-inline constexpr int plan_threads = 128;
+inline constexpr int plan_threads = 512;
 
 /// A block's threads as planners see them.
 struct BlockThreads {
   __device__ int first() const { return static_cast<int>(threadIdx.x); }
-  __device__ int stride() const { return plan_threads; }
+  __device__ static constexpr int stride() { return plan_threads; }
   __device__ void meet() const { __syncthreads(); }
-  __device__ int lanes() const { return warp_size; }
-  __device__ void meet_lanes() const { __syncwarp(); }
-  __device__ bool any(bool value) const { return __any_sync(0xffffffffu, value) != 0; }
+  __device__ bool any(bool value) const { return __syncthreads_or(value) != 0; }
 };
 
 /// The shared memory that planning patches of a size takes, bytes.
@@ -85,12 +84,12 @@ struct PlanView {
   }
 };
 
-/// Counts what each patch of a list has, and plans it where there is room.
+/// By a block: counts what a patch has, the most of all into `most`, and plans it where there is room.
 template <class Planner>
-__global__ void __launch_bounds__(plan_threads)
-    plan_each_patch(PatchInput input, Index const* list, PlanView<Planner> to, PatchCounts* most) {
+__device__ void plan_patch(PatchInput const& input, Index patch, PlanView<Planner> const& to,
+                           PatchCounts* most) {
   extern __shared__ __align__(16) char planner_memory[];
-  Index const patch = list[blockIdx.x], first = input.first[patch];
+  Index const first = input.first[patch];
   PlanMemory memory(planner_memory);
   Planner planner(memory, plan_threads, input.patch_size,
                   static_cast<int>(input.first[patch + 1] - first));
@@ -102,22 +101,46 @@ __global__ void __launch_bounds__(plan_threads)
                to.diagonals_of(patch));
 }
 
-/// Takes patches from a plan of the same capacity. known: (patches), the patch there; −1: none.
+/// By a block: takes a patch from a plan, for which there is room.
+template <class Planner>
+__device__ void take_patch(PlanView<Planner> const& from, Index before, PlanView<Planner> const& to,
+                           Index patch, PatchCounts* most) {
+  PatchCounts const counts = from.counts[before];
+  BlockThreads const threads;
+  Planner::take(threads, counts, static_cast<int>(to.first[patch + 1] - to.first[patch]),
+                from.capacity, from.units_of(before), to.capacity, to.units_of(patch));
+  share_out(threads, to.capacity.nodes, [&](int n) {
+    to.nodes_of(patch)[n] = n < counts.nodes ? from.nodes_of(before)[n] : PatchNode{};
+  });
+  share_out(threads, to.capacity.diagonals, [&](int d) {
+    to.diagonals_of(patch)[d] = d < counts.diagonals ? from.diagonals_of(before)[d] : 0;
+  });
+  if (threadIdx.x == 0) to.set_counts(patch, counts, most);
+}
+
+/// Plans patches, or takes them from a plan of the same capacity. known: (patches), the patch there; −1: none; null: all of
+/// them are planned.
 template <class Planner>
 __global__ void __launch_bounds__(plan_threads)
-    take_known_patches(Index const* known, PlanView<Planner> from, PlanView<Planner> to,
-                       PatchCounts* most) {
+    plan_patches_anew(PatchInput input, Index const* known, PlanView<Planner> from,
+                      PlanView<Planner> to, PatchCounts* most) {
   auto const patch = static_cast<Index>(blockIdx.x);
-  Index const before = known[patch];
-  if (before < 0) return;
-  auto const copy = [](auto const* source, auto* target, int count) {
-    for (int i = static_cast<int>(threadIdx.x); i < count; i += plan_threads) target[i] = source[i];
-  };
-  copy(from.units_of(before), to.units_of(patch),
-       static_cast<int>(to.units_of(patch + 1) - to.units_of(patch)));
-  copy(from.nodes_of(before), to.nodes_of(patch), to.capacity.nodes);
-  copy(from.diagonals_of(before), to.diagonals_of(patch), to.capacity.diagonals);
-  if (threadIdx.x == 0) to.set_counts(patch, from.counts[before], most);
+  if (known != nullptr && known[patch] >= 0)
+    take_patch(from, known[patch], to, patch, most);
+  else
+    plan_patch(input, patch, to, most);
+}
+
+/// Takes patches from a plan of theirs that had room for some of them, and plans the others.
+template <class Planner>
+__global__ void __launch_bounds__(plan_threads)
+    plan_patches_left(PatchInput input, PlanView<Planner> from, PlanView<Planner> to,
+                      PatchCounts* most) {
+  auto const patch = static_cast<Index>(blockIdx.x);
+  if (holds(from.capacity, from.counts[patch]))
+    take_patch(from, patch, to, patch, most);
+  else
+    plan_patch(input, patch, to, most);
 }
 
 /// What a table was planned to before a change, with its patches as PatchRanges::first has them, and by the patch now the patch
@@ -130,8 +153,8 @@ struct KnownPatches {
 };
 
 /// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `known`: a plan of patches of
-/// the same size, of which the capacity may be right, so that most patches are planned while they are counted, or taken
-/// from there.
+/// the same size, of which the capacity may be right: patches are planned while they are counted, or taken from there. Where
+/// it is not, those that it has room for are taken from this first plan.
 template <class Planner, class B, class Accepts>
 PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity, int width,
                                 PatchCuts const& cuts, Index const* first,
@@ -143,9 +166,6 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
   DeviceGuard const device(backend.device());
   PatchInput const input{connectivity.data(), width, cuts.size(), first};
   auto most = backend.template array<PatchCounts>(1);
-  auto const uploaded = [&](std::vector<Index> const& list) {
-    return backend.array(std::span<Index const>(list));
-  };
   auto const view = [](PatchPlan<Planner> const& of, Index const* first_of_patch) {
     return View{of.capacity,
                 first_of_patch,
@@ -154,46 +174,48 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
                 const_cast<std::uint16_t*>(of.diagonals.data()),
                 const_cast<PatchCounts*>(of.counts.data())};
   };
-  auto const plan_for = [&](PatchCounts const& capacity, std::vector<Index> const& taken) {
+  auto const room_for = [&](PatchCounts const& capacity) {
     auto const for_each = [&](int n) {
       return static_cast<std::size_t>(patches) * static_cast<std::size_t>(n);
     };
-    plan.capacity = capacity;
+    PatchPlan<Planner> room;
+    room.capacity = capacity;
     if (capacity.nodes > 0)
-      plan.units = backend.template array<typename Planner::Unit>(
+      room.units = backend.template array<typename Planner::Unit>(
           static_cast<std::size_t>(Planner::first_unit(patches, cuts.first(patches), capacity)));
-    plan.nodes = backend.template array<PatchNode>(for_each(capacity.nodes));
-    plan.diagonals = backend.template array<std::uint16_t>(for_each(capacity.diagonals));
-    plan.counts = backend.template array<PatchCounts>(static_cast<std::size_t>(patches));
-    std::vector<Index> others;
-    for (Index p = 0; p < patches; ++p)
-      if (taken.empty() || taken[static_cast<std::size_t>(p)] < 0) others.push_back(p);
-    if (others.size() < static_cast<std::size_t>(patches)) {
-      auto const before = uploaded(taken);
-      launch("take patches", {patches, plan_threads}, backend.stream(), take_known_patches<Planner>,
-             before.data(), view(*known.plan, known.first), view(plan, first), most.data());
-    }
-    if (others.empty()) return;
-    auto const list = uploaded(others);
-    launch("plan patches",
-           {static_cast<Index>(others.size()), plan_threads, plan_bytes<Planner>(cuts.size())},
-           backend.stream(), plan_each_patch<Planner>, input, list.data(), view(plan, first),
-           most.data());
+    room.nodes = backend.template array<PatchNode>(for_each(capacity.nodes));
+    room.diagonals = backend.template array<std::uint16_t>(for_each(capacity.diagonals));
+    room.counts = backend.template array<PatchCounts>(static_cast<std::size_t>(patches));
+    return room;
   };
-  PatchCounts const guess = known.plan == nullptr ? PatchCounts{} : known.plan->capacity;
-  plan_for(guess, known.patches);
+  LaunchShape const shape{patches, plan_threads, plan_bytes<Planner>(cuts.size())};
+
+  PatchCounts const guess =
+      known.plan == nullptr ? Planner::usual(cuts.size()) : known.plan->capacity;
+  plan = room_for(guess);
+  View from{};
+  DeviceArray<Index> patches_before;
+  if (!known.patches.empty()) {
+    from = view(*known.plan, known.first);
+    patches_before = backend.array(std::span<Index const>(known.patches));
+  }
+  launch("plan patches", shape, backend.stream(), plan_patches_anew<Planner>, input,
+         patches_before.data(), from, view(plan, first), most.data());
   PatchCounts counts;
   most.download({&counts, 1});
   // What a patch stages shares the memory of a multiprocessor with others: there is little room to spare.
   bool const is_right = holds(guess, counts) && guess.slots <= counts.slots + counts.slots / 16 &&
                         guess.nodes <= counts.nodes + counts.nodes / 16;
   if (is_right && accepts(guess)) return plan;
-  plan = {};
   auto const in_fours = [](int n) { return (n + 3) / 4 * 4; };
   PatchCounts const capacity{in_fours(counts.nodes), in_fours(counts.diagonals),
                              in_fours(counts.fans), in_fours(counts.slots)};
+  auto const guessed = std::exchange(plan, {});
   plan.capacity = capacity;
-  if (accepts(capacity)) plan_for(capacity, {});
+  if (!accepts(capacity)) return plan;
+  plan = room_for(capacity);
+  launch("plan patches", shape, backend.stream(), plan_patches_left<Planner>, input,
+         view(guessed, first), view(plan, first), most.data());
   return plan;
 }
 

@@ -26,7 +26,8 @@ struct PatchCounts {
 /// diagonals), which neighbouring threads read from neighbouring addresses without loading indices.
 class SlotPlanner {
  public:
-  static constexpr int lanes = 32;  // of a warp; also the banks of shared memory
+  static constexpr int lanes = 32;   // of a warp; also the banks of shared memory
+  static constexpr int batch = 512;  // visits that choose together
   static constexpr std::uint16_t none = 0xffff;
 
   /// Of at most `units` threads' worth of work with `width` visits each, to at most `nodes` nodes.
@@ -35,14 +36,11 @@ class SlotPlanner {
         valence_(memory.take<int>(nodes)),
         rank_(memory.take<std::uint16_t>(nodes)),
         first_free_(memory.take<std::uint16_t>(nodes)),
-        free_(memory.take<std::uint16_t>(units * width)),
+        free_(memory.take<int>(units * width)),
         slot_(memory.take<std::uint16_t>(units * width)),
-        lengths_(memory.take<std::uint16_t>(units * width + 1)),
         starts_(memory.take<std::uint16_t>(units * width)),
-        writers_(memory.take<std::uint16_t>(lanes)),
-        choices_(memory.take<std::uint16_t>(lanes)),
-        banks_(memory.take<std::uint16_t>(lanes)),
-        claims_(memory.take<int>(lanes)),
+        writers_(memory.take<std::uint16_t>(batch)),
+        claims_(memory.take<int>(batch)),
         totals_(memory.take<int>(2)) {}
 
   /// local[units · width]: the node of each visit; none: there is no such visit. Adds to the nodes that are counted
@@ -80,13 +78,12 @@ class SlotPlanner {
       }
       out_nodes[rank_[n]] = {nodes[n], valence_[n]};
       for (int d = 0; d < valence_[n]; ++d)
-        free_[first_free_[n] + d] = static_cast<std::uint16_t>(starts_[d] + rank_[n]);
+        free_[first_free_[n] + d] = free_slot(starts_[d] + rank_[n]);
     });
     share_out(threads, capacity.diagonals,
               [&](int d) { diagonals[d] = d < counts.diagonals ? starts_[d] : std::uint16_t{0}; });
     threads.meet();
-    if (threads.first() < threads.lanes()) assign_slots(threads, local, units);
-    threads.meet();
+    assign_slots(threads, local, units);
   }
 
   /// After `plan`: of a node, and of a visit.
@@ -113,84 +110,114 @@ class SlotPlanner {
     share_out(threads, counts.diagonals, [&](int d) {
       int length = 0;
       for (int m = 0; m < counts.nodes; ++m) length += valence_[m] > d ? 1 : 0;
-      lengths_[d] = static_cast<std::uint16_t>(length);
+      starts_[d] = static_cast<std::uint16_t>(length);
     });
     threads.meet();
     if (threads.first() == 0)
       for (int d = 0, slot = 0; d < counts.diagonals; ++d) {
+        int const length = starts_[d];
         starts_[d] = static_cast<std::uint16_t>(slot);
-        slot += lengths_[d];
+        slot += length;
       }
     threads.meet();
   }
 
-  /// Any of a node's slots will do for any of its visits, so take one whose memory bank few threads of the warp write to at
-  /// the same time. The visits of a warp choose together: in rounds, of those that chose a bank the first one has it.
+  /// A visit that looks for a slot among those of its node.
+  struct Visit {
+    int visit = -1;          // negative: it has one, or there is none
+    int first, count;        // the node's in free_
+    int chosen, slot, bank;  // in free_; there; in writers_
+    bool has_bank, has_slot;
+  };
+  // Entries of free_: a slot, and above it which visit of the batch claims it; or:
+  static constexpr int taken = -1, unclaimed = batch;
+  PLIANT_HOST_DEVICE static constexpr int free_slot(int slot, int claim = unclaimed) {
+    return claim << 16 | slot;
+  }
+
+  /// Any of a node's slots will do for any of its visits, so each takes one whose memory bank few threads of its warp write
+  /// to at the same time. The visits of a batch of warps choose together, in rounds: one that is the first to choose a bank
+  /// in its warp, and the first to choose the slot, has it. All threads have met then.
   template <class Threads>
   PLIANT_HOST_DEVICE void assign_slots(Threads const& threads, std::uint16_t const* local,
                                        int units) const {
-    for (int begin = 0; begin < units; begin += lanes) {
-      int const count = begin + lanes < units ? lanes : units - begin;
-      auto const for_each_lane = [&](int n, auto const& f) {
-        for (int l = threads.first(); l < n; l += threads.lanes()) f(l);
-        threads.meet_lanes();
+    static_assert(batch % Threads::stride() == 0);
+    constexpr int own = batch / Threads::stride();
+    int const warps = (units + lanes - 1) / lanes * width_;  // with the same visit each of 32 units
+    for (int begin = 0; begin < warps; begin += batch / lanes) {
+      Visit visits[own];
+      auto const for_each = [&](auto const& f) {
+        for (int k = 0; k < own; ++k) f(visits[k], threads.first() + k * Threads::stride());
       };
-      for (int a = 0; a < width_; ++a) {
-        auto const visit = [&](int l) { return (begin + l) * width_ + a; };
-        for_each_lane(lanes, [&](int l) {
-          writers_[l] = 0;
-          claims_[l] = lanes;
-          choices_[l] = l >= count || local[visit(l)] == none ? none : std::uint16_t{0};
+      auto const for_each_left = [&](auto const& f) {
+        for_each([&](Visit& v, int i) {
+          if (v.visit >= 0) f(v, i);
         });
-        while (true) {
-          bool some_left = false;
-          for_each_lane(count, [&](int l) {
-            if (choices_[l] == none) return;
-            some_left = true;
-            choices_[l] = choice(local[visit(l)]);
-            banks_[l] = static_cast<std::uint16_t>(bank_of(local[visit(l)], choices_[l]));
-            lower_shared(claims_[banks_[l]], l);
-          });
-          if (!threads.any(some_left)) break;
-          for_each_lane(count, [&](int l) {
-            if (choices_[l] == none) return;
-            if (claims_[banks_[l]] != l) return;
-            std::uint16_t& free = free_[first_free_[local[visit(l)]] + choices_[l]];
-            slot_[visit(l)] = free;
-            free = none;
-            ++writers_[banks_[l]];
-            choices_[l] = none;
-          });
-          for_each_lane(lanes, [&](int bank) { claims_[bank] = lanes; });
-        }
+      };
+      for_each([&](Visit& v, int i) {
+        writers_[i] = 0;
+        claims_[i] = batch;
+        int const warp = begin + i / lanes, unit = warp / width_ * lanes + i % lanes;
+        if (warp >= warps || unit >= units) return;
+        int const visit = unit * width_ + warp % width_, node = local[visit];
+        if (node == none) return;
+        v.visit = visit;
+        v.first = first_free_[node];
+        v.count = valence_[node];
+      });
+      threads.meet();
+      for (bool some_left = true; some_left;) {
+        for_each_left([&](Visit& v, int i) { choose(v, i / lanes * lanes); });
+        threads.meet();
+        for_each_left([&](Visit const& v, int i) {
+          lower_shared(claims_[v.bank], i);
+          lower_shared(free_[v.chosen], free_slot(v.slot, i));
+        });
+        threads.meet();
+        for_each_left([&](Visit& v, int i) {
+          v.has_bank = claims_[v.bank] == i;
+          v.has_slot = free_[v.chosen] >> 16 == i;
+        });
+        threads.meet();
+        bool left = false;
+        for_each_left([&](Visit& v, int) {
+          bool const has_both = v.has_bank && v.has_slot;
+          if (v.has_bank) claims_[v.bank] = batch;
+          if (v.has_slot) free_[v.chosen] = has_both ? taken : free_slot(v.slot);
+          if (has_both) {
+            ++writers_[v.bank];
+            slot_[v.visit] = static_cast<std::uint16_t>(v.slot);
+            v.visit = -1;
+          } else {
+            left = true;
+          }
+        });
+        some_left = threads.any(left);
       }
     }
   }
-  /// The first of a node's free slots in a bank that is written to least.
-  PLIANT_HOST_DEVICE std::uint16_t choice(int node) const {
-    int best = 0, least = lanes + 1;
-    for (int k = 0; k < valence_[node] && least > 0; ++k) {
-      if (free_[first_free_[node] + k] == none) continue;
-      int const writers = writers_[bank_of(node, k)];
-      if (writers < least) least = writers, best = k;
+  /// The first of a node's free slots in a bank that the warp writes to least. `banks`: where these begin.
+  PLIANT_HOST_DEVICE void choose(Visit& v, int banks) const {
+    int least = lanes + 1;
+    for (int k = v.first; k < v.first + v.count && least > 0; ++k) {
+      if (free_[k] == taken) continue;
+      int const slot = free_[k] & 0xffff, bank = banks + slot % lanes;
+      if (writers_[bank] >= least) continue;
+      least = writers_[bank];
+      v.chosen = k;
+      v.slot = slot;
+      v.bank = bank;
     }
-    return static_cast<std::uint16_t>(best);
-  }
-  PLIANT_HOST_DEVICE int bank_of(int node, int k) const {
-    return free_[first_free_[node] + k] % lanes;
   }
 
   int width_;
   int* valence_;                       // (nodes): how many slots each has
   std::uint16_t *rank_, *first_free_;  // (nodes): by valence; in free_
-  std::uint16_t* free_;                // (visits): slots, by node; none: a visit has it
-  std::uint16_t* slot_;                // (visits)
-  std::uint16_t *lengths_, *starts_;   // (diagonals)
-  std::uint16_t* writers_;             // (lanes): to each bank
-  std::uint16_t* choices_;  // (lanes): of a visit, among its node's slots; none: it has one
-  std::uint16_t* banks_;    // (lanes): of these slots
-  int* claims_;             // (lanes): the first visit that chose each bank
-  int* totals_;             // diagonals, slots
+  int* free_;                          // (visits): slots, by node
+  std::uint16_t *slot_, *starts_;      // (visits); (diagonals)
+  std::uint16_t* writers_;             // (batch): to each bank, by the warp
+  int* claims_;                        // (batch): the first visit that chose the bank
+  int* totals_;                        // diagonals, slots
 };
 
 }  // namespace pliant::detail
