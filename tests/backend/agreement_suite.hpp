@@ -105,7 +105,7 @@ TEST_CASE("single precision of each backend is that of the serial one", "[backen
 }
 
 TEST_CASE("steps are those of the serial backend", "[backend]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+  on_each_backend<Backends<double>>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
     auto const run = [](auto const& on) {
       auto const mesh = distorted_mesh<Tri3>(40);

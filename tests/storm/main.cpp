@@ -98,7 +98,7 @@ int main(int count, char** arguments) {
 #if defined(STORM_ON_MAIN_BACKEND)
   using Backends = test::MainAlone;
 #else
-  using Backends = test::DoubleBackends;
+  using Backends = test::Backends<double>;
 #endif
   std::apply([&](auto const&... backend) { (run_on(backend, scene, options), ...); }, Backends{});
   return failed ? 1 : 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 
 #include <pliant/pliant.hpp>
 #include <pliant/reference.hpp>
@@ -35,10 +36,16 @@ using HostBackend = Reference<double>;
 using HostBackend = MainBackend;
 #endif
 
-using DoubleBackends = Backends<double>;
 /// The main one in double precision, for what stands on the verbs alone, which tests/backend compares. A build
 /// without OpenMP has the serial one there.
 using MainAlone = std::tuple<MainBackend>;
+/// Whether suites run on all of a CPU's backends: those of tests/backend and tests/formulation always do. The others take
+/// twice as long to compile then; see tests/run --all-backends.
+#if defined(PLIANT_TEST_ALL_BACKENDS) || !defined(_OPENMP) || defined(__CUDACC__)
+inline constexpr bool on_all_backends = true;
+#else
+inline constexpr bool on_all_backends = false;
+#endif
 /// Whether a suite over several elements or meshes runs all of them on a backend; on the others a few will do.
 template <class B>
 #if defined(__CUDACC__)
@@ -48,13 +55,19 @@ inline constexpr bool runs_all = std::same_as<B, MainBackend>;
 #endif
 /// Each backend in each precision: what tests backends themselves.
 using AllPairs = decltype(std::tuple_cat(Backends<float>{}, Backends<double>{}));
-/// Each backend and each precision, on CPUs in pairs.
+/// Each backend and each precision, on CPUs in pairs: what rounds.
 #if defined(_OPENMP) && !defined(__CUDACC__)
-using AllBackends = std::tuple<Reference<float>, OpenMP<double>>;
-/// The same for what neither rounds nor stands on more than the verbs: on CPUs the main one alone.
+using PairedBackends = std::tuple<Reference<float>, OpenMP<double>>;
+#else
+using PairedBackends = AllPairs;
+#endif
+/// The same, and those of double precision, where suites run on all; else the main one.
+using AllBackends = std::conditional_t<on_all_backends, PairedBackends, MainAlone>;
+using DoubleBackends = std::conditional_t<on_all_backends, Backends<double>, MainAlone>;
+/// For what neither rounds nor stands on more than the verbs: on CPUs the main one alone.
+#if defined(_OPENMP) && !defined(__CUDACC__)
 using FewBackends = MainAlone;
 #else
-using AllBackends = AllPairs;
 using FewBackends = AllPairs;
 #endif
 

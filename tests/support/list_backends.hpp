@@ -31,7 +31,7 @@ struct InParts : Reference<double> {
 /// Calls visit(backend) for each backend, and for several threads of the host.
 template <class Visit>
 void on_list_backends(Visit const& visit) {
-  on_each_backend<DoubleBackends>(visit);
+  on_each_backend<Backends<double>>(visit);
 #if !defined(__CUDACC__)
   SECTION("in parts") { visit(InParts{}); }
 #if defined(_OPENMP)
