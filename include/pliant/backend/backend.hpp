@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -188,6 +190,15 @@ concept LoopsOver = requires(B const& b, Table const& table, NodeField<typename 
   { b.template sum_elements<1>(table, SumProbe{}, field) } -> std::same_as<double>;
   { b.template visit<1>(table, VisitorProbe{}, counters, field) } -> std::same_as<void>;
 };
+}  // namespace detail
+
+namespace detail {
+
+/// How many bits a backend's sort looks at where keys are below `count`.
+constexpr int key_bits(Index count) {
+  return std::bit_width(static_cast<unsigned>(std::max<Index>(count - 1, 1)));
+}
+
 }  // namespace detail
 
 /// Where arrays live and loops run.

@@ -72,7 +72,7 @@ class NodeRowsOn {
     need(found_, n);
     backend_.for_each(n, detail::KeysOfNodes{tree.view(), refined.nodes, order.places(),
                                              keys_.data(), order_.data()});
-    backend_.sort(n, keys_.data(), order_.data(), 32);
+    backend_.sort(n, keys_.data(), order_.data(), detail::key_bits(tree.leaves()));
 
     need(partial_, pages_);
     need(free_pages_, pages_);

@@ -25,10 +25,18 @@ class CellDivision {
     auto division = plan_.view();
     division.first_node = first_node;
     division.made = made.data();
-    plan_.for_each([&](Index r) { division.make_on_edges(r); });
-    plan_.for_each([&](Index r) { division.make_on_sides(r); });
-    plan_.for_each([&](Index r) { division.make_children(r); });
-    plan_.for_each([&](Index r) { division.count_uses(r); });
+    auto const for_each_part = [&](auto const& count, auto const& make) {
+      plan_.for_each([&](Index r) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count(r)); ++k) make(r, k);
+      });
+    };
+    for_each_part([&](Index r) { return division.pattern(r).edges; },
+                  [&](Index r, std::size_t e) { division.make_on_edge(r, e); });
+    for_each_part([&](Index r) { return division.pattern(r).sides; },
+                  [&](Index r, std::size_t s) { division.make_on_side(r, s); });
+    plan_.for_each([&](Index r) { division.make_inside(r); });
+    for_each_part([&](Index r) { return division.parts[r].cells; },
+                  [&](Index r, std::size_t i) { division.make_child(r, i); });
     std::vector<Index> quadratic;  // children
     for (Index r = 0; r < plan_.leaves(); ++r) {
       auto const& parent = division.cell(r);

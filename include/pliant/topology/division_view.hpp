@@ -24,7 +24,7 @@ struct LeafParts {
 
 /// Leaves of a tree that are divided, each once, as loops over them see them: one call of each function for each leaf, which
 /// is told by its place in the list. First all claim, then all count; with numbers for what is new, and room for it, come
-/// edges, then sides, then children.
+/// what is on edges, on sides and inside, one after the other, then children: for each edge, side and child one call.
 struct DivisionView {
   TreeView tree;
   CellSplit const* leaves;
@@ -82,54 +82,53 @@ struct DivisionView {
     parts[r] = own;
   }
 
-  /// Middles and halves of edges.
-  PLIANT_HOST_DEVICE void make_on_edges(Index r) const {
+  /// Middle and halves of edge e.
+  PLIANT_HOST_DEVICE void make_on_edge(Index r, std::size_t e) const {
     auto const& own_cell = cell(r);
     auto const& p = pattern(r);
     auto const& own = parts[r];
-    for (std::size_t e = 0; e < at(p.edges); ++e) {
-      if (!has(own.middles, e) && !has(own.halves, e)) continue;
-      Index const number = own_cell.edges[e];
-      auto& edge = tree.edges[at(number)];
-      if (has(own.middles, e)) {
-        edge.middle = own.node + rank(own.middles, e);
-        place(r, edge.middle, p.corners + static_cast<int>(e));
-      }
-      if (!has(own.halves, e)) continue;
-      edge.first_half = own.edge + 2 * rank(own.halves, e);
-      TreeEdge half{.parent = number, .level = edge.level + 1};
-      half.nodes = {edge.nodes[0], edge.middle};
-      tree.edges[at(edge.first_half)] = half;
-      half.nodes = {edge.middle, edge.nodes[1]};
-      tree.edges[at(edge.first_half + 1)] = half;
+    if (!has(own.middles, e) && !has(own.halves, e)) return;
+    Index const number = own_cell.edges[e];
+    auto& edge = tree.edges[at(number)];
+    if (has(own.middles, e)) {
+      edge.middle = own.node + rank(own.middles, e);
+      place(r, edge.middle, p.corners + static_cast<int>(e));
     }
+    if (!has(own.halves, e)) return;
+    edge.first_half = own.edge + 2 * rank(own.halves, e);
+    TreeEdge half{.parent = number, .level = edge.level + 1};
+    half.nodes = {edge.nodes[0], edge.middle};
+    tree.edges[at(edge.first_half)] = half;
+    half.nodes = {edge.middle, edge.nodes[1]};
+    tree.edges[at(edge.first_half + 1)] = half;
   }
-  /// Centres and parts of sides, whose edges have all of theirs.
-  PLIANT_HOST_DEVICE void make_on_sides(Index r) const {
+  /// Centre and parts of side s, whose edges have all of theirs.
+  PLIANT_HOST_DEVICE void make_on_side(Index r, std::size_t s) const {
     auto const& own_cell = cell(r);
     auto const& p = pattern(r);
     auto const& own = parts[r];
+    auto& side = tree.sides[at(own_cell.sides[s])];
+    if (has(own.centres, s)) {
+      side.centre = own.node + std::popcount(own.middles) + rank(own.centres, s);
+      place(r, side.centre, p.side_centre[s]);
+    }
+    if (!has(own.parts, s)) return;
     Index edge = own.edge + 2 * std::popcount(own.halves), part = own.side;
-    for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto& side = tree.sides[at(own_cell.sides[s])];
-      if (has(own.centres, s)) {
-        side.centre = own.node + std::popcount(own.middles) + rank(own.centres, s);
-        place(r, side.centre, p.side_centre[s]);
-      }
-      if (!has(own.parts, s)) continue;
-      side.first_child = part;
-      side.first_inner_edge = edge;
-      if (p.halves)
-        divide_side(tree, own_cell.sides[s]);
-      else
-        halve_side(tree, own_cell.sides[s], own_cell.nodes[at(p.child[0][0])]);
-      auto const counts = parts_of(p, s);
+    for (std::size_t before = 0; before < s; ++before) {
+      if (!has(own.parts, before)) continue;
+      auto const counts = parts_of(p, before);
       part += counts[0];
       edge += counts[1];
     }
+    side.first_child = part;
+    side.first_inner_edge = edge;
+    if (p.halves)
+      divide_side(tree, own_cell.sides[s]);
+    else
+      halve_side(tree, own_cell.sides[s], own_cell.nodes[at(p.child[0][0])]);
   }
-  /// The cell's own node and edges, and its children, between what is on its edges and sides.
-  PLIANT_HOST_DEVICE void make_children(Index r) const {
+  /// The cell's own node and edges, between what is on its edges and sides. It is no leaf any more.
+  PLIANT_HOST_DEVICE void make_inside(Index r) const {
     Index const c = leaf(r);
     auto& parent = tree.cells[at(c)];
     auto const& p = pattern(r);
@@ -140,57 +139,52 @@ struct DivisionView {
       parent.centre = own.node + own.nodes - 1;
       place(r, parent.centre, p.centre);
     }
-    std::array<Index, RefinementPattern::most_points> point;
-    find_points(parent, p, point);
-    Index const inner_edge = own.edge + own.edges - p.inner_edges;
-    int const level = parent.level + (p.halves ? 1 : 0);
+    Index const inner_edge = first_inner_edge(own, p);
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
       tree.edges[at(inner_edge) + i] = {
-          .nodes = {point[at(p.inner_edge[i][0])], point[at(p.inner_edge[i][1])]},
+          .nodes = {point(parent, p, p.inner_edge[i][0]), point(parent, p, p.inner_edge[i][1])},
           .cell = c,
-          .level = level};
-    Index next_inner_side = own.side + own.sides - p.inner_sides;
-    std::array<Index, RefinementPattern::most_inner_sides> inner_side;
-    for (Index& number : inner_side) number = -1;
-    for (std::size_t i = 0; i < at(p.children); ++i) {
-      Index const number = own.cell + static_cast<Index>(i);
-      TreeCell child{.kind = p.child_kind[i],
-                     .has = parent.has,
-                     .mirrored = parent.mirrored != p.mirrored[i],
-                     .level = level,
-                     .parent = c};
-      auto const& shape = child.pattern();
-      for (std::size_t a = 0; a < at(shape.corners); ++a) child.nodes[a] = point[at(p.child[i][a])];
-      for (std::size_t e = 0; e < at(shape.edges); ++e)
-        child.edges[e] = edge_of_child(parent, p, child, e, p.child_edge[i][e], inner_edge);
-      for (std::size_t s = 0; s < at(shape.sides); ++s) {
-        auto const& of_parent = p.child_side[i][s];
-        auto const k = at(of_parent.number);
-        if (of_parent.home == RefinementPattern::Home::side) {
-          Index const whole = parent.sides[k];
-          child.sides[s] =
-              is_divided(p, k) ? part_of_side(tree, whole, TreeView::side_of(child, s)) : whole;
-          tree.sides[at(child.sides[s])].cells[has(own.second, k) ? 1 : 0] = number;
-          continue;
-        }
-        bool const is_new = inner_side[k] < 0;
-        if (is_new) {
-          inner_side[k] = next_inner_side++;
-          tree.sides[at(inner_side[k])] = TreeView::side_of(child, s);
-        }
-        child.sides[s] = inner_side[k];
-        tree.sides[at(child.sides[s])].cells[is_new ? 0 : 1] = number;
-      }
-      tree.cells[at(number)] = child;
-    }
-  }
-  /// The parent is no leaf any more, and its children are.
-  PLIANT_HOST_DEVICE void count_uses(Index r) const {
-    auto const& parent = cell(r);
+          .level = level_of_children(parent, p)};
     tree.count_leaf(parent, -1);
-    if (pattern(r).halves) tree.count_refined(parent, 1);
-    for (Index k = 0; k < parts[r].cells; ++k)
-      tree.count_leaf(tree.cells[at(parent.first_child + k)], 1);
+    if (p.halves) tree.count_refined(parent, 1);
+  }
+  /// Child i, which is a leaf, and the sides inside of which it is the first cell.
+  PLIANT_HOST_DEVICE void make_child(Index r, std::size_t i) const {
+    Index const c = leaf(r);
+    auto const& parent = tree.cells[at(c)];
+    auto const& p = pattern(r);
+    auto const& own = parts[r];
+    Index const number = own.cell + static_cast<Index>(i);
+    TreeCell child{.kind = p.child_kind[i],
+                   .has = parent.has,
+                   .mirrored = parent.mirrored != p.mirrored[i],
+                   .level = level_of_children(parent, p),
+                   .parent = c};
+    auto const& shape = child.pattern();
+    for (std::size_t a = 0; a < at(shape.corners); ++a)
+      child.nodes[a] = point(parent, p, p.child[i][a]);
+    for (std::size_t e = 0; e < at(shape.edges); ++e)
+      child.edges[e] =
+          edge_of_child(parent, p, child, e, p.child_edge[i][e], first_inner_edge(own, p));
+    for (std::size_t s = 0; s < at(shape.sides); ++s) {
+      auto const& of_parent = p.child_side[i][s];
+      auto const k = at(of_parent.number);
+      if (of_parent.home == RefinementPattern::Home::side) {
+        Index const whole = parent.sides[k];
+        child.sides[s] =
+            is_divided(p, k) ? part_of_side(tree, whole, TreeView::side_of(child, s)) : whole;
+        tree.sides[at(child.sides[s])].cells[has(own.second, k) ? 1 : 0] = number;
+        continue;
+      }
+      child.sides[s] = own.side + own.sides - p.inner_sides + of_parent.number;
+      auto const& children = p.children_at_inner_side[k];
+      if (at(children[0]) != i) continue;
+      auto side = TreeView::side_of(child, s);
+      side.cells = {own.cell + children[0], own.cell + children[1]};
+      tree.sides[at(child.sides[s])] = side;
+    }
+    tree.cells[at(number)] = child;
+    tree.count_leaf(child, 1);
   }
 
  private:
@@ -225,17 +219,23 @@ struct DivisionView {
   PLIANT_HOST_DEVICE void place(Index r, Index node, int point) const {
     made[node - first_node] = {node, leaf(r), cell(r).has, pattern(r).place[at(point)]};
   }
-  /// The nodes at the points of a leaf's pattern, as far as children have them for corners.
-  PLIANT_HOST_DEVICE void find_points(
-      TreeCell const& own_cell, RefinementPattern const& p,
-      std::array<Index, RefinementPattern::most_points>& point) const {
-    for (std::size_t a = 0; a < at(p.corners); ++a) point[a] = own_cell.nodes[a];
-    for (std::size_t e = 0; p.halves && e < at(p.edges); ++e)
-      point[at(p.corners) + e] = tree.edges[at(own_cell.edges[e])].middle;
-    for (std::size_t s = 0; p.halves && s < at(p.sides); ++s)
-      if (p.side_centre[s] >= 0)
-        point[at(p.side_centre[s])] = tree.sides[at(own_cell.sides[s])].centre;
-    if (p.centre >= 0) point[at(p.centre)] = own_cell.centre;
+  static PLIANT_HOST_DEVICE Index first_inner_edge(LeafParts const& own,
+                                                   RefinementPattern const& p) {
+    return own.edge + own.edges - p.inner_edges;
+  }
+  static PLIANT_HOST_DEVICE int level_of_children(TreeCell const& parent,
+                                                  RefinementPattern const& p) {
+    return parent.level + (p.halves ? 1 : 0);
+  }
+  /// The node at a point of a leaf's pattern.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index point(TreeCell const& own_cell, RefinementPattern const& p,
+                                               int i) const {
+    if (i < p.corners) return own_cell.nodes[at(i)];
+    if (i == p.centre) return own_cell.centre;
+    if (i < p.corners + p.edges) return tree.edges[at(own_cell.edges[at(i - p.corners)])].middle;
+    std::size_t s = 0;
+    while (p.side_centre[s] != i) ++s;
+    return tree.sides[at(own_cell.sides[s])].centre;
   }
   [[nodiscard]] PLIANT_HOST_DEVICE Index edge_of_child(TreeCell const& parent,
                                                        RefinementPattern const& p,

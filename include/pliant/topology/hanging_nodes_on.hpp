@@ -54,7 +54,7 @@ class HangingNodesOn {
       slave_at_ = zeros<Index>(backend_, at(sizes.nodes) + at(sizes.nodes) / 2);
     backend_.for_each(places, detail::ListSlaves<Dim>{hung, start_.data(), nodes_.data(),
                                                       order_.data(), places_.data()});
-    backend_.sort(n, nodes_.data(), order_.data(), std::numeric_limits<Index>::digits);
+    backend_.sort(n, nodes_.data(), order_.data(), detail::key_bits(sizes.nodes));
     backend_.for_each(n, detail::NumberSlaves{nodes_.data(), slave_at_.data(), true});
     known_ = n;
 

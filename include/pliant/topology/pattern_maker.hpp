@@ -203,7 +203,7 @@ class PatternMaker {
             std::array<int, 4> own{-1, -1, -1, -1};
             for (std::size_t k = 0; k < side.size(); ++k)
               if (side[k] >= 0) own[k] = points[at(side[k])];
-            p_.child_side[i][j++] = home_of_side(own);
+            p_.child_side[i][j++] = home_of_side(own, c);
           }
         }
       };
@@ -224,15 +224,19 @@ class PatternMaker {
     p_.inner_edge[at(p_.inner_edges)] = {a, b};
     return {Home::inside, p_.inner_edges++};
   }
-  constexpr RefinementPattern::Part home_of_side(std::array<int, 4> own) {
+  constexpr RefinementPattern::Part home_of_side(std::array<int, 4> own, int child) {
     std::uint32_t corners = 0;
     for (int const point : own)
       if (point >= 0) corners |= bit(point);
     for (int s = 0; s < p_.sides; ++s)
       if ((corners & ~on_side_[at(s)]) == 0) return {Home::side, s};
     for (int i = 0; i < p_.inner_sides; ++i)
-      if (inner_side_[at(i)] == corners) return {Home::inside, i};
+      if (inner_side_[at(i)] == corners) {
+        p_.children_at_inner_side[at(i)][1] = child;
+        return {Home::inside, i};
+      }
     inner_side_[at(p_.inner_sides)] = corners;
+    p_.children_at_inner_side[at(p_.inner_sides)][0] = child;
     return {Home::inside, p_.inner_sides++};
   }
 

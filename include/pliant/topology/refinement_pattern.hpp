@@ -79,6 +79,7 @@ struct RefinementPattern {
   std::array<std::array<int, 2>, most_edges> inner_edge{};  ///< their ends, as points
   std::array<std::array<Part, most_edges>, most_children> child_edge{};
   std::array<std::array<Part, most_sides>, most_children> child_side{};
+  std::array<std::array<int, 2>, most_inner_sides> children_at_inner_side{};  ///< in their order
 
   constexpr int corners_of_side(int s) const {
     return side[static_cast<std::size_t>(s)][3] < 0 ? 3 : 4;

@@ -78,8 +78,7 @@ class TreeCoarsening {
                                              parents_.data(), counters_.data() + 1, keys_.data()});
     backend.select(of.initial.cells, IsKnowing{tree}, knowing_.data(), counters_.data() + 2);
     auto const counts = counted();
-    constexpr int bits_of_cell = 32;
-    backend.sort(counts[1], keys_.data(), parents_.data(), bits_of_cell);
+    backend.sort(counts[1], keys_.data(), parents_.data(), key_bits(of.before.cells));
     return {counts[1], counts[2]};
   }
 

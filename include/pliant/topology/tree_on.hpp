@@ -87,10 +87,10 @@ class TreeOn {
     lists_.cells.extend(backend_, at(totals[3]));
     need(made_, totals[0]);
     auto const dividing = division();
-    backend_.for_each(n, detail::MakeOnEdges{dividing});
-    backend_.for_each(n, detail::MakeOnSides{dividing});
-    backend_.for_each(n, detail::MakeChildren{dividing});
-    backend_.for_each(n, detail::CountUses{dividing});
+    for_each_part(n, detail::MakeOnEdges{dividing});
+    for_each_part(n, detail::MakeOnSides{dividing});
+    backend_.for_each(n, detail::MakeInside{dividing});
+    for_each_part(n, detail::MakeChildren{dividing});
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
     if (has_quadratic_) make_quadratic(n, limits);
@@ -133,6 +133,11 @@ class TreeOn {
   [[nodiscard]] detail::DivisionView division() {
     return {view(), leaves_.data(), parts_.data(), first_new_node_, made_.data()};
   }
+  /// For all edges, sides or children that n leaves may have.
+  template <class Make>
+  void for_each_part(Index n, Make const& make) {
+    backend_.for_each(n * Make::each, make);
+  }
   /// Numbers that loops counted.
   template <std::size_t N>
   std::array<Index, N> counted() {
@@ -163,8 +168,9 @@ class TreeOn {
       n = counted<1>()[0];
     }
     need(keys_, n);
-    backend_.for_each(n, detail::LevelKeys{view(), list_.data(), keys_.data()});
-    constexpr int bits_of_cell = 32, bits_of_level = 6;
+    constexpr int bits_of_level = 6;
+    int const bits_of_cell = detail::key_bits(size(lists_.cells));
+    backend_.for_each(n, detail::LevelKeys{view(), list_.data(), keys_.data(), bits_of_cell});
     backend_.sort(n, keys_.data(), list_.data(), bits_of_cell + bits_of_level);
     return n;
   }
@@ -200,6 +206,7 @@ class TreeOn {
     check_one("cells", size(lists_.cells), more[3], most);
     check_one("edges", size(lists_.edges), more[1], most);
     check_one("sides", size(lists_.sides), more[2], most);
+    check_one("edges of cells", 0, n, most / detail::MakeOnEdges::each);
   }
   /// Makes the nodes that children's elements have between their corners.
   void make_quadratic(Index n, RefinementLimits const& limits) {

@@ -85,10 +85,12 @@ struct LevelKeys {
   TreeView tree;
   Index const* list;
   std::uint64_t* keys;
+  int bits_of_cell;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto const level = tree.cells[static_cast<std::size_t>(list[k])].level;
-    keys[k] = static_cast<std::uint64_t>(level) << 32 | static_cast<std::uint32_t>(list[k]);
+    keys[k] =
+        static_cast<std::uint64_t>(level) << bits_of_cell | static_cast<std::uint32_t>(list[k]);
   }
 };
 struct ListLeaves {
@@ -139,21 +141,34 @@ struct FindParts {
   DivisionView division;
   PLIANT_HOST_DEVICE void operator()(Index r) const { division.find_parts(r); }
 };
-struct MakeOnEdges {
+struct MakeInside {
   DivisionView division;
-  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_on_edges(r); }
+  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_inside(r); }
+};
+/// The same for each edge, side and child of leaves, of which there are so many.
+struct MakeOnEdges {
+  static constexpr Index each = RefinementPattern::most_edges;
+  DivisionView division;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (k % each < division.pattern(k / each).edges)
+      division.make_on_edge(k / each, static_cast<std::size_t>(k % each));
+  }
 };
 struct MakeOnSides {
+  static constexpr Index each = RefinementPattern::most_sides;
   DivisionView division;
-  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_on_sides(r); }
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (k % each < division.pattern(k / each).sides)
+      division.make_on_side(k / each, static_cast<std::size_t>(k % each));
+  }
 };
 struct MakeChildren {
+  static constexpr Index each = RefinementPattern::most_children;
   DivisionView division;
-  PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_children(r); }
-};
-struct CountUses {
-  DivisionView division;
-  PLIANT_HOST_DEVICE void operator()(Index r) const { division.count_uses(r); }
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (k % each < division.parts[k / each].cells)
+      division.make_child(k / each, static_cast<std::size_t>(k % each));
+  }
 };
 
 /// How many children of a leaf have nodes between their corners, and a list of them.
