@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/error.hpp>
+#include <pliant/math/uncontracted.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/element_families.hpp>
 #include <pliant/topology/facet_transfer.hpp>
@@ -190,7 +191,11 @@ class Transfer {
   void check_nodes(auto const& values) const {
     check(values.size(), static_cast<std::size_t>(p_.old_nodes), "nodes");
   }
-  static void add(double& sum, double weight, double value) { sum += weight * value; }
+  /// As devices do: see fill_new_nodes of a backend.
+  static void add(double& sum, double weight, double value) {
+    using S = Uncontracted;
+    sum = (S(sum) + S(weight) * S(value)).value;
+  }
   static void add(float& sum, double weight, float value) {
     sum += static_cast<float>(weight) * value;
   }
