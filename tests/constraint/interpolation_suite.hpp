@@ -79,8 +79,13 @@ TEST_CASE("apply_transpose is the transpose of apply, on backends", "[constraint
     InterpolationOn<B> const p(backend, host);
     auto const v = rounded<T>(random.field<3>(101, 1)), f = rounded<T>(random.field<3>(101, 1));
     auto pv = padded(backend, v), ptf = padded(backend, f), added = padded(backend, f);
+    auto pf = padded(backend, f), pf_of_two = padded(backend, f), pv_of_two = padded(backend, v);
 
     p.apply(backend, node_field<3>(pv));
+    p.apply(backend, node_field<3>(pf));
+    p.apply(backend, node_field<3>(pf_of_two), node_field<3>(pv_of_two));
+    CHECK(download<T>(pf_of_two) == download<T>(pf));
+    CHECK(download<T>(pv_of_two) == download<T>(pv));
     p.apply_transpose(backend, node_field<3>(ptf));
     p.add_transpose(backend, node_field<3>(added));
 

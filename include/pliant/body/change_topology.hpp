@@ -190,8 +190,7 @@ ChangedTopology<Parts> change_topology(
   state.u = nodes.onto(next.layout, parts.state.u, u);
   state.v = nodes.onto(next.layout, parts.state.v, v);
   next.layout.freed_rows = {};
-  next.layout.interpolation.apply(next.backend, next.u());
-  next.layout.interpolation.apply(next.backend, next.v());
+  next.layout.interpolation.apply(next.backend, next.u(), next.v());
   if (!loads.empty()) {
     loads = transfer.carry_sums(std::move(loads));
     state.load = upload(next.backend, next.layout.padded(loads));

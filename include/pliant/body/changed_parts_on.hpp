@@ -215,8 +215,7 @@ class ChangedPartsOn {
     auto& next = changed.parts;
     next.state.u = std::move(u);
     next.state.v = std::move(v);
-    next.layout.interpolation.apply(next.backend, next.u());
-    next.layout.interpolation.apply(next.backend, next.v());
+    next.layout.interpolation.apply(next.backend, next.u(), next.v());
     return changed;
   }
   void finish(Parts& next) {

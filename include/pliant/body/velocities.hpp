@@ -117,12 +117,13 @@ void advance(Parts& parts, double lag, double kick, double drift) {
       parts, Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), parts.still(),
                              external_forces(parts), half_kick(parts, lag), half_kick(parts, kick),
                              static_cast<T>(drift)});
-  layout.interpolation.apply(parts.backend, parts.v());
-  book_hidden(kick);
   if (drift != 0) {
-    layout.interpolation.apply(parts.backend, parts.u());
+    layout.interpolation.apply(parts.backend, parts.u(), parts.v());
     parts.forces_current = parts.forces_complete = false;
+  } else {
+    layout.interpolation.apply(parts.backend, parts.v());
   }
+  book_hidden(kick);
 }
 
 /// Gives velocities the half-kick that the last step left pending, so that they belong to state.time.

@@ -32,6 +32,16 @@ struct WeightedRow {
     field.set(node[k], sum);
   }
 };
+/// Two of them for the same row, of different fields.
+template <class First, class Second>
+struct BothRows {
+  First first;
+  Second second;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    first(k);
+    second(k);
+  }
+};
 /// Raises a node to the largest value of others, where that is more.
 template <class T>
 struct LargestOfRow {
@@ -89,6 +99,14 @@ class InterpolationOn {
   void apply(B const& backend, NodeField<T, C> field) const {
     if (!empty())
       backend.for_each(to_slaves_.count, weighted<C, detail::RowAction::set>(to_slaves_, field));
+  }
+  /// The same of two fields at once.
+  template <int C>
+  void apply(B const& backend, NodeField<T, C> field, NodeField<T, C> other) const {
+    constexpr auto set = detail::RowAction::set;
+    if (!empty())
+      backend.for_each(to_slaves_.count, detail::BothRows{weighted<C, set>(to_slaves_, field),
+                                                          weighted<C, set>(to_slaves_, other)});
   }
   /// Adds Pᵀ of what slaves hold to their masters, f_i += Σ_s P_si f_s; slaves keep theirs.
   template <int C>

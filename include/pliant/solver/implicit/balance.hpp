@@ -126,8 +126,7 @@ class Balance {
     set_row(speed, rule.velocity, wf);
     set_row(w, rule.acceleration, wm);
     set_sum(parts_.backend, nodes_, place, scaled(1, parts_.u()), scaled(wf, d));
-    parts_.layout.interpolation.apply(parts_.backend, place);
-    parts_.layout.interpolation.apply(parts_.backend, speed);
+    parts_.layout.interpolation.apply(parts_.backend, place, speed);
     clear_rows(parts_, f);
     for_each_force_term(parts_, [&](auto const& term) {
       term.add_force(parts_.backend, parts_.at({place.data}), f);
