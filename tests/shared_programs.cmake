@@ -3,7 +3,7 @@
 # own. A program should fit into 4 GB of the compiler's memory.
 
 # On GPUs these suites alone share a program, for CI to compile.
-set(shared_on_gpu adaptation/switching body/state law/user_law solver/trajectory)
+set(shared_on_gpu body/state law/user_law solver/trajectory)
 
 # share(<program> <area>/<name>...)
 function(share program)
