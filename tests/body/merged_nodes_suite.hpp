@@ -161,7 +161,8 @@ struct MergedNodes {
     momentum.begin(merged, weights_before, weights_now, masses);
     masses.add_come(merged);
     masses.read(weights_now, kilograms.data());
-    masses.check();
+    auto rounded = zeros<T>(backend, at(rows));
+    masses.round(kilograms.data(), rounded.data());
     return momentum.give_back(merged, weights_before, weights_now, density, bound, kilograms.data(),
                               held.data(), node_field<dim>(v));
   }

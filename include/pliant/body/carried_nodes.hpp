@@ -61,6 +61,13 @@ struct RowSize {
   }
 };
 
+/// The larger one of two fields.
+template <class T, int Dim>
+struct LargerRowSize {
+  RowSize<T, Dim> one, other;
+  PLIANT_HOST_DEVICE double operator()(Index i) const { return max(one(i), other(i)); }
+};
+
 /// Takes fields of nodes over to another topology.
 template <class Parts>
 class CarriedNodes {

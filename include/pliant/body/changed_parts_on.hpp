@@ -79,7 +79,8 @@ class ChangedPartsOn {
 
   /// Energies are of all elements: nodes that begin to hang displace some that stay.
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
-    double const speed = begin();
+    begin();
+    double const speed = largest_speed();
     double const before = strain_energy(parts_.layout, parts_.state.u);
     auto parents = std::make_shared<Array<Index>>(zeros<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
@@ -129,19 +130,20 @@ class ChangedPartsOn {
   [[nodiscard]] std::size_t values() const { return node_stride * at(rows_); }
   NodeField<double const, dim> at_rest() const { return {on_.points.data()}; }
 
-  /// Throws Error where a field is not finite. Returns the largest component of a velocity, m/s.
-  double begin() {
+  static RowSize<T, dim> sizes_of(Array<T> const& field) { return {node_field<dim>(field)}; }
+  /// Throws Error where a field is not finite.
+  void begin() {
     synchronize_velocities(parts_);
-    auto const largest = [&](char const* what, Array<T> const& field) {
-      double const most =
-          backend_.maximum(parts_.layout.rows, RowSize<T, dim>{node_field<dim>(field)});
-      if (!is_finite(most))
-        check_field(what, parts_.layout.in_user_order(field), parts_.layout.nodes());
-      return most;
-    };
-    largest("change of the mesh (displacements)", parts_.state.u);
-    return largest("change of the mesh (velocities)", parts_.state.v);
+    auto const& layout = parts_.layout;
+    auto const& state = parts_.state;
+    LargerRowSize<T, dim> const both{sizes_of(state.u), sizes_of(state.v)};
+    if (is_finite(backend_.maximum(layout.rows, both))) return;
+    check_field("change of the mesh (displacements)", layout.in_user_order(state.u),
+                layout.nodes());
+    check_field("change of the mesh (velocities)", layout.in_user_order(state.v), layout.nodes());
   }
+  /// The largest component of a velocity, m/s.
+  double largest_speed() { return backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v)); }
   void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
     auto const changed = changed_when_asked(parts_, std::move(cells), merged);
     topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
@@ -180,7 +182,7 @@ class ChangedPartsOn {
     layout.held = extended(backend_, before.held, at(rows_));
     layout.mass = zeros<T>(backend_, at(rows_));
     layout.interpolation =
-        InterpolationOn<B>(backend_, on_.hanging.rows(on_.tree, on_.rows.of_node()));
+        InterpolationOn<B>(backend_, on_.hanging.rows(on_.tree, on_.rows.of_node()), false);
     return layout;
   }
   void make_table(Table& table, ElementBlocks const& blocks) {

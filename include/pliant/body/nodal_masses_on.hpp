@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include <pliant/backend/atomic.hpp>
@@ -83,7 +82,7 @@ class NodalMassesOn {
         rows_(static_cast<Index>(own.size())),
         unit_(unit),
         density_(density),
-        refused_(zeros<Index>(backend, 1)) {}
+        refused_(zeros<Index>(backend, 2)) {}
 
   [[nodiscard]] Index rows() const { return rows_; }
   [[nodiscard]] double density() const { return density_; }
@@ -113,30 +112,27 @@ class NodalMassesOn {
     add<true>(families, true);
     add<false>(families, false);
   }
-  /// Throws Error where the share of a node in the mass of an element was no number or too large, since the last call. Such
-  /// shares were left out.
-  void check() {
-    if (std::exchange(has_added_, false) && was_refused())
-      throw Error(
-          "body: the share of a node in the mass of an element is too large, or no number, under "
-          "the density ",
-          density_, " kg/m³; take other units");
-  }
-
   /// Masses in kg by row, of which slaves have handed theirs to their masters. `kilograms`: (rows).
   void read(MassWeightsOn<B> const& slaves, double* kilograms) const {
     backend_.for_each(rows_, detail::ReadMasses{unit_, own_.data(), kilograms});
     slaves.template hand<1>(detail::DoublesByRow<1>{kilograms});
   }
-  /// The same masses in another precision. Throws Error where that cannot hold one.
+  /// The same masses in another precision. Throws Error where that cannot hold one, and where the share of a node in the mass
+  /// of an element was no number or too large since the last call: such shares were left out.
   template <class T>
   void round(double const* kilograms, T* masses) {
-    check();
-    backend_.for_each(rows_, detail::RoundMasses<T>{kilograms, masses, refused_.data()});
-    if (was_refused() || !std::isfinite(static_cast<T>(density_)))
-      throw Error("body: ", 8 * sizeof(T),
-                  " bits cannot hold the mass of a node under the density ", density_,
-                  " kg/m³; take double, or other units");
+    backend_.for_each(rows_, detail::RoundMasses<T>{kilograms, masses, refused_.data() + 1});
+    auto const refused = download<Index>(refused_);
+    bool const is_held = refused[1] == 0 && std::isfinite(static_cast<T>(density_));
+    if (refused[0] == 0 && is_held) return;
+    refused_.upload(std::vector<Index>{0, 0});
+    if (refused[0] != 0)
+      throw Error(
+          "body: the share of a node in the mass of an element is too large, or no number, under "
+          "the density ",
+          density_, " kg/m³; take other units");
+    throw Error("body: ", 8 * sizeof(T), " bits cannot hold the mass of a node under the density ",
+                density_, " kg/m³; take double, or other units");
   }
 
  private:
@@ -148,12 +144,6 @@ class NodalMassesOn {
     backend_.for_each(members.places(),
                       detail::AddShares<E, Members>{members, takes, density_, unit_, own_.data(),
                                                     refused_.data()});
-    has_added_ = true;
-  }
-  bool was_refused() {
-    if (download<Index>(refused_)[0] == 0) return false;
-    refused_.upload(std::vector<Index>{0});
-    return true;
   }
 
   B backend_;
@@ -161,8 +151,7 @@ class NodalMassesOn {
   Index rows_;
   detail::SumUnit unit_;
   double density_;
-  Array<Index> refused_;
-  bool has_added_ = false;
+  Array<Index> refused_;  // shares; masses
 };
 
 }  // namespace pliant

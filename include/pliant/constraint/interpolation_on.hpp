@@ -79,13 +79,15 @@ class InterpolationOn {
     to_slaves_ = rows_by_slave(backend, host.slaves(), number);
     to_masters_ = detail::transposed(backend, to_slaves_);
   }
-  /// Of slaves in the backend's memory, each once, whose masters are free.
-  InterpolationOn(B const& backend, RowsOn<B> slaves) : to_slaves_(std::move(slaves)) {
+  /// Of slaves in the backend's memory, each once, whose masters are free. `has_negative`: whether weights may be negative.
+  InterpolationOn(B const& backend, RowsOn<B> slaves, bool has_negative = true)
+      : to_slaves_(std::move(slaves)) {
     if (empty()) return;
     to_masters_ = detail::transposed(backend, to_slaves_);
-    magnitude_ = backend.maximum(
-        to_slaves_.count,
-        detail::MagnitudeOfRow<T>{to_slaves_.first.data(), to_slaves_.weight.data()});
+    if (has_negative)
+      magnitude_ = backend.maximum(
+          to_slaves_.count,
+          detail::MagnitudeOfRow<T>{to_slaves_.first.data(), to_slaves_.weight.data()});
   }
 
   bool empty() const { return to_slaves_.count == 0; }

@@ -63,18 +63,18 @@ class HangingNodesOn {
     rows.count = n;
     rows.node = zeros<Index>(backend_, at(n));
     rows.first = zeros<Index>(backend_, at(n) + 1);
-    backend_.scan(n, masters, rows.first.data());
-    Index const entries = entry(rows.first, n);
-    rows.other = zeros<Index>(backend_, at(entries));
-    rows.weight = zeros<T>(backend_, at(entries));
     counters_ = zeros<Index>(backend_, 2);
-    backend_.for_each(
-        n, detail::FillSlaves<Dim, T>{masters, nodes_.data(), row_of_node, rows.first.data(),
-                                      rows.node.data(), rows.other.data(), rows.weight.data(),
-                                      counters_.data()});
-    if (counted<1>()[0] != 0)
+    backend_.scan(n, detail::CountMasters<Dim>{masters, counters_.data() + 1}, rows.first.data());
+    backend_.for_each(1, detail::CopyValue<Index>{rows.first.data() + n, counters_.data()});
+    auto const [entries, too_many] = counted<2>();
+    if (too_many != 0)
       throw Error("hanging nodes: one has more than ", detail::MasterList::most,
                   " masters; keep neighbours of finer elements within one level");
+    rows.other = zeros<Index>(backend_, at(entries));
+    rows.weight = zeros<T>(backend_, at(entries));
+    backend_.for_each(
+        n, detail::FillSlaves<Dim, T>{masters, nodes_.data(), row_of_node, rows.first.data(),
+                                      rows.node.data(), rows.other.data(), rows.weight.data()});
     return rows;
   }
 

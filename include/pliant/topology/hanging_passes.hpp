@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <pliant/backend/atomic.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/tree_view.hpp>
@@ -235,17 +236,24 @@ struct FreeMasters {
       m = 0;
     }
   }
-  /// How many there are; a negative number where they do not fit.
-  PLIANT_HOST_DEVICE Index operator()(Index k) const {
-    MasterList list;
-    find(k, list);
-    return list.count;
-  }
 
  private:
   PLIANT_HOST_DEVICE void add(Index k, double weight, MasterList& list) const {
     auto const& place = places[order[k]];
     hung.add_masters(place.on, place.which, weight, list);
+  }
+};
+/// How many each slave has.
+template <int Dim>
+struct CountMasters {
+  FreeMasters<Dim> masters;
+  Index* too_many;  // set where they do not fit into a list
+
+  PLIANT_HOST_DEVICE Index operator()(Index k) const {
+    MasterList list;
+    masters.find(k, list);
+    if (!list.fits) atomic_store(*too_many, 1);
+    return list.count;
   }
 };
 /// Fills rows of slaves: nodes and masters by their rows in fields.
@@ -257,12 +265,10 @@ struct FillSlaves {
   Index const* first;
   Index *node, *other;
   T* weight;
-  Index* too_many;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     MasterList list;
     masters.find(k, list);
-    if (!list.fits) *too_many = 1;
     list.sort();
     node[k] = row_of_node[nodes[k]];
     for (int m = 0; m < list.count; ++m) {

@@ -159,12 +159,19 @@ class TreeOn {
     counters_ = zeros<Index>(backend_, 4);
     detail::ListOnce const once{stamps_.data(), stamps_.now(), list_.data(), counters_.data()};
     backend_.for_each(count, detail::ListMarked{view(), marked, max_level, once});
-    Index n = counted<1>()[0], from = 0;
-    detail::CellsAtEdgesView const at_edges{view(), initial_.edges, first_at_edge_.data(),
-                                            cells_at_edge_.data()};
-    while (size(lists_.cells) > initial_.cells && from < n) {  // some may have coarser neighbours
-      backend_.for_each(n - from, detail::ListCoarser{at_edges, from, once});
-      from = n;
+    Index n = 0, from = 0;
+    if (size(lists_.cells) > initial_.cells) {  // some may have coarser neighbours
+      detail::CellsAtEdgesView const at_edges{view(), initial_.edges, first_at_edge_.data(),
+                                              cells_at_edge_.data()};
+      Index* const listed = counters_.data() + 1;
+      for (Index most = count; most > 0; most = n - from) {
+        backend_.for_each(1, detail::CopyValue<Index>{counters_.data(), listed});
+        backend_.for_each(most, detail::ListCoarser{at_edges, from, listed, once});
+        auto const counts = counted<2>();
+        n = counts[0];
+        from = counts[1];
+      }
+    } else {
       n = counted<1>()[0];
     }
     need(keys_, n);

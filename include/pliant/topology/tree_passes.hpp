@@ -52,10 +52,12 @@ struct ListMarked {
 /// edge that lies between parts, so that edges tell of coarser neighbours across sides too.
 struct ListCoarser {
   CellsAtEdgesView at_edges;
-  Index from;  // of the list: those before were looked at
+  Index from;           // of the list: those before were looked at
+  Index const* listed;  // how many there are when the loop begins
   ListOnce list;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (from + k >= *listed) return;
     TreeView const& tree = at_edges.tree;
     auto const at = [](Index i) { return static_cast<std::size_t>(i); };
     auto const want = [&](Index c) {
