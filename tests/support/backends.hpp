@@ -40,8 +40,8 @@ using HostBackend = MainBackend;
 /// without OpenMP has the serial one there.
 using MainAlone = std::tuple<MainBackend>;
 /// Whether suites run on all of a CPU's backends: those of tests/backend and tests/formulation always do. The others take
-/// twice as long to compile then; see tests/run --all-backends.
-#if defined(PLIANT_TEST_ALL_BACKENDS) || !defined(_OPENMP) || defined(__CUDACC__)
+/// twice as long to compile then; see tests/run.
+#if defined(PLIANT_TEST_ALL) || !defined(_OPENMP) || defined(__CUDACC__)
 inline constexpr bool on_all_backends = true;
 #else
 inline constexpr bool on_all_backends = false;
