@@ -40,7 +40,7 @@ using HostBackend = MainBackend;
 /// without OpenMP has the serial one there.
 using MainAlone = std::tuple<MainBackend>;
 /// Whether suites run on all of a CPU's backends: those of tests/backend and tests/formulation always do. The others take
-/// twice as long to compile then; see tests/run.
+/// longer to compile then; see tests/run.
 #if defined(PLIANT_TEST_ALL) || !defined(_OPENMP) || defined(__CUDACC__)
 inline constexpr bool on_all_backends = true;
 #else
