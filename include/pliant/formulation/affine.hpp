@@ -15,37 +15,38 @@ namespace pliant {
 namespace detail {
 
 /// Corners of a cell whose differences to corner 0 span it, and the inverse of these differences: one per column.
-template <class Cell>
+template <int Dim>
 struct AffineFrame {
-  std::array<int, Cell::dim> corner{};
-  Tensor<double, Cell::dim> inverse{};
-
-  constexpr AffineFrame() {
-    for (int a = 1; a < Cell::corners; ++a)
-      for (int b = a + 1; b < Cell::corners; ++b)
-        for (int c = b + 1; c < Cell::corners + (Cell::dim == 2 ? Cell::corners : 0); ++c)
-          if (take({a, b, c})) return;
-  }
-
- private:
-  constexpr bool take(std::array<int, 3> const& corners) {
-    Tensor<double, Cell::dim> edges{};
-    for (int j = 0; j < Cell::dim; ++j) {
-      corner[static_cast<std::size_t>(j)] = corners[static_cast<std::size_t>(j)];
-      for (int i = 0; i < Cell::dim; ++i)
-        edges(i, j) = Cell::corner(corners[static_cast<std::size_t>(j)])[i] - Cell::corner(0)[i];
-    }
-    double const det = determinant(edges);
-    if (det == 0) return false;
-    inverse = 1 / det * transpose(cofactor(edges));
-    return true;
-  }
+  std::array<int, Dim> corner;
+  Tensor<double, Dim> inverse;
 };
+template <class Cell>
+constexpr AffineFrame<Cell::dim> affine_frame() {
+  constexpr int dim = Cell::dim;
+  for (int a = 1; a < Cell::corners; ++a)
+    for (int b = a + 1; b < Cell::corners; ++b)
+      for (int c = b + 1; c < Cell::corners + (dim == 2 ? Cell::corners : 0); ++c) {
+        AffineFrame<dim> frame{};
+        std::array<int, 3> const corners{a, b, c};
+        Tensor<double, dim> edges{};
+        for (std::size_t j = 0; j < std::size_t{dim}; ++j) {
+          frame.corner[j] = corners[j];
+          for (int i = 0; i < dim; ++i)
+            edges(i, static_cast<int>(j)) = Cell::corner(corners[j])[i] - Cell::corner(0)[i];
+        }
+        double const det = determinant(edges);
+        if (det == 0) continue;
+        frame.inverse = 1 / det * transpose(cofactor(edges));
+        return frame;
+      }
+  return {};
+}
 
 /// See affine_gradient; false: nothing.
 template <Element E, class S>
 PLIANT_HOST_DEVICE bool find_affine_gradient(Nodal<E, S> const& rest, Tensor<S, E::dim>& gradient) {
-  static constexpr AffineFrame<typename E::cell> frame;
+  // Without an initialiser it would be zero in device code (nvcc 13.0).
+  static constexpr auto frame = affine_frame<typename E::cell>();
   static constexpr auto places = [] {
     Nodal<E, double> p{};
     for (int a = 0; a < E::nodes; ++a)
