@@ -61,7 +61,7 @@ struct Tables {
     auto const before = topology();
     change(before, {.refine = {ranks(*before, marked)}}, [&] {
       mesh.refine(marked);
-      return RefinedPlaces<B>(backend, mesh.tree.view(), mesh.order, mesh.refined.leaves);
+      return RefinedPlaces<B>(backend, mesh.order, mesh.refined);
     });
   }
   /// Merges families of marked leaves; returns how many.

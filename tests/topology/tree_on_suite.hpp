@@ -11,14 +11,14 @@
 // Trees in a backend's memory are refined as on the host.
 namespace pliant::test::tree_on_suite {
 
-/// The same hanging nodes with the same masters and weights; nodes have rows of their own numbers, backwards.
-template <class B, int Dim>
-void check_hanging(B const& backend, HangingNodesOn<Dim, B>& hanging, TreeOn<B> const& tree,
-                   Hierarchy<Dim> const& host) {
+/// The same hanging nodes with the same masters and weights; nodes have rows of their own numbers, backwards. find(row_of_node):
+/// the rows that are compared.
+template <class B, int Dim, class Find>
+void check_hanging(B const& backend, Hierarchy<Dim> const& host, Find const& find) {
   std::vector<Index> backwards(host.points().size());
   std::iota(backwards.rbegin(), backwards.rend(), Index{0});
   auto const row_of_node = upload(backend, backwards);
-  auto const rows = hanging.rows(tree, row_of_node.data());
+  RowsOn<B> const rows = find(row_of_node.data());
   auto const node = download<Index>(rows.node), first = download<Index>(rows.first),
              other = download<Index>(rows.other);
   auto const weight = download<double>(rows.weight);
@@ -46,8 +46,9 @@ void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int round
   Hierarchy<M::dim> host(mesh);
   TreeBeside<B> on(backend, host);
   check_same(on.tree, host);
-  HangingNodesOn<M::dim, B> hanging(backend);
-  check_hanging(backend, hanging, on.tree, host);
+  HangingNodesOn<M::dim, B> hanging(backend), followed(backend);
+  auto const find = [&](Index const* row_of_node) { return hanging.rows(on.tree, row_of_node); };
+  check_hanging(backend, host, find);
   bool composed = false;
   Random random(3);
   for (int round = 0; round < rounds; ++round) {
@@ -61,6 +62,9 @@ void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int round
     CHECK(numbers_of(on.taken(done.cells, done.leaves), &CellSplit::cell) == wanted.parents);
     REQUIRE(done.new_nodes == static_cast<Index>(wanted.new_nodes.size()));
     check_same(on.tree, host);
+    check_hanging(backend, host, [&](Index const* row_of_node) {
+      return followed.rows_after(on.tree, done, row_of_node);
+    });
     if (round == 1) {  // another refinement, and back
       on.tree.keep();
       on.refine(some_leaves(host, 2, random));
@@ -68,7 +72,7 @@ void check_rounds(B const& backend, M const& mesh, std::size_t one_in, int round
       check_same(on.tree, host);
     }
     on.tree.keep();
-    check_hanging(backend, hanging, on.tree, host);
+    check_hanging(backend, host, find);
     for (auto const& slave : host.slaves())
       composed = composed || slave.masters.size() == 3 || slave.masters.size() > 4;
   }

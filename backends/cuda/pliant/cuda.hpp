@@ -18,6 +18,7 @@
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/element_list.hpp>
 #include <pliant/cuda/histogram.cuh>
+#include <pliant/cuda/in_turn.cuh>
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/point_rows.cuh>
 #include <pliant/cuda/recording.hpp>
@@ -86,6 +87,11 @@ class Cuda {
     return {context_->stream(), values};
   }
 
+  template <class U>
+  Array<U> unset_array(std::size_t count) const {
+    return Array<U>::unset(context_->stream(), count);
+  }
+
   template <class F>
   void for_each(Index n, F const& f) const {
     if (n > 0)
@@ -124,6 +130,14 @@ class Cuda {
   }
   void sort(Index n, std::uint64_t* keys, Index* values, int bits) const {
     if (n > 1 && bits > 0) detail::sort_list(*context_, n, detail::KeyList{keys, values}, bits);
+  }
+
+  template <class... Steps>
+  void in_turn(Steps const&... steps) const {
+    if (detail::are_short(steps...))
+      detail::do_in_turn(*context_, steps...);
+    else
+      (steps.run(*this), ...);
   }
 
   template <int Groups, class Table, class Kernel, int C, class... Fields>
@@ -169,10 +183,18 @@ class Cuda {
     require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();
     auto const active = detail::active(table);
     if (active.most <= 0) return 0;
-    return reduce<detail::Sum>(
-        "sum_elements", element_count(active),
-        detail::ElementTerm<Groups, nodes, Kernel, Fields...>{
-            active.elements.view({active.list, active.most}), kernel, {fields...}});
+    return reduce<detail::Sum>("sum_elements", element_count(active),
+                               element_term<Groups>(active, kernel, fields...));
+  }
+  template <int Groups, class Table, class Kernel, class... Fields>
+  void add_sum_elements(Table const& table, Kernel const& kernel, double* to,
+                        Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();
+    auto const active = detail::active(table);
+    if (active.most > 0)
+      reduce_to<detail::AddedSum>("add_sum_elements", element_count(active),
+                                  element_term<Groups>(active, kernel, fields...), to);
   }
   template <int Groups, class Table, class Visitor, class... Fields>
   void visit(Table const& table, Visitor const& visitor, DeviceArray<double>& counters,
@@ -220,6 +242,12 @@ class Cuda {
     int const bytes = Memory::bytes(fans.capacity) + detail::tag_bytes(fans.patch_size);
     launch("accumulate", {active.most, active.elements.threads(), bytes}, by_fan, fans, kernel, out,
            fields...);
+  }
+
+  template <int Groups, class Active, class Kernel, class... Fields>
+  static detail::ElementTerm<Groups, Active::nodes, Kernel, Fields...> element_term(
+      Active const& active, Kernel const& kernel, Fields const&... fields) {
+    return {active.elements.view({active.list, active.most}), kernel, {fields...}};
   }
 
   /// How many elements a loop looks at, at most.

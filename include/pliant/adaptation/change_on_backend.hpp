@@ -131,7 +131,7 @@ class ChangesOnBackend {
   template <class Change>
   void commit(char const* action, std::size_t count, Change const& make) {
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
-    commit_change(parts_, action, count, [&] {
+    commit_change<true>(parts_, action, count, [&] {
       ChangedPartsOn<Parts> parts(parts_, *kept);
       auto changed = make(parts);
       kept->numbers.find(backend(), kept->tree, kept->order);

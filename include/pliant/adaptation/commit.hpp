@@ -70,13 +70,14 @@ auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level
 namespace detail {
 
 /// Puts a ChangedTopology, which change() gives, in force, and books what it does to energies. `actions`, `count`: in words, and
-/// on how many elements it acts.
-template <class Parts, class Change>
+/// on how many elements it acts. TellsKinetic: whether it has kinetic energies.
+template <bool TellsKinetic = false, class Parts, class Change>
 void commit_change(Parts& parts, std::string actions, std::size_t count, Change const& change) {
   constexpr int dim = Parts::dim;
   wake_all(parts);
   auto const energies_but_strain = [](Parts& p) {
-    return Energies{0, kinetic_energy_of(p), p.watched_energy ? potential_energy_of(p) : 0};
+    return Energies{0, TellsKinetic ? 0 : kinetic_energy_of(p),
+                    p.watched_energy ? potential_energy_of(p) : 0};
   };
   auto const energy_now = [](Parts& p, Energies const& energies) {
     return p.watched_energy ? p.watched_energy(p, energies) : WatchedEnergy{energies, 0};
@@ -85,9 +86,11 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   auto changed = change();
   auto& next = changed.parts;
   energies.strain = changed.strain_energy_before;
+  if (TellsKinetic) energies.kinetic = *changed.kinetic_energy_before;
   auto const before = energy_now(parts, energies);
   energies = energies_but_strain(next);
   energies.strain = changed.strain_energy;
+  if (TellsKinetic) energies.kinetic = *changed.kinetic_energy;
   auto const after = energy_now(next, energies);
   auto const added_to = [](double from, double to) { return zero_if_not_finite(to - from); };
   LedgerEntry<dim> const entry{next.state.time,

@@ -23,6 +23,7 @@
 //   array<U>(count)            zeroed; throws Error when memory runs out. `zeros<U>(backend, count)`
 //                              and `upload(backend, vector)` below call it.
 //   array<U>(span<U const>)    with values, which are read before it returns; for upload, may be left out
+//   unset_array<U>(count)      not set, for unset<U>(backend, count) below; may be left out
 //   .data() .size() .upload(span<U const>) .download(span<U>)
 //                              upload and download come after what was asked of the backend before,
 //                              and wait for that
@@ -44,6 +45,7 @@
 //                              These three read and write the backend's memory, and wait for nothing. Of sorted keys
 //                              select finds the first of each, where f(i) tells whether keys[i] differs from
 //                              keys[i - 1], and scan of the same f numbers them
+//   in_turn(steps...)          several of for_each, scan and sort one after the other; may be left out: see backend/in_turn.hpp
 //   for_each_task(n, f) threads()   of backends that have threads on the host, not asked of others: f(k) there,
 //                              in no order, each call worth a thread (backend/host_tasks.hpp)
 //   record(f)                  a Recording; its replay(n) does n times what f() does. f calls verbs
@@ -77,6 +79,9 @@
 //                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`
 //   sum_elements<Groups>(elements, kernel, fields...)
 //                              double; the sum of kernel's S
+//   add_sum_elements<Groups>(elements, kernel, to, fields...)
+//                              the same, added to *to in the backend's memory; waits for nothing. May be left out: see
+//                              backend/element_sums.hpp
 //   visit<Groups>(elements, visitor, counters, fields...)
 //                              values = visitor.evaluate(GroupNumber<g>{}, v...), a Vector<S, N>;
 //                              then visitor.finish(GroupNumber<g>{}, element, values of that
@@ -239,6 +244,17 @@ concept Backend =
 template <class U, Backend B>
 auto zeros(B const& backend, std::size_t count) {
   return backend.template array<U>(count);
+}
+/// An array of which all values are written before any is read.
+template <class U, Backend B>
+auto unset(B const& backend, std::size_t count) {
+  using Array = typename B::template Array<U>;
+  if constexpr (requires { backend.template unset_array<U>(count); })
+    return backend.template unset_array<U>(count);
+  else if constexpr (std::same_as<Array, HostArray<U>>)
+    return Array::unset(count);
+  else
+    return zeros<U>(backend, count);
 }
 /// The array with the values of a vector.
 template <Backend B, class U>

@@ -128,8 +128,8 @@ auto element_list(B const& backend, Elements const& table, Tag const* tags, Inde
                   Index count, int groups, Index nodes) {
   constexpr int n = Elements::nodes_per_element, width = row_width<ElementListOn<B, n>>;
   static_assert(width <= row_width<Elements>);
-  auto rows = zeros<Index>(backend, static_cast<std::size_t>(count) * width);
-  auto own_tags = zeros<Tag>(backend, static_cast<std::size_t>(count));
+  auto rows = unset<Index>(backend, static_cast<std::size_t>(count) * width);
+  auto own_tags = unset<Tag>(backend, static_cast<std::size_t>(count));
   backend.for_each(count, detail::TakeElements<width>{table.rows_of_nodes(), tags, places,
                                                       rows.data(), own_tags.data()});
   return element_list<n>(backend, std::move(rows), groups, std::move(own_tags), nodes);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -29,11 +30,15 @@ class HostArray {
   explicit HostArray(std::span<U const> values) : HostArray(unset(values.size())) {
     upload(values);
   }
-  /// Of values that are still to be written: they are not set. Throws Error when memory runs out.
+  /// Of values that are still to be written: they are not set, and in a program with assertions no value that is of use.
+  /// Throws Error when memory runs out.
   static HostArray unset(std::size_t count) {
     HostArray array;
     array.bytes_ = detail::HostBytes(detail::array_bytes<U>(count));
     array.size_ = count;
+#if !defined(NDEBUG)
+    if (count > 0) std::memset(array.bytes_.data(), 0xa5, count * sizeof(U));
+#endif
     return array;
   }
   HostArray(HostArray&& other) noexcept

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/atomic.hpp>
-#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/compaction_view.hpp>
@@ -87,12 +87,12 @@ struct ClearListed {
   PLIANT_HOST_DEVICE void operator()(Index k) const { field.set(rows[k], Vector<T, Dim>::zero()); }
 };
 
-/// An array of `count` values of which the first are those of another one.
+/// An array of `count` values of which the first are those of another one, and the others zero.
 template <class B, class Array>
 Array extended(B const& backend, Array const& from, std::size_t count) {
-  using U = ValueOf<Array>;
-  auto longer = zeros<U>(backend, count);
-  copy_values<B, U>(backend, from.data(), longer.data(), std::min(count, from.size()));
+  ArrayCopies<B> copies(backend);
+  auto longer = copies.template extended<ValueOf<Array>>(from, count);
+  copies.make();
   return longer;
 }
 

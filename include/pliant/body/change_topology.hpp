@@ -127,8 +127,9 @@ void put_in_force(Parts& parts, Parts next) noexcept {
 template <class Parts>
 struct ChangedTopology {
   Parts parts;
-  Point<Parts::dim> taken;                         // N s
-  double strain_energy_before, strain_energy = 0;  // J
+  Point<Parts::dim> taken;                                          // N s
+  double strain_energy_before, strain_energy = 0;                   // J
+  std::optional<double> kinetic_energy_before{}, kinetic_energy{};  // J, where it tells
 };
 
 /// Takes all fields over to another topology, for put_in_force. give_back(touched elements, layout, held, v before, v) may

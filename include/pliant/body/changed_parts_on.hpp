@@ -6,10 +6,13 @@
 #include <tuple>
 #include <utility>
 
+#include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/elements_of_rows.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/body/change_on_backend.hpp>
 #include <pliant/body/change_passes.hpp>
 #include <pliant/body/element_rows_on.hpp>
+#include <pliant/body/energy_sums_on.hpp>
 #include <pliant/body/fill_new_nodes_on.hpp>
 #include <pliant/body/gone_nodes_on.hpp>
 #include <pliant/topology/refined_elements.hpp>
@@ -27,70 +30,78 @@ class ChangedPartsOn {
   using E = typename Table::element;
   using On = TopologyOn<M, B>;
   using Elements = typename B::template Elements<E::nodes>;
+  using Copies = ArrayCopies<B>;
+  using Energies = EnergySumsOn<Parts>;
   static constexpr int dim = Parts::dim;
   template <class U>
   using Array = typename Parts::template Array<U>;
 
  public:
-  ChangedPartsOn(Parts& parts, On& on) : parts_(parts), on_(on), backend_(parts.backend) {}
+  ChangedPartsOn(Parts& parts, On& on)
+      : parts_(parts), on_(on), backend_(parts.backend), energies_(backend_) {}
 
   /// Linear elements keep their momentum: what their children interpolate is what they did, and lumped masses are the integrals
   /// of shape functions.
   ChangedTopology<Parts> refined(typename TreeOn<B>::Refined const& done) {
-    begin();
-    auto cells = std::make_shared<Array<Index>>(zeros<Index>(backend_, at(done.leaves)));
+    synchronize_velocities(parts_);
+    energies_.count_not_finite(parts_);
+    energies_.add_kinetic(Energies::before, parts_);
+    auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
     backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
     follow_on_host(std::move(cells), false);
     on_.order.refine(on_.tree, done);
     on_.rows.refine(on_.tree, on_.order, done);
     rows_ = on_.rows.count();
-    on_.points = extended(backend_, on_.points, values());
-    auto const filled = [&](auto field) {
-      fill_new_nodes<E>(backend_, on_.tree, done, on_.rows.of_node(), node_field<dim>(field));
-      return field;
+    Copies copies(backend_);
+    auto points = copies.template extended<double>(on_.points, values());
+    auto u = copies.template extended<T>(parts_.state.u, values());
+    auto v = copies.template extended<T>(parts_.state.v, values());
+    auto load = extended_load(copies);
+    auto layout = new_layout(
+        copies, [&] { return on_.hanging.rows_after(on_.tree, done, on_.rows.of_node()); });
+    on_.points = std::move(points);
+    auto const fill = [&](auto field) {
+      return filling_new_nodes<E>(on_.tree, done, on_.rows.of_node(), field);
     };
-    on_.points = filled(std::move(on_.points));
-    auto u = filled(extended(backend_, parts_.state.u, values()));
-    auto v = filled(extended(backend_, parts_.state.v, values()));
-    auto layout = new_layout();
-    backend_.for_each(done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
-                                                          on_.rows.of_node(),
-                                                          {on_.points.data()},
-                                                          layout.middle,
-                                                          node_field<dim>(layout.rest)});
+    in_turn(backend_, fill(on_.point_field()), fill(node_field<dim>(u)), fill(node_field<dim>(v)),
+            LoopStep{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
+                                                         on_.rows.of_node(),
+                                                         {on_.points.data()},
+                                                         layout.middle,
+                                                         node_field<dim>(layout.rest)}});
     on_.held.refine(backend_, on_.tree, done, on_.rows.of_node(), rows_, layout.held.data());
     on_.masses.extend(rows_);
-    auto const families = refined_elements<E>(on_.tree, done, on_.rows.of_node(), at_rest());
-    on_.masses.take_gone(families);
-    on_.masses.add_come(families);
+    on_.masses.exchange(refined_elements<E>(on_.tree, done, on_.rows.of_node(), at_rest()));
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
-    RefinedPlaces<B> const places(backend_, on_.tree.view(), on_.order, done.leaves);
-    double const before = strain_energy(parts_.layout, std::get<0>(parts_.state.elements).tags,
-                                        places.go, places.go_count, parts_.state.u);
-    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), {}, before);
-    if (parts_.state.load.size() > 0)
-      changed.parts.state.load = extended(backend_, parts_.state.load, values());
+    RefinedPlaces<B> const places(backend_, on_.order, done);
+    add_strain(Energies::before, parts_, places.go, places.go_count);
+    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), {});
+    changed.parts.state.load = std::move(load);
     finish(changed.parts);
-    changed.strain_energy =
-        strain_energy(changed.parts.layout, std::get<0>(changed.parts.state.elements).tags,
-                      places.come, places.come_count, changed.parts.state.u);
+    add_strain(Energies::after, changed.parts, places.come, places.come_count);
+    read_energies(changed);
     return changed;
   }
 
   /// Energies are of all elements: nodes that begin to hang displace some that stay.
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
-    begin();
+    synchronize_velocities(parts_);
+    check_fields();
     double const speed = largest_speed();
-    double const before = strain_energy(parts_.layout, parts_.state.u);
-    auto parents = std::make_shared<Array<Index>>(zeros<Index>(backend_, at(done.merged)));
+    energies_.add_kinetic(Energies::before, parts_);
+    add_strain(Energies::before, parts_);
+    auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
     follow_on_host(std::move(parents), true);
     on_.order.coarsen(on_.tree, done);
     on_.rows.coarsen(done);
     rows_ = on_.rows.count();
-    auto u = extended(backend_, parts_.state.u, values());
-    auto v = extended(backend_, parts_.state.v, values());
-    auto layout = new_layout();
+    Copies copies(backend_);
+    auto u = copies.template extended<T>(parts_.state.u, values());
+    auto v = copies.template extended<T>(parts_.state.v, values());
+    auto load = extended_load(copies);
+    auto layout =
+        new_layout(copies, [&] { return on_.hanging.rows(on_.tree, on_.rows.of_node()); });
     on_.held.hold(backend_, on_.tree, on_.rows.of_node(), rows_, layout.held.data());
     MergedElements<E> const families{on_.order.merged_families(), on_.order.merged_count(),
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
@@ -107,21 +118,19 @@ class ChangedPartsOn {
         on_.momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
                                kilograms_->data(), layout.held.data(), node_field<dim>(v));
     auto const clear = [&](Array<T>& field) {
-      backend_.for_each(on_.rows.freed_count(),
-                        ClearListed<T, dim>{on_.rows.freed(), node_field<dim>(field)});
+      return LoopStep{on_.rows.freed_count(),
+                      ClearListed<T, dim>{on_.rows.freed(), node_field<dim>(field)}};
     };
-    for (auto* field : {&u, &v, &layout.rest}) clear(*field);
-    Array<T> load;
-    if (parts_.state.load.size() > 0) {
-      load = extended(backend_, parts_.state.load, values());
+    in_turn(backend_, clear(u), clear(v), clear(layout.rest));
+    if (load.size() > 0)
       InterpolationOn<B>(backend_,
                          on_.gone.rows(families, on_.rows.freed(), on_.rows.freed_count(), rows_))
           .apply_transpose(backend_, node_field<dim>(load));
-    }
-    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), taken, before);
+    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), taken);
     changed.parts.state.load = std::move(load);
     finish(changed.parts);
-    changed.strain_energy = strain_energy(changed.parts.layout, changed.parts.state.u);
+    add_strain(Energies::after, changed.parts);
+    read_energies(changed);
     return changed;
   }
 
@@ -132,8 +141,7 @@ class ChangedPartsOn {
 
   static RowSize<T, dim> sizes_of(Array<T> const& field) { return {node_field<dim>(field)}; }
   /// Throws Error where a field is not finite.
-  void begin() {
-    synchronize_velocities(parts_);
+  void check_fields() {
     auto const& layout = parts_.layout;
     auto const& state = parts_.state;
     LargerRowSize<T, dim> const both{sizes_of(state.u), sizes_of(state.v)};
@@ -150,20 +158,21 @@ class ChangedPartsOn {
     prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
     on_.prescribed = prescribed_;
   }
-  template <class U>
-  Array<U> copy_of(U const* from) {
-    auto copy = zeros<U>(backend_, at(rows_));
-    copy_values<B, U>(backend_, from, copy.data(), at(rows_));
-    return copy;
+  /// Of nodes; empty where there is none.
+  Array<T> extended_load(Copies& copies) {
+    if (parts_.state.load.size() == 0) return {};
+    return copies.template extended<T>(parts_.state.load, values());
   }
 
-  /// With all but masses, which are left zero; what it takes of rows is that of before.
-  Layout new_layout() {
-    auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_.rows.lists());
+  /// With all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hanging(): rows of
+  /// hanging nodes.
+  template <class Hanging>
+  Layout new_layout(Copies& copies, Hanging const& hanging) {
+    auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_.rows.lists(copies));
     WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
         [snapshot] { return std::make_shared<NodeRows>(snapshot->download_all()); });
     own_masses_ = std::make_shared<Array<ExactSum>>();
-    kilograms_ = std::make_shared<Array<double>>(zeros<double>(backend_, at(rows_)));
+    kilograms_ = std::make_shared<Array<double>>(unset<double>(backend_, at(rows_)));
     auto const listed = [node_rows]<class U>(std::shared_ptr<Array<U>> by_row) {
       return WhenAsked<SharedList<U>>::by([node_rows, by_row = std::move(by_row)] {
         return std::make_shared<SharedList<U>>(by_user(*node_rows, download<U>(*by_row)));
@@ -172,17 +181,17 @@ class ChangedPartsOn {
     auto const& before = parts_.layout;
     Layout layout(before, rows_,
                   NodeLists<B>(on_.rows.nodes(), node_rows, listed(own_masses_), listed(kilograms_),
-                               copy_of(on_.rows.node())));
+                               copies.copy_of(on_.rows.node(), at(rows_), at(rows_))));
+    layout.rest = copies.template extended<T>(before.rest, values());
+    layout.held = copies.template extended<DirectionMask>(before.held, at(rows_));
+    copies.make();
     auto blocks = blocks_after_refinement(on_.order, before.first_of_block[0]);
     make_table(std::get<0>(layout.tables), blocks);
     layout.first_of_block[0] = std::move(blocks.first);
-    layout.rest = extended(backend_, before.rest, values());
     auto const scratch = std::get<0>(layout.tables).elements.scratch_nodes();
     layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
-    layout.held = extended(backend_, before.held, at(rows_));
-    layout.mass = zeros<T>(backend_, at(rows_));
-    layout.interpolation =
-        InterpolationOn<B>(backend_, on_.hanging.rows(on_.tree, on_.rows.of_node()), false);
+    layout.mass = unset<T>(backend_, at(rows_));
+    layout.interpolation = InterpolationOn<B>(backend_, hanging(), false, rows_);
     return layout;
   }
   void make_table(Table& table, ElementBlocks const& blocks) {
@@ -208,12 +217,14 @@ class ChangedPartsOn {
   void read_masses(Layout& layout, MassWeightsOn<B> const& weights) {
     on_.masses.read(weights, kilograms_->data());
     on_.masses.round(kilograms_->data(), layout.mass.data());
-    *own_masses_ = copy_of(on_.masses.own());
+    Copies copies(backend_);
+    *own_masses_ = copies.copy_of(on_.masses.own(), at(rows_), at(rows_));
+    copies.make();
   }
-  ChangedTopology<Parts> with_fields(Layout layout, Array<T> u, Array<T> v, Point<dim> const& taken,
-                                     double energy_before) {
+  ChangedTopology<Parts> with_fields(Layout layout, Array<T> u, Array<T> v,
+                                     Point<dim> const& taken) {
     ChangedTopology<Parts> changed{parts_on(parts_, std::move(layout), topology_, prescribed_),
-                                   taken, energy_before};
+                                   taken, 0};
     auto& next = changed.parts;
     next.state.u = std::move(u);
     next.state.v = std::move(v);
@@ -232,32 +243,36 @@ class ChangedPartsOn {
     state.implicit = {};
   }
 
-  /// Of all elements, J.
-  double strain_energy(Layout const& layout, Array<T> const& u) {
-    return strain_energy_of(std::get<0>(layout.tables).elements, layout, u);
+  using Time = typename Energies::Time;
+  /// The strain energy of all elements.
+  void add_strain(Time time, Parts const& of) {
+    auto const& table = std::get<0>(of.layout.tables);
+    energies_.add_strain(time, table, table.elements, of.layout, of.state.u);
   }
   /// Of elements at some places.
-  double strain_energy(Layout const& layout, Array<Tag> const& tags, Array<Index> const& places,
-                       Index count, Array<T> const& u) {
-    return strain_energy_of(element_list(backend_, std::get<0>(layout.tables).elements, tags.data(),
-                                         places.data(), count, Table::groups, layout.rows),
-                            layout, u);
+  void add_strain(Time time, Parts const& of, Array<Index> const& places, Index count) {
+    auto const& table = std::get<0>(of.layout.tables);
+    energies_.add_strain(
+        time, table,
+        element_list(backend_, table.elements, std::get<0>(of.state.elements).tags.data(),
+                     places.data(), count, Table::groups, of.layout.rows),
+        of.layout, of.state.u);
   }
-  template <class List>
-  double strain_energy_of(List const& elements, Layout const& layout, Array<T> const& u) {
-    auto const& table = std::get<0>(layout.tables);
-    double sum = 0;
-    table.with_geometry([&](auto geometry) {
-      sum = backend_.template sum_elements<Table::groups>(
-          elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
-          node_field<dim>(layout.rest), node_field<dim>(u));
-    });
-    return sum;
+  /// Waits for what was asked of the backend. Throws Error where a field was not finite.
+  void read_energies(ChangedTopology<Parts>& changed) {
+    energies_.add_kinetic(Energies::after, changed.parts);
+    auto const sums = energies_.read();
+    if (sums.not_finite > 0) check_fields();
+    changed.strain_energy_before = sums.strain[Energies::before];
+    changed.strain_energy = sums.strain[Energies::after];
+    changed.kinetic_energy_before = sums.kinetic[Energies::before];
+    changed.kinetic_energy = sums.kinetic[Energies::after];
   }
 
   Parts& parts_;
   On& on_;
   B const& backend_;
+  Energies energies_;
   Index rows_ = 0;
   WhenAsked<Topology<M>> topology_;
   WhenAsked<Prescribed<dim>> prescribed_;

@@ -57,6 +57,20 @@ struct IsGoneLeaf {
   }
 };
 
+/// Where the children of divided leaves are, and where these were. A call for each.
+struct PlacesOfDivided {
+  LeafParts const* parts;
+  Index const* places;  // by cell
+  Index const* from;    // by the place: that before
+  Index *come, *go;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const& own = parts[r];
+    Index const before = own.cell - parts[0].cell;
+    for (Index k = 0; k < own.cells; ++k) come[before + k] = places[own.cell + k];
+    go[r] = from[places[own.cell]];
+  }
+};
+
 /// to[i] = from[places[i]] in each of several columns.
 template <class U>
 struct InheritValues {
@@ -127,7 +141,7 @@ typename B::template Array<Index> element_rows(B const& backend, TreeView const&
                                                LeafOrderOn<B> const& order, Index const* of_node,
                                                ElementRows const& before = {nullptr, Width}) {
   static_assert(Width >= E::nodes);
-  auto rows = zeros<Index>(backend, static_cast<std::size_t>(order.count()) * Width);
+  auto rows = unset<Index>(backend, static_cast<std::size_t>(order.count()) * Width);
   backend.for_each(order.count(),
                    detail::PutElementRows<E, Width>{tree, order.leaves(), order.before(),
                                                     order.from(), before, of_node, rows.data()});
@@ -153,7 +167,7 @@ template <class U, Backend B>
 typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> const& order,
                                                U const* before, Index columns = 1,
                                                U const* volumes = nullptr) {
-  auto values = zeros<U>(
+  auto values = unset<U>(
       backend, static_cast<std::size_t>(order.count()) * static_cast<std::size_t>(columns));
   backend.for_each(order.count(),
                    detail::InheritValues<U>{order.from(), before, values.data(),
@@ -164,27 +178,37 @@ typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> 
   return values;
 }
 
-/// The places of the elements that come in a change, and of those that go, before it; ascending, in a backend's memory.
+/// The places of the elements that come in a change, and of those that go, before it, in a backend's memory.
 template <Backend B>
 struct RefinedPlaces {
   typename B::template Array<Index> come, go;
   Index come_count = 0, go_count = 0;
 
-  /// After a refinement; `divided`: how many leaves were. Waits for nothing.
-  RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order, Index divided)
-      : come_count(order.count() - order.count_before() + divided), go_count(divided) {
-    come = zeros<Index>(backend, static_cast<std::size_t>(come_count) + 1);
-    go = zeros<Index>(backend, static_cast<std::size_t>(go_count) + 1);
+  /// After a refinement, by the leaves that it divided. Waits for nothing.
+  RefinedPlaces(B const& backend, LeafOrderOn<B> const& order,
+                typename TreeOn<B>::Refined const& refined)
+      : RefinedPlaces(backend, order.count() - order.count_before() + refined.leaves,
+                      refined.leaves) {
+    backend.for_each(go_count, detail::PlacesOfDivided{refined.parts, order.places(), order.from(),
+                                                       come.data(), go.data()});
+  }
+  /// After a coarsening, ascending. Waits for nothing.
+  RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order)
+      : RefinedPlaces(backend, order.merged_count(),
+                      order.count_before() - order.count() + order.merged_count()) {
     // How many there are is behind them.
     backend.select(order.count(), detail::IsNewLeaf{order.leaves(), order.before(), order.from()},
                    come.data(), come.data() + come_count);
     backend.select(order.count_before(), detail::IsGoneLeaf{tree, order.before()}, go.data(),
                    go.data() + go_count);
   }
-  /// After a coarsening. Waits for nothing.
-  RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order)
-      : RefinedPlaces(backend, tree, order,
-                      order.count_before() - order.count() + order.merged_count()) {}
+
+ private:
+  RefinedPlaces(B const& backend, Index that_come, Index that_go)
+      : come(unset<Index>(backend, static_cast<std::size_t>(that_come) + 1)),
+        go(unset<Index>(backend, static_cast<std::size_t>(that_go) + 1)),
+        come_count(that_come),
+        go_count(that_go) {}
 };
 
 }  // namespace pliant

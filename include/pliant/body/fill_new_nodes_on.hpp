@@ -4,6 +4,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/field.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/math/uncontracted.hpp>
 #include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/tree_on.hpp>
@@ -44,15 +45,14 @@ struct FillNewNodes {
 
 }  // namespace detail
 
-/// Gives the nodes that a refinement made the values of a field where they lie in the cells that were refined. All cells of
-/// the tree are elements of one type. `of_node`: rows by the user's numbers, in the backend's memory, those of new nodes with
-/// them.
+/// A step (see in_turn) that gives the nodes that a refinement made the values of a field where they lie in the cells that were
+/// refined. All cells of the tree are elements of one type. `of_node`: rows by the user's numbers, in the backend's memory, those
+/// of new nodes with them.
 template <Element E, Backend B, class T, int Dim>
-void fill_new_nodes(B const& backend, TreeOn<B> const& tree,
-                    typename TreeOn<B>::Refined const& refined, Index const* of_node,
-                    NodeField<T, Dim> field) {
-  backend.for_each(refined.new_nodes,
-                   detail::FillNewNodes<E, T, Dim>{tree.view(), refined.nodes, of_node, field});
+auto filling_new_nodes(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
+                       Index const* of_node, NodeField<T, Dim> field) {
+  return detail::LoopStep{refined.new_nodes, detail::FillNewNodes<E, T, Dim>{
+                                                 tree.view(), refined.nodes, of_node, field}};
 }
 
 }  // namespace pliant

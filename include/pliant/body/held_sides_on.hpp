@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/body/held_passes.hpp>
 #include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/tree_on.hpp>
@@ -91,12 +93,18 @@ class HeldSidesOn {
     detail::grow_keeping(backend, named_, at(rows_), at(rows));
     rows_ = rows;
     detail::SidesView<Dim> const sides{tree.view()};
-    backend.for_each(refined.leaves,
-                     detail::InheritConditions<Dim>{sides, refined.cells, bits_.data()});
-    for (int k = 0; k < Dim; ++k)
-      backend.for_each(refined.leaves,
-                       detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
-                                              direction(k), of_node, held});
+    auto const hold = [&](std::size_t k) {
+      return detail::LoopStep{
+          refined.leaves, detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
+                                                 direction(static_cast<int>(k)), of_node, held}};
+    };
+    [&]<std::size_t... K>(std::index_sequence<K...>) {
+      detail::in_turn(
+          backend,
+          detail::LoopStep{refined.leaves,
+                           detail::InheritConditions<Dim>{sides, refined.cells, bits_.data()}},
+          hold(K)...);
+    }(std::make_index_sequence<Dim>());
   }
 
   /// Follows a coarsening, and whether it may be: not where a node would go that a condition names, or a side be whole again of

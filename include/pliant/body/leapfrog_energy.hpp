@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <pliant/backend/element_sums.hpp>
 #include <pliant/body/velocities.hpp>
 
 namespace pliant {
@@ -26,12 +27,6 @@ struct AccelerationTerm {
     }
     return sum / 8;
   }
-};
-
-struct AddValue {
-  double* to;
-  double value;
-  PLIANT_HOST_DEVICE void operator()(Index) const { *to += value; }
 };
 
 template <class Parts>

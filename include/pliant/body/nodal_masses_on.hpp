@@ -7,6 +7,7 @@
 #include <pliant/backend/atomic.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/body/exact_sum.hpp>
 #include <pliant/constraint/mass_weights_on.hpp>
 #include <pliant/error.hpp>
@@ -99,18 +100,22 @@ class NodalMassesOn {
   /// What nodes have of elements that go in a change goes: of nodes that go, all.
   template <detail::ChangedFamilies<E> Families>
   void take_gone(Families const& families) {
-    add<false>(families, true);
+    detail::in_turn(backend_, shares<false>(families, true));
   }
   /// What they have of those that come comes.
   template <detail::ChangedFamilies<E> Families>
   void add_come(Families const& families) {
-    add<true>(families, false);
+    detail::in_turn(backend_, shares<true>(families, false));
+  }
+  /// Both.
+  template <detail::ChangedFamilies<E> Families>
+  void exchange(Families const& families) {
+    detail::in_turn(backend_, shares<false>(families, true), shares<true>(families, false));
   }
   /// Undoes both, to the bit.
   template <detail::ChangedFamilies<E> Families>
   void take_back(Families const& families) {
-    add<true>(families, true);
-    add<false>(families, false);
+    detail::in_turn(backend_, shares<true>(families, true), shares<false>(families, false));
   }
   /// Masses in kg by row, of which slaves have handed theirs to their masters. `kilograms`: (rows).
   void read(MassWeightsOn<B> const& slaves, double* kilograms) const {
@@ -138,12 +143,12 @@ class NodalMassesOn {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   template <bool Come, class Families>
-  void add(Families const& families, bool takes) {
+  auto shares(Families const& families, bool takes) {
     using Members = detail::MembersOf<Families, Come>;
     Members const members{families};
-    backend_.for_each(members.places(),
-                      detail::AddShares<E, Members>{members, takes, density_, unit_, own_.data(),
-                                                    refused_.data()});
+    return detail::LoopStep{members.places(),
+                            detail::AddShares<E, Members>{members, takes, density_, unit_,
+                                                          own_.data(), refused_.data()}};
   }
 
   B backend_;

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/body/node_row_passes.hpp>
@@ -55,11 +57,19 @@ class NodeRowsOn {
       return {download<Index>(of_node), download<Index>(node), download<Index>(region)};
     }
   };
-  [[nodiscard]] Lists lists() const {
-    return {copy_of(of_node_, nodes_), copy_of(node_, count()), copy_of(region_, pages_)};
+  [[nodiscard]] Lists lists(detail::ArrayCopies<B>& copies) const {
+    auto const all = [&](Array<Index> const& array, Index count) {
+      return copies.copy_of(array.data(), at(count), at(count));
+    };
+    return {all(of_node_, nodes_), all(node_, count()), all(region_, pages_)};
   }
   /// A copy on the host.
-  [[nodiscard]] NodeRows download_all() const { return lists().download_all(); }
+  [[nodiscard]] NodeRows download_all() const {
+    detail::ArrayCopies<B> copies(backend_);
+    auto const all = lists(copies);
+    copies.make();
+    return all.download_all();
+  }
 
   /// Gives rows to the nodes that a refinement made; `order`: of the leaves after it.
   void refine(TreeOn<B> const& tree, LeafOrderOn<B> const& order,
@@ -70,10 +80,6 @@ class NodeRowsOn {
     need(keys_, n);
     need(order_, n);
     need(found_, n);
-    backend_.for_each(n, detail::KeysOfNodes{tree.view(), refined.nodes, order.places(),
-                                             keys_.data(), order_.data()});
-    backend_.sort(n, keys_.data(), order_.data(), detail::key_bits(tree.leaves()));
-
     need(partial_, pages_);
     need(free_pages_, pages_);
     need(counters_, 2);
@@ -85,11 +91,6 @@ class NodeRowsOn {
     auto const [free, partial] = counted<2>();
     need(page_keys_, partial);
     need(free_before_, partial + 1);
-    backend_.for_each(partial,
-                      detail::KeysOfPages{region_.data(), partial_.data(), page_keys_.data()});
-    backend_.sort(partial, page_keys_.data(), partial_.data(), 32);
-    backend_.scan(partial, detail::FreeRowsIn{node_.data(), partial_.data()}, free_before_.data());
-
     Index const regions = (order.blocks() + blocks_of_region - 1) / blocks_of_region;
     detail::NewRows const rows{n,
                                partial,
@@ -100,20 +101,30 @@ class NodeRowsOn {
                                order.blocks(),
                                blocks_of_region};
     need(before_, regions + 1);
-    backend_.scan(regions, detail::PagesNeeded{rows}, before_.data());
-    backend_.for_each(1, detail::CopyValue<Index>{before_.data() + regions, counters_.data()});
+    using detail::LoopStep, detail::ScanStep, detail::SortStep;
+    detail::in_turn(
+        backend_,
+        LoopStep{n, detail::KeysOfNodes{tree.view(), refined.nodes, order.places(), keys_.data(),
+                                        order_.data()}},
+        SortStep{n, keys_.data(), order_.data(), detail::key_bits(tree.leaves())},
+        LoopStep{partial, detail::KeysOfPages{region_.data(), partial_.data(), page_keys_.data()}},
+        SortStep{partial, page_keys_.data(), partial_.data(), detail::key_bits(regions)},
+        ScanStep{partial, detail::FreeRowsIn{node_.data(), partial_.data()}, free_before_.data()},
+        ScanStep{regions, detail::PagesNeeded{rows}, before_.data()},
+        LoopStep{1, detail::CopyValue<Index>{before_.data() + regions, counters_.data()}});
     Index const more = counted<1>()[0];
     Index const in_all = std::max(pages_, pages_ + more - free);
     detail::grow_keeping(backend_, node_, at(count()), at(in_all * NodeRows::page));
     detail::grow_keeping(backend_, region_, at(pages_), at(in_all));
     detail::grow_keeping(backend_, of_node_, at(nodes_), at(nodes_ + n));
     detail::PageAt const page_at{free_pages_.data(), free, pages_};
-    backend_.for_each(
-        more, detail::TakePages{page_at, before_.data(), regions, region_.data(), node_.data()});
-    backend_.for_each(n, detail::FindRows{rows, node_.data(), partial_.data(), page_at,
-                                          before_.data(), found_.data()});
-    backend_.for_each(n, detail::TakeFoundRows{found_.data(), order_.data(), refined.nodes,
-                                               of_node_.data(), node_.data()});
+    detail::in_turn(backend_,
+                    LoopStep{more, detail::TakePages{page_at, before_.data(), regions,
+                                                     region_.data(), node_.data()}},
+                    LoopStep{n, detail::FindRows{rows, node_.data(), partial_.data(), page_at,
+                                                 before_.data(), found_.data()}},
+                    LoopStep{n, detail::TakeFoundRows{found_.data(), order_.data(), refined.nodes,
+                                                      of_node_.data(), node_.data()}});
     pages_ = in_all;
     nodes_ += n;
   }
@@ -141,11 +152,6 @@ class NodeRowsOn {
   static constexpr Index blocks_of_region = 16;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  [[nodiscard]] Array<Index> copy_of(Array<Index> const& array, Index count) const {
-    auto copy = zeros<Index>(backend_, at(count));
-    detail::copy_values(backend_, array.data(), copy.data(), at(count));
-    return copy;
-  }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
   template <std::size_t N>
   std::array<Index, N> counted() {

@@ -70,7 +70,7 @@ struct TopologyOn<Mesh<E>, B> {
               tree.sizes().cells),
         rows(parts.backend, parts.layout.node_rows()),
         numbers(parts.backend, tree, order),
-        hanging(parts.backend),
+        hanging(parts.backend, !LinearSimplex<E>),
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),
         gone(parts.backend) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -79,11 +80,13 @@ class InterpolationOn {
     to_slaves_ = rows_by_slave(backend, host.slaves(), number);
     to_masters_ = detail::transposed(backend, to_slaves_);
   }
-  /// Of slaves in the backend's memory, each once, whose masters are free. `has_negative`: whether weights may be negative.
-  InterpolationOn(B const& backend, RowsOn<B> slaves, bool has_negative = true)
+  /// Of slaves in the backend's memory, each once, whose masters are free. `has_negative`: whether weights may be negative;
+  /// `nodes`: a number that those of masters are below.
+  InterpolationOn(B const& backend, RowsOn<B> slaves, bool has_negative = true,
+                  Index nodes = std::numeric_limits<Index>::max())
       : to_slaves_(std::move(slaves)) {
     if (empty()) return;
-    to_masters_ = detail::transposed(backend, to_slaves_);
+    to_masters_ = detail::transposed(backend, to_slaves_, nodes);
     if (has_negative)
       magnitude_ = backend.maximum(
           to_slaves_.count,

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/constraint/interpolation_on.hpp>
 #include <pliant/math/uncontracted.hpp>
 
@@ -120,11 +121,14 @@ class MassWeightsOn {
   void hand(Values const& values) const {
     auto const& rows = interpolation_.masters();
     if (interpolation_.empty()) return;
-    backend_.for_each(rows.count, detail::TakeFromSlaves<T, C, Values>{
-                                      weight(), rows.node.data(), rows.first.data(),
-                                      rows.other.data(), rows.weight.data(), values});
     auto const& slaves = interpolation_.slaves();
-    backend_.for_each(slaves.count, detail::ClearSlave<C, Values>{slaves.node.data(), values});
+    detail::in_turn(
+        backend_,
+        detail::LoopStep{
+            rows.count,
+            detail::TakeFromSlaves<T, C, Values>{weight(), rows.node.data(), rows.first.data(),
+                                                 rows.other.data(), rows.weight.data(), values}},
+        detail::LoopStep{slaves.count, detail::ClearSlave<C, Values>{slaves.node.data(), values}});
   }
 
  private:

@@ -6,6 +6,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/in_turn.hpp>
 
 namespace pliant {
 
@@ -83,25 +84,27 @@ struct MagnitudeOfRow {
   }
 };
 
-/// The same entries by the other node, ascending; those of one in the order in which they were. No row may be empty.
+/// The same entries by the other node, ascending, which are below `nodes`; those of one in the order in which they were. No row
+/// may be empty.
 template <Backend B>
-RowsOn<B> transposed(B const& backend, RowsOn<B> const& rows) {
+RowsOn<B> transposed(B const& backend, RowsOn<B> const& rows,
+                     Index nodes = std::numeric_limits<Index>::max()) {
   using T = typename B::scalar;
   auto const entries = rows.other.size();
   auto const n = static_cast<Index>(entries);
-  auto keys = zeros<std::uint64_t>(backend, entries);
-  auto order = zeros<Index>(backend, entries), row = zeros<Index>(backend, entries + 1);
-  backend.for_each(n, KeysOfEntries{rows.other.data(), keys.data(), order.data()});
-  backend.sort(n, keys.data(), order.data(), std::numeric_limits<Index>::digits);
-  backend.scan(n, IsFirstOfKey{keys.data()}, row.data());
-  RowsOn<B> by_other{0, zeros<Index>(backend, entries), zeros<Index>(backend, entries + 1),
-                     zeros<Index>(backend, entries), zeros<T>(backend, entries)};
-  backend.for_each(
-      n, TransposeRows<T>{n, keys.data(), order.data(), row.data(), rows.count, rows.node.data(),
-                          rows.first.data(), rows.weight.data(), by_other.node.data(),
-                          by_other.first.data(), by_other.other.data(), by_other.weight.data()});
-  auto count = zeros<Index>(backend, 1);
-  backend.for_each(1, CopyValue<Index>{row.data() + entries, count.data()});
+  auto keys = unset<std::uint64_t>(backend, entries);
+  auto order = unset<Index>(backend, entries), row = unset<Index>(backend, entries + 1),
+       count = unset<Index>(backend, 1);
+  RowsOn<B> by_other{0, unset<Index>(backend, entries), unset<Index>(backend, entries + 1),
+                     unset<Index>(backend, entries), unset<T>(backend, entries)};
+  in_turn(backend, LoopStep{n, KeysOfEntries{rows.other.data(), keys.data(), order.data()}},
+          SortStep{n, keys.data(), order.data(), key_bits(nodes)},
+          ScanStep{n, IsFirstOfKey{keys.data()}, row.data()},
+          LoopStep{n, TransposeRows<T>{n, keys.data(), order.data(), row.data(), rows.count,
+                                       rows.node.data(), rows.first.data(), rows.weight.data(),
+                                       by_other.node.data(), by_other.first.data(),
+                                       by_other.other.data(), by_other.weight.data()}},
+          LoopStep{1, CopyValue<Index>{row.data() + entries, count.data()}});
   by_other.count = download<Index>(count)[0];
   return by_other;
 }

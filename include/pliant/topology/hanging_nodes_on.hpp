@@ -7,8 +7,10 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/constraint/rows_on.hpp>
 #include <pliant/error.hpp>
+#include <pliant/topology/hanging_lists.hpp>
 #include <pliant/topology/hanging_passes.hpp>
 #include <pliant/topology/tree_on.hpp>
 
@@ -23,61 +25,117 @@ class HangingNodesOn {
   using Array = typename B::template Array<U>;
 
  public:
-  explicit HangingNodesOn(B const& backend) : backend_(backend) {}
+  /// `sides_have_nodes`: whether nodes may hang in the middle of sides; not where all sides are those of linear tetrahedra.
+  explicit HangingNodesOn(B const& backend, bool sides_have_nodes = true)
+      : backend_(backend), sides_have_nodes_(sides_have_nodes) {}
 
   /// Every one, ascending by the user's numbers, with its free masters; by row_of_node(the user's number), in the backend's
   /// memory. Throws Error for a tree that mixes degrees.
   RowsOn<B> rows(TreeOn<B> const& tree, Index const* row_of_node) {
+    find_all(tree);
+    return rows_found(tree, row_of_node);
+  }
+  /// The same after a refinement of the tree of which the last call told: looks at what hung then, and at what was refined.
+  RowsOn<B> rows_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
+                       Index const* row_of_node) {
+    if (knows_all_)
+      find_after(tree, refined);
+    else
+      find_all(tree);
+    return rows_found(tree, row_of_node);
+  }
+
+ private:
+  void find_all(TreeOn<B> const& tree) {
     if (tree.mixes_degrees())
       throw Error("hanging nodes: the tree mixes degrees; take HangingNodes, on the host");
     auto const sizes = tree.sizes();
-    forget();
     detail::HangingView<Dim> const view{tree.view()};
+    Index const sides = sides_have_nodes_ ? sizes.sides : 0;
     need(edges_, sizes.edges);
-    need(sides_, sizes.sides);
-    need(counters_, 2);
+    need(sides_, sides);
+    counters_ = zeros<Index>(backend_, 2);
     backend_.select(sizes.edges, detail::IsHungOnEdge<Dim>{view}, edges_.data(), counters_.data());
-    backend_.select(sizes.sides, detail::IsHungOnSide<Dim>{view}, sides_.data(),
-                    counters_.data() + 1);
+    if (sides > 0)
+      backend_.select(sides, detail::IsHungOnSide<Dim>{view}, sides_.data(), counters_.data() + 1);
+    count_found();
+  }
+  void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
+    using detail::LoopStep, detail::IsHungOnEdge, detail::IsHungOnSide, detail::ListStillHung;
+    using NewEdges = detail::ListNewlyHungEdges<Dim>;
+    using NewSides = detail::ListNewlyHungSides<Dim>;
+    detail::HangingView<Dim> const view{tree.view()};
+    std::swap(edges_, edges_before_);
+    std::swap(sides_, sides_before_);
+    Index const new_edges = NewEdges::each * refined.leaves,
+                new_sides = sides_have_nodes_ ? NewSides::each * refined.leaves : 0;
+    need(edges_, edge_count_ + new_edges);
+    need(sides_, side_count_ + new_sides);
+    counters_ = zeros<Index>(backend_, 2);
+    Index *const edges = counters_.data(), *const sides = edges + 1;
+    detail::in_turn(
+        backend_,
+        LoopStep{
+            edge_count_,
+            ListStillHung<IsHungOnEdge<Dim>>{{view}, edges_before_.data(), edges_.data(), edges}},
+        LoopStep{
+            side_count_,
+            ListStillHung<IsHungOnSide<Dim>>{{view}, sides_before_.data(), sides_.data(), sides}},
+        LoopStep{new_edges, NewEdges{{view}, refined.cells, refined.parts, edges_.data(), edges}},
+        LoopStep{new_sides, NewSides{{view}, refined.cells, refined.parts, sides_.data(), sides}});
+    count_found();
+  }
+  void count_found() {
     auto const counts = counted<2>();
-    Index const places = counts[0] + counts[1];
-    detail::HungOn<Dim> const hung{view, edges_.data(), sides_.data(), counts[0]};
+    edge_count_ = counts[0];
+    side_count_ = counts[1];
+    knows_all_ = true;
+  }
+  /// Of the edges and sides that were found.
+  RowsOn<B> rows_found(TreeOn<B> const& tree, Index const* row_of_node) {
+    auto const sizes = tree.sizes();
+    Index const places = edge_count_ + side_count_;
+    detail::HungOn<Dim> const hung{{tree.view()}, edges_.data(), sides_.data(), edge_count_};
     need(start_, places + 1);
-    backend_.scan(places, hung, start_.data());
-    Index const n = entry(start_, places);
+    detail::in_turn(
+        backend_, number_slaves(known_, false), detail::ScanStep{places, hung, start_.data()},
+        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counters_.data()}});
+    known_ = 0;
+    Index const n = counted<1>()[0];
     if (n == 0) return {};
     need(nodes_, n);
     need(order_, n);
     need(places_, n);
     if (slave_at_.size() < at(sizes.nodes))
       slave_at_ = zeros<Index>(backend_, at(sizes.nodes) + at(sizes.nodes) / 2);
-    backend_.for_each(places, detail::ListSlaves<Dim>{hung, start_.data(), nodes_.data(),
-                                                      order_.data(), places_.data()});
-    backend_.sort(n, nodes_.data(), order_.data(), detail::key_bits(sizes.nodes));
-    backend_.for_each(n, detail::NumberSlaves{nodes_.data(), slave_at_.data(), true});
-    known_ = n;
-
     detail::FreeMasters<Dim> const masters{hung, order_.data(), places_.data(), slave_at_.data()};
     RowsOn<B> rows;
     rows.count = n;
-    rows.node = zeros<Index>(backend_, at(n));
-    rows.first = zeros<Index>(backend_, at(n) + 1);
+    rows.node = unset<Index>(backend_, at(n));
+    rows.first = unset<Index>(backend_, at(n) + 1);
     counters_ = zeros<Index>(backend_, 2);
-    backend_.scan(n, detail::CountMasters<Dim>{masters, counters_.data() + 1}, rows.first.data());
-    backend_.for_each(1, detail::CopyValue<Index>{rows.first.data() + n, counters_.data()});
+    detail::in_turn(
+        backend_,
+        detail::LoopStep{places, detail::ListSlaves<Dim>{hung, start_.data(), nodes_.data(),
+                                                         order_.data(), places_.data()}},
+        detail::SortStep{n, nodes_.data(), order_.data(), detail::key_bits(sizes.nodes)},
+        number_slaves(n, true),
+        detail::ScanStep{n, detail::CountMasters<Dim>{masters, counters_.data() + 1},
+                         rows.first.data()},
+        detail::LoopStep{1, detail::CopyValue<Index>{rows.first.data() + n, counters_.data()}});
+    known_ = n;
     auto const [entries, too_many] = counted<2>();
     if (too_many != 0)
       throw Error("hanging nodes: one has more than ", detail::MasterList::most,
                   " masters; keep neighbours of finer elements within one level");
-    rows.other = zeros<Index>(backend_, at(entries));
-    rows.weight = zeros<T>(backend_, at(entries));
+    rows.other = unset<Index>(backend_, at(entries));
+    rows.weight = unset<T>(backend_, at(entries));
     backend_.for_each(
         n, detail::FillSlaves<Dim, T>{masters, nodes_.data(), row_of_node, rows.first.data(),
                                       rows.node.data(), rows.other.data(), rows.weight.data()});
     return rows;
   }
 
- private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
   template <std::size_t N>
@@ -86,18 +144,17 @@ class HangingNodesOn {
     counters_.download(counts);
     return counts;
   }
-  Index entry(Array<Index> const& numbers, Index i) {
-    backend_.for_each(1, detail::CopyValue<Index>{numbers.data() + i, counters_.data()});
-    return counted<1>()[0];
-  }
-  /// No node is a slave.
-  void forget() {
-    backend_.for_each(known_, detail::NumberSlaves{nodes_.data(), slave_at_.data(), false});
-    known_ = 0;
+  /// Numbers the listed slaves, or forgets their numbers.
+  detail::LoopStep<detail::NumberSlaves> number_slaves(Index count, bool are_known) {
+    return {count, {nodes_.data(), slave_at_.data(), are_known}};
   }
 
   B backend_;
-  Array<Index> edges_, sides_, start_, order_, counters_;
+  bool sides_have_nodes_, knows_all_ = false;
+  Array<Index> edges_, sides_;  // on which nodes hang, in no order
+  Index edge_count_ = 0, side_count_ = 0;
+  Array<Index> edges_before_, sides_before_;
+  Array<Index> start_, order_, counters_;
   Array<std::uint64_t> nodes_;  // slaves
   Array<detail::HangingPlace> places_;
   Array<Index> slave_at_;  // by node: its number among slaves, one more; or zero

@@ -144,17 +144,6 @@ struct HangingView {
   }
 };
 
-template <int Dim>
-struct IsHungOnEdge {
-  HangingView<Dim> view;
-  PLIANT_HOST_DEVICE bool operator()(Index e) const { return view.is_hung_on_edge(e); }
-};
-template <int Dim>
-struct IsHungOnSide {
-  HangingView<Dim> view;
-  PLIANT_HOST_DEVICE bool operator()(Index s) const { return view.is_hung_on_side(s); }
-};
-
 /// Edges and sides on which nodes hang, one list behind the other.
 template <int Dim>
 struct HungOn {

@@ -202,13 +202,12 @@ class PagedList {
   }
   void put(B const& backend, std::vector<Changed> const& changed, Page<V>** table) {
     using Put = detail::PutPages<V>;
-    if (listed_.size() < changed.size())
-      listed_ = zeros<Changed>(backend, changed.size() + changed.size() / 2);
-    listed_.upload(changed);
+    if (changed.empty()) return;
+    auto const listed = upload(backend, changed);
     for (std::size_t first = 0; first < changed.size(); first += Put::most_pages) {
       auto const count =
           static_cast<Index>(std::min<std::size_t>(changed.size() - first, Put::most_pages));
-      backend.for_each(count * Put::words, Put{listed_.data() + first, table});
+      backend.for_each(count * Put::words, Put{listed.data() + first, table});
     }
   }
   /// Copies pages from a batch, where they lie one after another, or to it.
@@ -240,7 +239,6 @@ class PagedList {
   std::vector<Array<V>> chunks_;
   std::vector<Page<V>*> free_;
   std::size_t reserved_ = 0;  // pages
-  Array<Changed> listed_;
 };
 
 }  // namespace pliant

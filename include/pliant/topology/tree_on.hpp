@@ -9,6 +9,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
@@ -73,13 +74,17 @@ class TreeOn {
     first_new_node_ = now_.nodes;
     need(leaves_, n);
     need(parts_, n);
-    backend_.for_each(n, detail::ListLeaves{list_.data(), leaves_.data()});
+    need(keys_, n);
     lists_.own(backend_, [&](detail::PageMarks const& marks) {
-      backend_.for_each(n, detail::MarkDivided{leaves_.data(), marks});
+      constexpr int bits_of_level = 6;
+      int const bits_of_cell = detail::key_bits(size(lists_.cells));
+      detail::in_turn(
+          backend_,
+          detail::LoopStep{n, detail::LevelKeys{view(), list_.data(), keys_.data(), bits_of_cell}},
+          detail::SortStep{n, keys_.data(), list_.data(), bits_of_cell + bits_of_level},
+          detail::LoopStep{n, detail::ListLeaves{list_.data(), leaves_.data()}},
+          detail::LoopStep{n, detail::MarkDivided{leaves_.data(), marks}});
     });
-    auto const planned = division();
-    backend_.for_each(n, detail::ClaimShared{planned});
-    backend_.for_each(n, detail::FindParts{planned});
     auto const totals = number_parts(n);
     check(n, totals, limits);
     lists_.edges.extend(backend_, at(totals[1]));
@@ -87,10 +92,10 @@ class TreeOn {
     lists_.cells.extend(backend_, at(totals[3]));
     need(made_, totals[0]);
     auto const dividing = division();
-    for_each_part(n, detail::MakeOnEdges{dividing});
-    for_each_part(n, detail::MakeOnSides{dividing});
-    backend_.for_each(n, detail::MakeInside{dividing});
-    for_each_part(n, detail::MakeChildren{dividing});
+    detail::in_turn(backend_, for_each_part(n, detail::MakeOnEdges{dividing}),
+                    for_each_part(n, detail::MakeOnSides{dividing}),
+                    detail::LoopStep{n, detail::MakeInside{dividing}},
+                    for_each_part(n, detail::MakeChildren{dividing}));
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
     if (has_quadratic_) make_quadratic(n, limits);
@@ -135,8 +140,8 @@ class TreeOn {
   }
   /// For all edges, sides or children that n leaves may have.
   template <class Make>
-  void for_each_part(Index n, Make const& make) {
-    backend_.for_each(n * Make::each, make);
+  static detail::LoopStep<Make> for_each_part(Index n, Make const& make) {
+    return {n * Make::each, make};
   }
   /// Numbers that loops counted.
   template <std::size_t N>
@@ -152,7 +157,7 @@ class TreeOn {
     return counted<1>()[0];
   }
 
-  /// Lists the marked leaves and those to be refined before them, in the order in which they are. Returns how many.
+  /// Lists the marked leaves and those to be refined before them, in no order. Returns how many.
   Index close(Index const* marked, Index count, int max_level) {
     stamps_.begin(backend_, lists_.cells.size());
     need(list_, size(lists_.cells));
@@ -165,8 +170,9 @@ class TreeOn {
                                               cells_at_edge_.data()};
       Index* const listed = counters_.data() + 1;
       for (Index most = count; most > 0; most = n - from) {
-        backend_.for_each(1, detail::CopyValue<Index>{counters_.data(), listed});
-        backend_.for_each(most, detail::ListCoarser{at_edges, from, listed, once});
+        detail::in_turn(backend_,
+                        detail::LoopStep{1, detail::CopyValue<Index>{counters_.data(), listed}},
+                        detail::LoopStep{most, detail::ListCoarser{at_edges, from, listed, once}});
         auto const counts = counted<2>();
         n = counts[0];
         from = counts[1];
@@ -174,27 +180,28 @@ class TreeOn {
     } else {
       n = counted<1>()[0];
     }
-    need(keys_, n);
-    constexpr int bits_of_level = 6;
-    int const bits_of_cell = detail::key_bits(size(lists_.cells));
-    backend_.for_each(n, detail::LevelKeys{view(), list_.data(), keys_.data(), bits_of_cell});
-    backend_.sort(n, keys_.data(), list_.data(), bits_of_cell + bits_of_level);
     return n;
   }
-  /// Numbers what leaves make; returns how many nodes, edges, sides and cells that are.
+  /// Finds and numbers what leaves make; returns how many nodes, edges, sides and cells that are.
   std::array<Index, 4> number_parts(Index n) {
-    auto* const parts = parts_.data();
+    using detail::LeafParts, detail::CountOf, detail::ScanStep;
     for (auto& before : before_) need(before, n + 1);
-    backend_.scan(n, detail::CountOf<&detail::LeafParts::nodes>{parts}, before_[0].data());
-    backend_.scan(n, detail::CountOf<&detail::LeafParts::edges>{parts}, before_[1].data());
-    backend_.scan(n, detail::CountOf<&detail::LeafParts::sides>{parts}, before_[2].data());
-    backend_.scan(n, detail::CountOf<&detail::LeafParts::cells>{parts}, before_[3].data());
-    backend_.for_each(n + 1, detail::NumberParts{parts,
-                                                 {before_[0].data(), before_[1].data(),
-                                                  before_[2].data(), before_[3].data()},
-                                                 sizes(),
-                                                 n,
-                                                 counters_.data()});
+    auto const planned = division();
+    auto* const parts = parts_.data();
+    auto* const nodes = before_[0].data();
+    auto* const edges = before_[1].data();
+    auto* const sides_before = before_[2].data();
+    auto* const cells = before_[3].data();
+    detail::in_turn(
+        backend_, detail::LoopStep{n, detail::ClaimShared{planned}},
+        detail::LoopStep{n, detail::FindParts{planned}},
+        ScanStep{n, CountOf<&LeafParts::nodes>{parts}, nodes},
+        ScanStep{n, CountOf<&LeafParts::edges>{parts}, edges},
+        ScanStep{n, CountOf<&LeafParts::sides>{parts}, sides_before},
+        ScanStep{n, CountOf<&LeafParts::cells>{parts}, cells},
+        detail::LoopStep{
+            n + 1, detail::NumberParts{
+                       parts, {nodes, edges, sides_before, cells}, sizes(), n, counters_.data()}});
     return counted<4>();
   }
   /// Throws Error, with the tree as it was, where there would be more than a limit.

@@ -26,6 +26,16 @@ class DeviceArray {
     if (status != cudaSuccess) stream_->release(data_);
     detail::check(status, "cudaMemsetAsync");
   }
+  /// Not set: all values are written before any is read. Throws Error when the device has not enough memory.
+  static DeviceArray unset(detail::SharedStream stream, std::size_t count) {
+    DeviceArray array;
+    array.stream_ = std::move(stream);
+    array.size_ = count;
+    if (count == 0) return array;
+    auto const device = array.stream_->enter();
+    array.allocate();
+    return array;
+  }
   /// With values, which may go once this returns.
   DeviceArray(detail::SharedStream stream, std::span<U const> values)
       : stream_(std::move(stream)), size_(values.size()) {

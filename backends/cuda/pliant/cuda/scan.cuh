@@ -64,15 +64,10 @@ __global__ void __launch_bounds__(list_threads)
   if (threadIdx.x == 0) sums[blockIdx.x] = total;
 }
 
-/// store(i, f(i), the sum over all before i). sums: those of parts, of which a block reads those before its own.
+/// store(i, f(i), the sum over all before i) for a part of a list. before: the sum over all before the part. Returns that over
+/// all before its end.
 template <class F, class Store>
-__global__ void __launch_bounds__(list_threads)
-    store_sums(Index n, __grid_constant__ F const f, Store const store, Index const* sums) {
-  begin_after_previous_kernel();
-  Index of_parts = 0, before = 0;
-  for (unsigned b = threadIdx.x; b < blockIdx.x; b += list_threads) of_parts += sums[b];
-  scan_block(of_parts, before);
-  ListPart const part(n, list_threads);
+__device__ Index store_part(ListPart const& part, F const& f, Store const& store, Index before) {
   for (std::int64_t first = part.first; first < part.last; first += list_threads) {
     std::int64_t const i = first + threadIdx.x;
     Index const value = i < part.last ? f(static_cast<Index>(i)) : 0;
@@ -81,7 +76,19 @@ __global__ void __launch_bounds__(list_threads)
     if (i < part.last) store(static_cast<Index>(i), value, sum);
     before += total;
   }
-  if (blockIdx.x == gridDim.x - 1 && threadIdx.x == 0) store.total(n, before);
+  return before;
+}
+
+/// The same for all of a list. sums: those of parts, of which a block reads those before its own.
+template <class F, class Store>
+__global__ void __launch_bounds__(list_threads)
+    store_sums(Index n, __grid_constant__ F const f, Store const store, Index const* sums) {
+  begin_after_previous_kernel();
+  Index of_parts = 0, before = 0;
+  for (unsigned b = threadIdx.x; b < blockIdx.x; b += list_threads) of_parts += sums[b];
+  scan_block(of_parts, before);
+  Index const sum = store_part(ListPart(n, list_threads), f, store, before);
+  if (blockIdx.x == gridDim.x - 1 && threadIdx.x == 0) store.total(n, sum);
 }
 
 struct StoreSums {

@@ -143,9 +143,7 @@ __global__ void __launch_bounds__(list_threads) copy_list(Index n, List const fr
 
 /// All digits of a short list, by one block.
 template <class List>
-__global__ void __launch_bounds__(list_threads)
-    sort_in_block(Index n, List const list, List const other, int bits) {
-  begin_after_previous_kernel();
+__device__ void sort_all(Index n, List const& list, List const& other, int bits) {
   ListPart const part(n, sort_round);
   List from = list, to = other;
   for (int shift = 0; shift < bits; shift += digit_bits) {
@@ -157,6 +155,12 @@ __global__ void __launch_bounds__(list_threads)
     from = moved;
   }
   if (from.keys != list.keys) copy_keys(part, from, list);
+}
+template <class List>
+__global__ void __launch_bounds__(list_threads)
+    sort_in_block(Index n, List const list, List const other, int bits) {
+  begin_after_previous_kernel();
+  sort_all(n, list, other, bits);
 }
 
 template <class Key, class Value>

@@ -15,6 +15,8 @@ inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 1
 /// list one block takes alone, in one launch.
 inline constexpr int list_threads = 256, most_list_blocks = 1024, sort_keys = 8;
 inline constexpr Index short_list = 4096;
+/// The same of loops that one block does in turn (in_turn.cuh).
+inline constexpr Index short_steps = 2048;
 
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
 /// where an element computes much per node; patches are faster elsewhere, and where there are no

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/config.hpp>
+#include <pliant/topology/division_view.hpp>
+#include <pliant/topology/hanging_passes.hpp>
+
+// Passes that list the edges and sides of a tree on which nodes hang, for loops of a backend.
+namespace pliant::detail {
+
+template <int Dim>
+struct IsHungOnEdge {
+  HangingView<Dim> view;
+  PLIANT_HOST_DEVICE bool operator()(Index e) const { return view.is_hung_on_edge(e); }
+};
+template <int Dim>
+struct IsHungOnSide {
+  HangingView<Dim> view;
+  PLIANT_HOST_DEVICE bool operator()(Index s) const { return view.is_hung_on_side(s); }
+};
+
+/// Of listed edges or sides, lists those on which nodes hang still.
+template <class IsHung>
+struct ListStillHung {
+  IsHung is_hung;
+  Index const* known;
+  Index* list;
+  Index* count;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (is_hung(known[k])) list[atomic_add(*count, 1)] = known[k];
+  }
+};
+/// Lists the edges of refined cells that these bisected, where nodes hang on them.
+template <int Dim>
+struct ListNewlyHungEdges {
+  static constexpr Index each = RefinementPattern::most_edges;
+  IsHungOnEdge<Dim> is_hung;
+  CellSplit const* cells;
+  LeafParts const* parts;
+  Index* list;
+  Index* count;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const e = static_cast<std::size_t>(k % each);
+    if ((parts[k / each].halves >> e & 1) == 0) return;
+    Index const edge =
+        is_hung.view.tree.cells[static_cast<std::size_t>(cells[k / each].cell)].edges[e];
+    if (is_hung(edge)) list[atomic_add(*count, 1)] = edge;
+  }
+};
+/// The same of sides that these divided.
+template <int Dim>
+struct ListNewlyHungSides {
+  static constexpr Index each = RefinementPattern::most_sides;
+  IsHungOnSide<Dim> is_hung;
+  CellSplit const* cells;
+  LeafParts const* parts;
+  Index* list;
+  Index* count;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const s = static_cast<std::size_t>(k % each);
+    if ((parts[k / each].parts >> s & 1) == 0) return;
+    Index const side =
+        is_hung.view.tree.cells[static_cast<std::size_t>(cells[k / each].cell)].sides[s];
+    if (is_hung(side)) list[atomic_add(*count, 1)] = side;
+  }
+};
+
+}  // namespace pliant::detail
