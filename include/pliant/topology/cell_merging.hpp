@@ -33,23 +33,24 @@ PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
   return true;
 }
 
-/// Makes a divided cell a leaf, and its children are counted nowhere.
-PLIANT_HOST_DEVICE void merge_cell(TreeView const& tree, Index c) {
-  auto const at = [](Index i) { return static_cast<std::size_t>(i); };
-  auto& cell = tree.cells[at(c)];
+/// Child i of a divided cell, which is merged, is counted nowhere any more.
+PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) {
+  auto const at = [](Index k) { return static_cast<std::size_t>(k); };
+  auto const& cell = tree.cells[at(c)];
   auto const& p = cell.divided();
-  for (std::size_t i = 0; i < at(p.children); ++i) {
-    Index const number = cell.first_child + static_cast<Index>(i);
-    auto const& child = tree.cells[at(number)];
-    tree.count_leaf(child, -1);
-    for (std::size_t s = 0; s < at(child.pattern().sides); ++s) {
-      auto const& of_parent = p.child_side[i][s];
-      bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
-                            of_parent.number != p.halved_side;
-      replace_at_side(tree, child.sides[s], number, is_whole ? c : -1);
-    }
+  auto const& child = tree.cells[at(cell.first_child + i)];
+  tree.count_leaf(child, -1);
+  for (std::size_t s = 0; s < at(child.pattern().sides); ++s) {
+    auto const& of_parent = p.child_side[at(i)][s];
+    bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
+                          of_parent.number != p.halved_side;
+    replace_at_side(tree, child.sides[s], cell.first_child + i, is_whole ? c : -1);
   }
-  if (p.halves) tree.count_refined(cell, -1);
+}
+/// Makes a divided cell, whose children were left out, a leaf.
+PLIANT_HOST_DEVICE void merge_cell(TreeView const& tree, Index c) {
+  auto& cell = tree.cells[static_cast<std::size_t>(c)];
+  if (cell.divided().halves) tree.count_refined(cell, -1);
   cell.first_child = -1;
   cell.division = Division::refined;
   tree.count_leaf(cell, 1);
@@ -75,7 +76,11 @@ class CellMerging {
       lists_.count_leaves(cell.has, 1 - cell.divided().children);
     }
     auto const tree = lists_.view();
-    for_each(parents, [&](Index c) { merge_cell(tree, c); });
+    for_each(parents, [&](Index c) {
+      Index const children = lists_.cells[at(c)].divided().children;
+      for (Index i = 0; i < children; ++i) leave_child_out(tree, c, i);
+      merge_cell(tree, c);
+    });
   }
 
  private:

@@ -57,15 +57,17 @@ struct IsKnowing {
   }
 };
 
-/// Marks the pages of what becomes leaves, and of their children.
+/// Marks the pages of what becomes leaves, and of their children. So many calls for each.
 struct MarkMerged {
+  static constexpr Index each = RefinementPattern::most_children + 1;
   Index const* parents;
   PageMarks marks;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell = marks.tree.cells[static_cast<std::size_t>(parents[k])];
-    marks.parts_of(parents[k]);
-    for (Index i = 0; i < cell.divided().children; ++i) marks.parts_of(cell.first_child + i);
+    Index const c = parents[k / each], i = k % each;
+    auto const& cell = marks.tree.cells[static_cast<std::size_t>(c)];
+    if (i < cell.divided().children) marks.parts_of(cell.first_child + i);
+    if (i == each - 1) marks.parts_of(c);
   }
 };
 /// Marks the pages of cells of the initial mesh, their edges and sides.
@@ -82,6 +84,17 @@ struct MarkKnowing {
   }
 };
 
+/// The children of divided cells that are merged are counted nowhere any more. So many calls for each of these.
+struct LeaveChildrenOut {
+  static constexpr Index each = RefinementPattern::most_children;
+  TreeView tree;
+  Index const* parents;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const c = parents[k / each], i = k % each;
+    if (i < tree.cells[static_cast<std::size_t>(c)].divided().children) leave_child_out(tree, c, i);
+  }
+};
 /// Makes divided cells leaves of the degree of their children. Notes the first of these.
 struct MergeCells {
   TreeView tree;

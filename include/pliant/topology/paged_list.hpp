@@ -170,13 +170,15 @@ class PagedList {
   /// Puts new pages at places, the first `copied` of them with what the pages there hold; there are `count` in all then.
   void put_new(B const& backend, std::vector<Index> const& places, std::size_t copied,
                std::size_t count) {
+    if (places.empty() && count == pages_.size()) return;
     reserve(backend, places.size(), count);
-    std::vector<Changed> changed;
-    for (Index const place : places) {
-      auto const p = static_cast<std::size_t>(place);
-      changed.push_back({place, changed.size() < copied ? pages_[p] : nullptr, free_.back()});
-      free_.pop_back();
+    std::vector<Changed> changed(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      auto const p = static_cast<std::size_t>(places[i]);
+      changed[i] = {places[i], i < copied ? pages_[p] : nullptr, free_[free_.size() - 1 - i]};
     }
+    free_.resize(free_.size() - places.size());
+    changed_.reserve(changed_.size() + places.size());
     for (Changed const& own : changed) change_page(static_cast<std::size_t>(own.place), own.now);
     pages_.resize(count, nullptr);
     for (Changed const& own : changed) pages_[static_cast<std::size_t>(own.place)] = own.now;
@@ -187,7 +189,7 @@ class PagedList {
   void reserve(B const& backend, std::size_t more, std::size_t in_all) {
     if (free_.size() < more) {
       auto const count = std::max({more - free_.size(), reserved_ / 4, std::size_t{16}});
-      auto& chunk = chunks_.emplace_back(backend.template array<V>(count * per_page));
+      auto& chunk = chunks_.emplace_back(unset<V>(backend, count * per_page));
       reserved_ += count;
       for (std::size_t p = count; p-- > 0;) free_.push_back(page_in(chunk, p));
     }

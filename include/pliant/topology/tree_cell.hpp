@@ -15,8 +15,8 @@ namespace pliant {
 /// with four corners and in the middle too.
 enum class CellNodes : std::uint8_t { corners, edges, all };
 
-/// A cell of a CellTree. A divided cell has its children at first_child, first_child + 1, ...
-struct TreeCell {
+/// A cell of a CellTree. A divided cell has its children at first_child, first_child + 1, ... It is copied by 16 bytes at once.
+struct alignas(16) TreeCell {
   CellKind kind = CellKind::triangle;
   CellNodes has = CellNodes::corners;     ///< of a divided cell: when it was divided
   CellNodes had = CellNodes::corners;     ///< of the initial mesh: what it had there

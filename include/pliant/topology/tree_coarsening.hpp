@@ -9,6 +9,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/topology/coarsening_passes.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
@@ -30,11 +31,14 @@ class TreeCoarsening {
     Index const merged = found[0], knowing = found[1];
     if (merged == 0) return done;
     tree.own(backend, [&](PageMarks const& marks) {
-      backend.for_each(merged, MarkMerged{parents_.data(), marks});
-      backend.for_each(knowing, MarkKnowing{knowing_.data(), marks});
+      in_turn(backend, LoopStep{merged * MarkMerged::each, MarkMerged{parents_.data(), marks}},
+              LoopStep{knowing, MarkKnowing{knowing_.data(), marks}});
     });
     grow(backend, first_children_, at(merged));
-    backend.for_each(merged, MergeCells{tree.view(), parents_.data(), first_children_.data()});
+    in_turn(
+        backend,
+        LoopStep{merged * LeaveChildrenOut::each, LeaveChildrenOut{tree.view(), parents_.data()}},
+        LoopStep{merged, MergeCells{tree.view(), parents_.data(), first_children_.data()}});
     auto const view = number(backend, tree, done, knowing);
     move_up(backend, tree, done, view, knowing);
     done.merged = merged;
@@ -110,9 +114,9 @@ class TreeCoarsening {
                             Stays const& stays) {
     grow(backend, before_, at(count) + 1);
     grow(backend, numbers_[k], at(count));
-    backend.scan(count, stays, before_.data());
-    backend.for_each(count, NumberStaying{before_.data(), first, numbers_[k].data()});
-    backend.for_each(1, CopyValue<Index>{before_.data() + count, counters_.data() + k});
+    in_turn(backend, ScanStep{count, stays, before_.data()},
+            LoopStep{count, NumberStaying{before_.data(), first, numbers_[k].data()}},
+            LoopStep{1, CopyValue<Index>{before_.data() + count, counters_.data() + k}});
     return {first, numbers_[k].data()};
   }
 

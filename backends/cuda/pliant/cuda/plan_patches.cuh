@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -118,7 +120,7 @@ __device__ void take_patch(PlanView<Planner> const& from, Index before, PlanView
   if (threadIdx.x == 0) to.set_counts(patch, counts, most);
 }
 
-/// Plans patches, or takes them from a plan of the same capacity. known: (patches), the patch there; −1: none; null: all of
+/// Plans patches, or takes them from a plan of no larger capacity. known: (patches), the patch there; −1: none; null: all of
 /// them are planned.
 template <class Planner>
 __global__ void __launch_bounds__(plan_threads)
@@ -152,9 +154,25 @@ struct KnownPatches {
   std::vector<Index> patches{};
 };
 
+/// What to give patches room for before it is known what they need: as much as before a change, where few are planned again;
+/// else more, so that few have to be planned twice.
+template <class Planner>
+PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size) {
+  PatchCounts const usual = Planner::usual(patch_size);
+  if (known.plan == nullptr) return usual;
+  PatchCounts const& before = known.plan->capacity;
+  auto const planned = std::ranges::count(known.patches, Index{-1});
+  if (8 * planned < std::ssize(known.patches)) return before;
+  auto const more = [](int of_before, int usually) {
+    return std::max(2 * of_before, usually) / 4 * 4;
+  };
+  return {more(before.nodes, usual.nodes), more(before.diagonals, usual.diagonals),
+          more(before.fans, usual.fans), more(before.slots, usual.slots)};
+}
+
 /// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `known`: a plan of patches of
-/// the same size, of which the capacity may be right: patches are planned while they are counted, or taken from there. Where
-/// it is not, those that it has room for are taken from this first plan.
+/// the same size: patches are planned while they are counted, or taken from there, with a capacity that may be right. Where it
+/// is not, those that it has room for are taken from this first plan.
 template <class Planner, class B, class Accepts>
 PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity, int width,
                                 PatchCuts const& cuts, Index const* first,
@@ -190,8 +208,7 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
   };
   LaunchShape const shape{patches, plan_threads, plan_bytes<Planner>(cuts.size())};
 
-  PatchCounts const guess =
-      known.plan == nullptr ? Planner::usual(cuts.size()) : known.plan->capacity;
+  PatchCounts const guess = guessed_capacity(known, cuts.size());
   plan = room_for(guess);
   View from{};
   DeviceArray<Index> patches_before;

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+
+#include <pliant/backend/array_copies.hpp>
+#include <pliant/backend/in_turn.hpp>
+
+#include "support/formulations.hpp"
+
+// Loops, scans and sorts that are asked for at once, and copies of several arrays.
+namespace pliant::test::in_turn_suite {
+
+struct PutKeys {
+  Index n;
+  std::uint64_t* keys;
+  Index* values;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    keys[i] = static_cast<std::uint64_t>((n - i) / 2);
+    values[i] = i;
+  }
+};
+struct Read {
+  Index const* from;
+  PLIANT_HOST_DEVICE Index operator()(Index i) const { return from[i]; }
+};
+/// to[i] = before[i] + the i-th key.
+struct AddKeys {
+  Index const* before;
+  std::uint64_t const* keys;
+  Index* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    to[i] = before[i] + static_cast<Index>(keys[i]);
+  }
+};
+
+TEMPLATE_LIST_TEST_CASE("steps see what those before them wrote, few or many", "[backend]",
+                        Backends<double>) {
+  TestType const backend;
+  auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+  for (Index const n : {0, 1, 2, 33, 255, 257, 2047, 2048, 2049, 9000}) {
+    CAPTURE(n);
+    auto keys = zeros<std::uint64_t>(backend, at(n) + 1);
+    auto values = zeros<Index>(backend, at(n) + 1), sums = zeros<Index>(backend, at(n) + 2),
+         to = zeros<Index>(backend, at(n) + 1);
+    detail::in_turn(backend, detail::LoopStep{n, PutKeys{n, keys.data(), values.data()}},
+                    detail::SortStep{n, keys.data(), values.data(), detail::key_bits(n)},
+                    detail::ScanStep{n, Read{values.data()}, sums.data()},
+                    detail::LoopStep{n, AddKeys{sums.data(), keys.data(), to.data()}});
+    std::vector<Index> wanted_values(at(n)), wanted(at(n));
+    std::iota(wanted_values.begin(), wanted_values.end(), Index{0});
+    std::ranges::stable_sort(wanted_values, {}, [&](Index i) { return (n - i) / 2; });
+    Index sum = 0;
+    for (Index i = 0; i < n; ++i) {
+      wanted[at(i)] = sum + (n - wanted_values[at(i)]) / 2;
+      sum += wanted_values[at(i)];
+    }
+    wanted_values.push_back(0);
+    wanted.push_back(0);
+    CHECK(download<Index>(values) == wanted_values);
+    CHECK(download<Index>(to) == wanted);
+    CHECK(download<Index>(sums)[at(n)] == sum);
+  }
+}
+
+TEMPLATE_LIST_TEST_CASE("copies of several arrays have their values, and zeros behind them",
+                        "[backend]", Backends<double>) {
+  TestType const backend;
+  auto const numbered = []<class U>(U, std::size_t count) {
+    std::vector<U> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<U>(i % 100 + 1);
+    return values;
+  };
+  auto const wanted = []<class U>(std::vector<U> values, std::size_t kept, std::size_t count) {
+    values.resize(kept);
+    values.resize(count, U(0));
+    return values;
+  };
+  detail::ArrayCopies<TestType> copies(backend);
+  // More than one loop makes.
+  std::vector<std::array<std::size_t, 3>> const sizes{
+      {0, 0, 0},    {1, 1, 1},     {5, 5, 37},     {37, 37, 37},  {16, 16, 16},
+      {64, 64, 96}, {96, 64, 64},  {1000, 0, 999}, {20, 3, 21},   {4096, 4096, 5000},
+      {7, 7, 8},    {255, 31, 70}, {12, 12, 12},   {18, 18, 1800}};
+  std::vector<typename TestType::template Array<std::uint8_t>> bytes, bytes_copied;
+  std::vector<typename TestType::template Array<double>> numbers, numbers_copied;
+  for (auto const& [size, kept, count] : sizes) {
+    bytes.push_back(upload(backend, numbered(std::uint8_t{}, size)));
+    numbers.push_back(upload(backend, numbered(double{}, size)));
+    bytes_copied.push_back(copies.copy_of(std::as_const(bytes.back()).data(), kept, count));
+    numbers_copied.push_back(
+        kept == std::min(size, count)
+            ? copies.template extended<double>(numbers.back(), count)
+            : copies.copy_of(std::as_const(numbers.back()).data(), kept, count));
+  }
+  copies.make();
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    auto const [size, kept, count] = sizes[k];
+    CAPTURE(size, kept, count);
+    CHECK(download<std::uint8_t>(bytes_copied[k]) ==
+          wanted(numbered(std::uint8_t{}, size), kept, count));
+    CHECK(download<double>(numbers_copied[k]) == wanted(numbered(double{}, size), kept, count));
+  }
+}
+
+}  // namespace pliant::test::in_turn_suite
