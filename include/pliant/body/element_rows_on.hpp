@@ -20,7 +20,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Puts the rows of nodes of elements, `Width` entries of which the first are the nodes.
+/// Puts the rows of nodes of elements, `Width` entries of which the first are the nodes; the others are zero.
 template <Element E, int Width>
 struct PutElementRows {
   TreeView tree;
@@ -38,7 +38,7 @@ struct PutElementRows {
       for (int a = 0; a < Width; ++a) row[a] = own[a];
     } else {
       auto const own = rows_of_element<E>(tree, cell, of_node);
-      for (std::size_t a = 0; a < own.size(); ++a) row[a] = own[a];
+      for (std::size_t a = 0; a < std::size_t{Width}; ++a) row[a] = a < own.size() ? own[a] : 0;
     }
   }
 };

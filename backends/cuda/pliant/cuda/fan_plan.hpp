@@ -41,6 +41,11 @@ class FanPlanner {
     return {patch_size / 2, 32, patch_size / 3, 2 * patch_size};
   }
 
+  /// What any patch has at most; of diagonals nothing is said.
+  static PatchCounts most(int patch_size) {
+    return {FanSplitter::most_nodes, 0, patch_size, nodes * patch_size};
+  }
+
   /// For patches of at most `patch_size` elements, FanSplitter::most_elements or fewer, and one of `size`.
   PLIANT_HOST_DEVICE FanPlanner(PlanMemory& memory, int threads, int patch_size, int size)
       : size_(size),

@@ -33,6 +33,9 @@ class PatchPlanner {
     return {patch_size * (Nodes > 4 ? 2 : 1), 32, 0, Nodes * patch_size};
   }
 
+  /// What any patch has at most; of diagonals nothing is said.
+  static PatchCounts most(int patch_size) { return {Nodes * patch_size, 0, 0, Nodes * patch_size}; }
+
   /// For patches of at most `patch_size` elements, and one of `size`.
   PLIANT_HOST_DEVICE PatchPlanner(PlanMemory& memory, int threads, int patch_size, int size)
       : size_(size),

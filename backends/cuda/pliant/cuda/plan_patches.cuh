@@ -155,7 +155,7 @@ struct KnownPatches {
 };
 
 /// What to give patches room for before it is known what they need: as much as before a change, where few are planned again;
-/// else more, so that few have to be planned twice.
+/// else as much as any needs, but for diagonals, so that few have to be planned twice.
 template <class Planner>
 PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size) {
   PatchCounts const usual = Planner::usual(patch_size);
@@ -163,11 +163,9 @@ PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size)
   PatchCounts const& before = known.plan->capacity;
   auto const planned = std::ranges::count(known.patches, Index{-1});
   if (8 * planned < std::ssize(known.patches)) return before;
-  auto const more = [](int of_before, int usually) {
-    return std::max(2 * of_before, usually) / 4 * 4;
-  };
-  return {more(before.nodes, usual.nodes), more(before.diagonals, usual.diagonals),
-          more(before.fans, usual.fans), more(before.slots, usual.slots)};
+  auto most = Planner::most(patch_size);
+  most.diagonals = 2 * std::max(before.diagonals, usual.diagonals);
+  return most;
 }
 
 /// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `known`: a plan of patches of
