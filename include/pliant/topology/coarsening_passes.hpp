@@ -57,17 +57,15 @@ struct IsKnowing {
   }
 };
 
-/// Marks the pages of what becomes leaves, and of their children. So many calls for each.
+/// Marks the pages of what becomes leaves, and of their children.
 struct MarkMerged {
-  static constexpr Index each = RefinementPattern::most_children + 1;
   Index const* parents;
   PageMarks marks;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    Index const c = parents[k / each], i = k % each;
-    auto const& cell = marks.tree.cells[static_cast<std::size_t>(c)];
-    if (i < cell.divided().children) marks.parts_of(cell.first_child + i);
-    if (i == each - 1) marks.parts_of(c);
+    auto const& cell = marks.tree.cells[static_cast<std::size_t>(parents[k])];
+    marks.parts_of(parents[k]);
+    for (Index i = 0; i < cell.divided().children; ++i) marks.parts_of(cell.first_child + i);
   }
 };
 /// Marks the pages of cells of the initial mesh, their edges and sides.

@@ -28,8 +28,7 @@ struct PageMarks {
  private:
   template <class V>
   static PLIANT_HOST_DEVICE void mark(std::uint8_t* pages, Index i) {
-    auto& page = pages[static_cast<std::size_t>(i) / Page<V>::entries];
-    if (atomic_load(page) == 0) atomic_store(page, 1);  // many threads mark the same
+    atomic_store(pages[static_cast<std::size_t>(i) / Page<V>::entries], 1);
   }
 };
 
