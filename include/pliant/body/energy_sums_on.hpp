@@ -7,8 +7,8 @@
 #include <pliant/backend/element_sums.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/carried_nodes.hpp>
-#include <pliant/body/group_laws.hpp>
 #include <pliant/body/motion.hpp>
+#include <pliant/force/element_kernels.hpp>
 
 namespace pliant::detail {
 
