@@ -75,6 +75,7 @@ class TreeOn {
     need(leaves_, n);
     need(parts_, n);
     need(keys_, n);
+    // Leaves are put in order in the launch that marks their pages.
     lists_.own(backend_, [&](detail::PageMarks const& marks) {
       constexpr int bits_of_level = 6;
       int const bits_of_cell = detail::key_bits(size(lists_.cells));
