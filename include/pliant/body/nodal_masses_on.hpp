@@ -100,12 +100,12 @@ class NodalMassesOn {
   /// What nodes have of elements that go in a change goes: of nodes that go, all.
   template <detail::ChangedFamilies<E> Families>
   void take_gone(Families const& families) {
-    detail::in_turn(backend_, shares<false>(families, true));
+    shares<false>(families, true).run(backend_);
   }
   /// What they have of those that come comes.
   template <detail::ChangedFamilies<E> Families>
   void add_come(Families const& families) {
-    detail::in_turn(backend_, shares<true>(families, false));
+    shares<true>(families, false).run(backend_);
   }
   /// Both.
   template <detail::ChangedFamilies<E> Families>

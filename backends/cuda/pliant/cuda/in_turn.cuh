@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/cuda/context.hpp>
