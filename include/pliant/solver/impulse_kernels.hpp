@@ -113,23 +113,26 @@ struct AdvanceByImpulses {
   PLIANT_HOST_DEVICE void operator()(Index n) const {
     Index const i = nodes.order[n];
     int const r = nodes.rate[n];
+    // Impulses are cleared last: see Advance.
     auto const impulse = impulses.at(i);
     auto velocity = v.at(i), displacement = u.at(i);
     T const m = nodes.mass[i];
-    impulses.set(i, Vector<T, Dim>::zero());
-    if (!(m > T(0))) return;  // slaves follow their masters
-    auto const a = nodes.acceleration(i, r, impulse, m);
-    HalfKick<T> const half = nodes.rates.half[r];
-    for (int k = 0; k < Dim; ++k) {
-      if (nodes.held[i] >> k & 1) continue;
-      if (ends) velocity[k] = half(velocity[k], a[k]);
-      if (begins) {
-        velocity[k] = half(velocity[k], a[k]);
-        displacement[k] += nodes.rates.drift[r] * velocity[k];
+    DirectionMask const held = nodes.held[i];
+    if (m > T(0)) {  // slaves follow their masters
+      auto const a = nodes.acceleration(i, r, impulse, m);
+      HalfKick<T> const half = nodes.rates.half[r];
+      for (int k = 0; k < Dim; ++k) {
+        if (held >> k & 1) continue;
+        if (ends) velocity[k] = half(velocity[k], a[k]);
+        if (begins) {
+          velocity[k] = half(velocity[k], a[k]);
+          displacement[k] += nodes.rates.drift[r] * velocity[k];
+        }
       }
+      v.set(i, velocity);
+      u.set(i, displacement);
     }
-    v.set(i, velocity);
-    u.set(i, displacement);
+    impulses.set(i, Vector<T, Dim>::zero());
   }
 };
 
