@@ -4,6 +4,7 @@
 
 #include "adaptation/plane_bodies.hpp"
 #include "support/assembly.hpp"
+#include "support/repeatable.hpp"
 
 namespace pliant::test::hanging_nodes_suite {
 
@@ -63,6 +64,37 @@ TEST_CASE("hanging nodes hand their forces to others", "[adaptation]") {
     for (auto const& h : hanging)
       CHECK(difference(FieldOf<2>{f[static_cast<std::size_t>(h.node)]}, FieldOf<2>(1)) <= rounding);
     CHECK(size > 1e-3);
+  });
+}
+
+TEST_CASE("steps hand forces on while nodes advance, as they are where they are asked for",
+          "[adaptation]") {
+  on_plane_meshes<AllBackends>(4, []<class B, class M>(B const& backend, M const& mesh) {
+    auto const moving = [&] {
+      auto body = refined_body(backend, mesh);
+      REQUIRE_FALSE(body.parts().layout.interpolation.empty());
+      Random random(4);
+      body.set_velocities(random.field<2>(static_cast<std::size_t>(body.nodes()), 0.5));
+      return body;
+    };
+    auto together = moving(), one_by_one = moving();
+    double const dt = 0.5 * stable_step(together);
+    constexpr int steps = 21;  // a stretch and more
+
+    take_steps(together.parts(), dt, steps);
+    for (int k = 0; k < steps; ++k) {
+      evaluate_forces(one_by_one.parts());
+      take_steps(one_by_one.parts(), dt, 1);
+    }
+
+    double const rounding = between_runs(1e3 * epsilon_of<decltype(together)>);
+    CHECK(largest(together.displacements()) > 1e-4);
+    CHECK(difference(together.displacements(), one_by_one.displacements()) <=
+          rounding * largest(together.displacements()));
+    CHECK(difference(together.velocities(), one_by_one.velocities()) <=
+          rounding * largest(together.velocities()));
+    CHECK(difference(together.forces(), one_by_one.forces()) <=
+          rounding * largest(together.forces()));
   });
 }
 

@@ -109,6 +109,56 @@ TEST_CASE("apply_transpose is the transpose of apply, on backends", "[constraint
   });
 }
 
+namespace {
+/// What nodes read of forces that are handed on.
+template <class T>
+struct ReadForces {
+  HandedOnForces<T, 3> forces;
+  NodeField<T, 3> to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to.set(i, forces.at(i)); }
+};
+template <class T>
+struct ClearForces {
+  HandedOnForces<T, 3> forces;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { forces.set(i, Vector<T, 3>::zero()); }
+};
+}  // namespace
+
+TEST_CASE("forces may be handed on where they are read", "[constraint]") {
+  on_each_backend<AllBackends>([]<class B>(B const& backend) {
+    using T = typename B::scalar;
+    constexpr Index nodes = 101;
+    Random random(6);
+    auto const host = random_interpolation(nodes, random);
+    InterpolationOn<B> p(backend, host);
+    auto const u = random.field<3>(nodes, 1), v = random.field<3>(nodes, 1),
+               f = random.field<3>(nodes, 1);
+    auto own = padded(backend, f), added = padded(backend, f), read = padded(backend, u);
+
+    p.list_by_node(backend, nodes);
+    auto const forces = p.handed_on(node_field<3>(own));
+    backend.for_each(nodes, ReadForces<T>{forces, node_field<3>(read)});
+    p.add_transpose(backend, node_field<3>(added));
+
+    CHECK(download<T>(read) == download<T>(added));
+    CHECK(difference(per_node<3>(download<T>(read), node_stride), f) > 0.1);
+    backend.for_each(nodes, ClearForces<T>{forces});
+    auto const left = per_node<3>(download<T>(own), node_stride);
+    auto const before = rounded<T>(f);
+    for (std::size_t i = 0; i < left.size(); ++i)
+      CHECK(left[i] == (host.row_of(static_cast<Index>(i)) ? before[i] : Point<3>{}));
+
+    auto pu = padded(backend, u), pv = padded(backend, v), pu_of_two = padded(backend, u),
+         pv_of_two = padded(backend, v);
+    p.apply(backend, node_field<3>(pu), node_field<3>(pv));
+    p.apply_and_clear(backend, node_field<3>(pu_of_two), node_field<3>(pv_of_two),
+                      node_field<3>(own));
+    CHECK(download<T>(pu_of_two) == download<T>(pu));
+    CHECK(download<T>(pv_of_two) == download<T>(pv));
+    CHECK(per_node<3>(download<T>(own), node_stride) == FieldOf<3>(nodes));
+  });
+}
+
 TEST_CASE("constant fields are kept to the bit", "[constraint]") {
   on_each_backend<AllBackends>([]<class B>(B const& backend) {
     using T = typename B::scalar;

@@ -96,15 +96,15 @@ void book_work(Parts& parts, double lag, double kick, bool drifts) {
 
 }  // namespace detail
 
-/// Velocities and displacements go forward: see Advance. Times in s. The forces are those of the present
-/// displacements, and motions were asked for the end of the step where there is one.
-template <class Parts>
-void advance(Parts& parts, double lag, double kick, double drift) {
+namespace detail {
+/// An advance under forces as `forces` reads them; follow_masters() brings slaves behind their masters.
+template <class Parts, class Forces, class FollowMasters>
+void advance_under(Parts& parts, double lag, double kick, double drift, Forces const& forces,
+                   FollowMasters const& follow_masters) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   auto const& layout = parts.layout;
-  detail::book_work(parts, lag, kick, drift != 0);
-  bool const hidden_work = detail::evaluate_terms_without_energy(parts);
+  bool const hidden_work = evaluate_terms_without_energy(parts);
   auto const book_hidden = [&](double time) {
     if (hidden_work && time > 0)
       parts.backend.add_sum(
@@ -113,17 +113,48 @@ void advance(Parts& parts, double lag, double kick, double drift) {
           parts.state.work.data() + static_cast<int>(Work::pressures));
   };
   book_hidden(lag);
-  detail::for_each_moving_node(
-      parts, Advance<T, dim>{parts.u(), parts.v(), parts.f(), layout.mass.data(), parts.still(),
-                             external_forces(parts), half_kick(parts, lag), half_kick(parts, kick),
-                             static_cast<T>(drift)});
-  if (drift != 0) {
-    layout.interpolation.apply(parts.backend, parts.u(), parts.v());
-    parts.forces_current = parts.forces_complete = false;
-  } else {
-    layout.interpolation.apply(parts.backend, parts.v());
-  }
+  for_each_moving_node(
+      parts, Advance<T, dim, Forces>{parts.u(), parts.v(), forces, layout.mass.data(),
+                                     parts.still(), external_forces(parts), half_kick(parts, lag),
+                                     half_kick(parts, kick), static_cast<T>(drift)});
+  follow_masters();
+  if (drift != 0) parts.forces_current = parts.forces_complete = false;
   book_hidden(kick);
+}
+}  // namespace detail
+
+/// Velocities and displacements go forward: see Advance. Times in s. The forces are those of the present
+/// displacements, and motions were asked for the end of the step where there is one.
+template <class Parts>
+void advance(Parts& parts, double lag, double kick, double drift) {
+  detail::book_work(parts, lag, kick, drift != 0);
+  detail::advance_under(parts, lag, kick, drift, parts.f(), [&] {
+    auto const& interpolation = parts.layout.interpolation;
+    if (drift != 0)
+      interpolation.apply(parts.backend, parts.u(), parts.v());
+    else
+      interpolation.apply(parts.backend, parts.v());
+  });
+}
+
+/// Whether advance_handing_on may be asked: where there are slaves, and forces are read nowhere else in a step.
+template <class Parts>
+bool can_hand_on_in_advance(Parts const& parts) {
+  return !parts.layout.interpolation.empty() && parts.state.damping == 0 && parts.driven.empty();
+}
+/// Before a loop over nodes that hands forces on is recorded.
+template <class Parts>
+void prepare_handing_on(Parts& parts) {
+  if (can_hand_on_in_advance(parts))
+    parts.layout.interpolation.list_by_node(parts.backend, parts.layout.rows);
+}
+/// An advance, with a drift, under forces of which slaves still hold theirs.
+template <class Parts>
+void advance_handing_on(Parts& parts, double lag, double kick, double drift) {
+  auto const& interpolation = parts.layout.interpolation;
+  detail::advance_under(parts, lag, kick, drift, interpolation.handed_on(parts.f()), [&] {
+    interpolation.apply_and_clear(parts.backend, parts.u(), parts.v(), parts.f());
+  });
 }
 
 /// Gives velocities the half-kick that the last step left pending, so that they belong to state.time.

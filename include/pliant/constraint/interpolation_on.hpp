@@ -7,6 +7,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/host_threads.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/constraint/interpolation.hpp>
 #include <pliant/constraint/rows_on.hpp>
 
@@ -26,11 +27,14 @@ struct WeightedRow {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto base = Vector<T, C>::zero();
     if constexpr (!Add) base = field.at(other[first[k]]);
-    auto sum = Add ? field.at(node[k]) : base;
+    field.set(node[k], sum(k, Add ? field.at(node[k]) : base, base));
+  }
+  /// A row's sum over the others' differences from a base, begun at `from`.
+  PLIANT_HOST_DEVICE Vector<T, C> sum(Index k, Vector<T, C> from, Vector<T, C> const& base) const {
     for (Index j = first[k]; j < first[k + 1]; ++j)
-      sum = sum + (Action == RowAction::add_magnitudes ? abs(weight[j]) : weight[j]) *
-                      (field.at(other[j]) - base);
-    field.set(node[k], sum);
+      from = from + (Action == RowAction::add_magnitudes ? abs(weight[j]) : weight[j]) *
+                        (field.at(other[j]) - base);
+    return from;
   }
 };
 /// Two of them for the same row, of different fields.
@@ -43,6 +47,8 @@ struct BothRows {
     second(k);
   }
 };
+template <class First, class Second>
+BothRows(First, Second) -> BothRows<First, Second>;
 /// Raises a node to the largest value of others, where that is more.
 template <class T>
 struct LargestOfRow {
@@ -60,7 +66,39 @@ struct ClearRow {
   Index const* node;
   PLIANT_HOST_DEVICE void operator()(Index k) const { field.set(node[k], Vector<T, C>::zero()); }
 };
+
+/// What a node is to an interpolation, where it is not the number of its row among masters.
+inline constexpr Index is_free = -1, is_slave = -2;
+/// Tells nodes the number of their row among masters, or that they are slaves.
+struct TellRow {
+  Index const* node;
+  bool slaves;
+  Index* row;  // (nodes)
+  PLIANT_HOST_DEVICE void operator()(Index k) const { row[node[k]] = slaves ? is_slave : k; }
+};
 }  // namespace detail
+
+/// Forces at nodes, to which those of slaves are handed on where they are read: at() is what add_transpose would bring about. Slaves
+/// keep theirs, whatever is set, since other masters may still read them.
+template <class T, int C>
+class HandedOnForces {
+ public:
+  HandedOnForces(Index const* row, detail::WeightedRow<T, C, detail::RowAction::add> const& masters)
+      : row_(row), masters_(masters) {}
+
+  PLIANT_HOST_DEVICE Vector<T, C> at(Index node) const {
+    auto const own = masters_.field.at(node);
+    Index const row = row_[node];
+    return row < 0 ? own : masters_.sum(row, own, Vector<T, C>::zero());
+  }
+  PLIANT_HOST_DEVICE void set(Index node, Vector<T, C> const& force) const {
+    if (row_[node] != detail::is_slave) masters_.field.set(node, force);
+  }
+
+ private:
+  Index const* row_;  // (nodes): of masters, or what else nodes are
+  detail::WeightedRow<T, C, detail::RowAction::add> masters_;
+};
 
 /// An Interpolation in the memory of a backend: compressed rows in both directions, so that values go
 /// from masters to slaves, and forces from slaves to masters, without two writers of a node.
@@ -133,6 +171,31 @@ class InterpolationOn {
                        weighted<C, detail::RowAction::add_magnitudes>(to_masters_, field));
     clear(backend, field);
   }
+  /// Before handed_on, of fields of so many nodes.
+  void list_by_node(B const& backend, Index nodes) {
+    if (empty() || by_node_.size() == at(nodes)) return;
+    by_node_ = unset<Index>(backend, at(nodes));
+    Index* const row = by_node_.data();
+    backend.for_each(nodes, detail::FillValue<Index>{row, detail::is_free});
+    backend.for_each(to_masters_.count, detail::TellRow{to_masters_.node.data(), false, row});
+    backend.for_each(to_slaves_.count, detail::TellRow{to_slaves_.node.data(), true, row});
+  }
+  /// Forces that are to be handed on where they are read.
+  template <int C>
+  HandedOnForces<T, C> handed_on(NodeField<T, C> forces) const {
+    return {by_node_.data(), weighted<C, detail::RowAction::add>(to_masters_, forces)};
+  }
+  /// `apply` to two fields, and slaves hold nothing of a third one: of forces that were handed on.
+  template <int C>
+  void apply_and_clear(B const& backend, NodeField<T, C> field, NodeField<T, C> other,
+                       NodeField<T, C> forces) const {
+    constexpr auto set = detail::RowAction::set;
+    if (!empty())
+      backend.for_each(to_slaves_.count,
+                       detail::BothRows{detail::BothRows{weighted<C, set>(to_slaves_, field),
+                                                         weighted<C, set>(to_slaves_, other)},
+                                        detail::ClearRow<T, C>{forces, to_slaves_.node.data()}});
+  }
   /// The largest Σ_i |P_si|: 1 where no weight is negative.
   double magnitude() const { return magnitude_; }
   /// Raises masters to the largest value of their slaves, where that is more.
@@ -184,6 +247,7 @@ class InterpolationOn {
   }
 
   RowsOn<B> to_slaves_, to_masters_;
+  typename B::template Array<Index> by_node_;  // see HandedOnForces
   double magnitude_ = 1;
 };
 

@@ -50,14 +50,20 @@ void forget_forces(Parts& parts) {
   parts.forces_current = parts.forces_complete = false;
 }
 
-/// f += what pulls at nodes that may move, at the present displacements: sleeping patches are passed over. By the
-/// kernels that ElementGroups::add_force takes.
+/// f += what pulls at nodes that may move, at the present displacements: sleeping patches are passed over, and slaves keep
+/// theirs. By the kernels that ElementGroups::add_force takes.
 template <class Parts, class KernelOf = TheirOwnKernels>
-void accumulate_awake_forces(Parts const& parts, typename Parts::Field f,
-                             KernelOf const& kernel_of = {}) {
+void accumulate_own_forces(Parts const& parts, typename Parts::Field f,
+                           KernelOf const& kernel_of = {}) {
   parts.awake_elements().add_force(parts.backend, parts.here(), f, kernel_of);
   for_each_added_term(parts,
                       [&](auto const& term) { term.add_force(parts.backend, parts.here(), f); });
+}
+/// The same, those of slaves handed on.
+template <class Parts, class KernelOf = TheirOwnKernels>
+void accumulate_awake_forces(Parts const& parts, typename Parts::Field f,
+                             KernelOf const& kernel_of = {}) {
+  accumulate_own_forces(parts, f, kernel_of);
   parts.layout.interpolation.add_transpose(parts.backend, f);
 }
 

@@ -59,8 +59,13 @@ void loop_over_move(Parts& parts, double dt) {
 }
 template <class Parts>
 void loop_over_step(Parts& parts, double dt) {
-  accumulate_awake_forces(std::as_const(parts), parts.f());
-  loop_over_move(parts, dt);
+  if (!can_hand_on_in_advance(parts)) {
+    accumulate_awake_forces(std::as_const(parts), parts.f());
+    return loop_over_move(parts, dt);
+  }
+  accumulate_own_forces(std::as_const(parts), parts.f());
+  commit_at(parts, std::as_const(parts).u());
+  advance_handing_on(parts, dt / 2, dt / 2, dt);
 }
 
 /// Replays `n` times what f() does in `steps` steps; records it where `kept` has something else.
@@ -71,6 +76,7 @@ void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, d
   // What allocates or hands loads on to masters is no part of a step.
   (void)external_forces(parts);
   (void)reserve_terms_without_energy(parts);
+  prepare_handing_on(parts);
   if (!kept || kept->dt != dt || kept->revision != parts.revision || kept->look != look ||
       kept->steps != steps)
     kept = typename Parts::Recorded{parts.backend.record(f), dt, parts.revision, look, steps};
