@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -77,7 +78,7 @@ struct Tables {
   void mix(Random& random) {
     for (Tag& tag : own_tags) tag = static_cast<Tag>(random.below(2));
     for (double& value : own_values) value = random();
-    auto const users = taken(backend, numbers.numbers(), numbers.count());
+    auto const users = users_now();
     auto const list = by_place(users);
     values = upload(backend, by_column(users));
     tags = upload(backend, list);
@@ -85,6 +86,20 @@ struct Tables {
       table->tags().upload(list);
       table->regroup();
     }
+  }
+
+  /// By the place, and cells by the number.
+  std::vector<Index> users_now() const {
+    auto list = zeros<Index>(backend, at(on.count()));
+    backend.for_each(on.count(), detail::PutNumbers{numbers.of(mesh.order), nullptr, list.data()});
+    return download<Index>(list);
+  }
+  std::vector<Index> cells_now() const {
+    std::vector<Index> list(at(on.count()));
+    std::iota(list.begin(), list.end(), Index{0});
+    auto cells = upload(backend, list);
+    backend.for_each(on.count(), detail::LookUpCells{numbers.of(mesh.order), cells.data()});
+    return download<Index>(cells);
   }
 
   /// The mesh as it is.
@@ -118,7 +133,7 @@ struct Tables {
   void change(std::shared_ptr<Topology<M> const> const& before, MarkedElements const& marked,
               Change const& make_change) {
     auto const plan = plan_change<M>(before, marked, {}, {}, {{0}, {}, {}});
-    auto const users = taken(backend, numbers.numbers(), numbers.count());
+    auto const users = users_now();
     auto const tags_before = by_place(users);
     std::vector<double> volumes;
     for (Index const user : users)
@@ -161,7 +176,7 @@ struct Tables {
     Index const node_rows = mesh.rows.count();
     on = elements_of_rows(backend, rows(before), groups, copy_of_tags(), node_rows, node_order<E>,
                           blocks, changed ? &on : nullptr);
-    numbers.find(backend, mesh.tree, mesh.order);
+    numbers.find(backend, mesh.tree);
     check_rows(node_rows, changed);
     check_results(node_rows);
   }
@@ -196,10 +211,8 @@ struct Tables {
     CHECK(taken(backend, on.rows_of_nodes().nodes, on.count() * width) == padded);
 
     ElementNumbers const expected(ordered.cells[0], wanted.first, set);
-    REQUIRE(numbers.count() == on.count());
-    CHECK(taken(backend, numbers.numbers(), numbers.count()) == expected.all());
-    CHECK(taken(backend, numbers.cells(), numbers.count()) ==
-          std::vector<Index>(set.begin(), set.end()));
+    CHECK(users_now() == expected.all());
+    CHECK(cells_now() == std::vector<Index>(set.begin(), set.end()));
 
     auto const tags_wanted = by_place(expected.all());
     CHECK(download<Tag>(tags) == tags_wanted);

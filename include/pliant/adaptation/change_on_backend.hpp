@@ -55,7 +55,7 @@ class ChangesOnBackend {
   B const& backend() const { return parts_.backend; }
   Cells cells_of(std::vector<Index> const& numbers) {
     auto cells = upload(backend(), numbers);
-    backend().for_each(size(numbers), LookUp{on().numbers.cells(), cells.data()});
+    backend().for_each(size(numbers), LookUpCells{on().element_numbers(), cells.data()});
     return cells;
   }
 
@@ -134,7 +134,7 @@ class ChangesOnBackend {
     commit_change<true>(parts_, action, count, [&] {
       ChangedPartsOn<Parts> parts(parts_, *kept);
       auto changed = make(parts);
-      kept->numbers.find(backend(), kept->tree, kept->order);
+      kept->numbers.find(backend(), kept->tree);
       changed.parts.topology_on = kept;
       return changed;
     });

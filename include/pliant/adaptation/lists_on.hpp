@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <pliant/adaptation/refinement.hpp>
-#include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/backend.hpp>
 
 // What rules know of the elements of a table by their internal numbers, in the backend's memory: where the mesh is changed
 // there, the host is not asked.
@@ -35,10 +35,10 @@ struct IsMarked {
 template <class Parts, class Table>
 auto numbers_on_backend(Parts const& parts, Table const& table) {
   if constexpr (changes_on_backend<Parts>)
-    if (parts.topology_on) {
-      auto numbers = zeros<Index>(parts.backend, static_cast<std::size_t>(table.count()));
-      copy_values(parts.backend, parts.topology_on->numbers.numbers(), numbers.data(),
-                  numbers.size());
+    if (auto const& on = parts.topology_on) {
+      auto numbers = unset<Index>(parts.backend, static_cast<std::size_t>(table.count()));
+      parts.backend.for_each(table.count(),
+                             PutNumbers{on->element_numbers(), nullptr, numbers.data()});
       return numbers;
     }
   return upload(parts.backend, table.user_elements());
@@ -76,13 +76,10 @@ void visit_marked(Parts const& parts, Table const& table, std::uint32_t const* m
   auto const number_all = [&] {
     if constexpr (changes_on_backend<Parts>)
       if (auto const& on = parts.topology_on) {
-        auto numbers = zeros<Index>(backend, places.size());
-        backend.for_each(count,
-                         TakeListed<Index>{on->numbers.numbers(), list.data(), numbers.data()});
-        {
-          numbers.download(places);
-          return;
-        }
+        auto numbers = unset<Index>(backend, places.size());
+        backend.for_each(count, PutNumbers{on->element_numbers(), list.data(), numbers.data()});
+        numbers.download(places);
+        return;
       }
     for (Index& place : places) place = table.user_element(place);
   };

@@ -1,35 +1,84 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
 
+/// The user's numbers of the elements of a mesh of one type as loops see them: leaves of the tree have theirs in the order of
+/// their cells (see CellSet).
+struct ElementNumbersView {
+  static constexpr Index per_word = 32;
+
+  Index const* leaves;         // by the place in the order of the elements
+  std::uint32_t const* words;  // a bit for each cell: whether it is a leaf
+  Index const* before;         // (words + 1): how many leaves there are before each
+  Index count_of_words;
+
+  /// Of the element at a place.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index number(Index place) const {
+    Index const cell = leaves[place], word = cell / per_word;
+    auto const those_before = (std::uint32_t{1} << cell % per_word) - 1;
+    return before[word] + std::popcount(words[word] & those_before);
+  }
+  /// The cell of an element with a number.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index cell(Index number) const {
+    Index low = 0, high = count_of_words;  // its word is in [low, high)
+    while (high - low > 1) {
+      Index const middle = low + (high - low) / 2;
+      (before[middle] <= number ? low : high) = middle;
+    }
+    auto left = words[low];
+    for (Index k = before[low]; k < number; ++k) left &= left - 1;
+    return low * per_word + std::countr_zero(left);
+  }
+};
+
 namespace detail {
 
-struct CountLeaf {
+struct FindLeaves {
   TreeView tree;
-  PLIANT_HOST_DEVICE Index operator()(Index c) const { return tree.is_leaf(c) ? 1 : 0; }
-};
-/// By the place of a leaf: its rank; and by the rank: the leaf.
-struct PutNumbers {
-  Index const *leaves, *rank;
-  Index *numbers, *cells;
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const cell = leaves[i], own = rank[cell];
-    numbers[i] = own;
-    cells[own] = cell;
+  Index cells;
+  std::uint32_t* words;
+  PLIANT_HOST_DEVICE void operator()(Index w) const {
+    constexpr Index per_word = ElementNumbersView::per_word;
+    Index const first = w * per_word, count = cells - first < per_word ? cells - first : per_word;
+    std::uint32_t bits = 0;
+    for (Index k = 0; k < count; ++k)
+      if (tree.is_leaf(first + k)) bits |= std::uint32_t{1} << k;
+    words[w] = bits;
   }
+};
+struct CountLeaves {
+  std::uint32_t const* words;
+  PLIANT_HOST_DEVICE Index operator()(Index w) const { return std::popcount(words[w]); }
+};
+/// The user's numbers of elements at places; without a list of these, at all.
+struct PutNumbers {
+  ElementNumbersView of;
+  Index const* places;
+  Index* numbers;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    numbers[i] = of.number(places == nullptr ? i : places[i]);
+  }
+};
+/// The cells of elements with some numbers take the place of these.
+struct LookUpCells {
+  ElementNumbersView of;
+  Index* numbers;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { numbers[i] = of.cell(numbers[i]); }
 };
 
 }  // namespace detail
 
-/// The user's numbers of the elements of a mesh of one type, in a backend's memory: leaves of the tree have theirs in the order of
-/// their cells (see CellSet).
+/// What ElementNumbersView sees, in a backend's memory.
 template <Backend B>
 class ElementNumbersOn {
   template <class U>
@@ -37,32 +86,31 @@ class ElementNumbersOn {
 
  public:
   ElementNumbersOn() = default;
-  /// Finds the numbers of the leaves that there are now.
-  ElementNumbersOn(B const& backend, TreeOn<B> const& tree, LeafOrderOn<B> const& order) {
-    find(backend, tree, order);
+  /// Of the leaves that there are now.
+  ElementNumbersOn(B const& backend, TreeOn<B> const& tree) { find(backend, tree); }
+
+  /// `order`: of the elements now.
+  [[nodiscard]] ElementNumbersView of(LeafOrderOn<B> const& order) const {
+    return {order.leaves(), words_.data(), before_.data(), count_of_words_};
   }
 
-  [[nodiscard]] Index count() const { return count_; }
-  /// By the place in the order of the elements.
-  [[nodiscard]] Index const* numbers() const { return numbers_.data(); }
-  /// The cells of elements by the user's numbers, ascending.
-  [[nodiscard]] Index const* cells() const { return cells_.data(); }
-
   /// The same after a change.
-  void find(B const& backend, TreeOn<B> const& tree, LeafOrderOn<B> const& order) {
+  void find(B const& backend, TreeOn<B> const& tree) {
+    constexpr Index per_word = ElementNumbersView::per_word;
     Index const cells = tree.sizes().cells;
-    count_ = order.count();
-    detail::grow(backend, rank_, static_cast<std::size_t>(cells) + 1);
-    detail::grow(backend, numbers_, static_cast<std::size_t>(count_));
-    detail::grow(backend, cells_, static_cast<std::size_t>(count_));
-    backend.scan(cells, detail::CountLeaf{tree.view()}, rank_.data());
-    backend.for_each(
-        count_, detail::PutNumbers{order.leaves(), rank_.data(), numbers_.data(), cells_.data()});
+    count_of_words_ = cells / per_word + (cells % per_word > 0 ? 1 : 0);
+    detail::grow(backend, words_, static_cast<std::size_t>(count_of_words_));
+    detail::grow(backend, before_, static_cast<std::size_t>(count_of_words_) + 1);
+    detail::in_turn(
+        backend,
+        detail::LoopStep{count_of_words_, detail::FindLeaves{tree.view(), cells, words_.data()}},
+        detail::ScanStep{count_of_words_, detail::CountLeaves{words_.data()}, before_.data()});
   }
 
  private:
-  Array<Index> rank_, numbers_, cells_;
-  Index count_ = 0;
+  Array<std::uint32_t> words_;
+  Array<Index> before_;
+  Index count_of_words_ = 0;
 };
 
 }  // namespace pliant

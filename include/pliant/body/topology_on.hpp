@@ -48,6 +48,7 @@ struct TopologyOn<Mesh<E>, B> {
   explicit TopologyOn(Parts const& parts)
       : TopologyOn(parts, detail::tree_of(parts.state.topology.shared())) {}
 
+  [[nodiscard]] ElementNumbersView element_numbers() const { return numbers.of(order); }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
   /// Brings what is held up to a body's conditions, where these have changed; whether that can be.
   template <class Parts>
@@ -69,7 +70,7 @@ struct TopologyOn<Mesh<E>, B> {
         order(parts.backend, leaves_of(parts, *known.cells), parts.layout.first_of_block[0],
               tree.sizes().cells),
         rows(parts.backend, parts.layout.node_rows()),
-        numbers(parts.backend, tree, order),
+        numbers(parts.backend, tree),
         hanging(parts.backend, !LinearSimplex<E>),
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),
