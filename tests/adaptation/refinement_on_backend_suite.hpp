@@ -26,7 +26,13 @@ auto body_of(B const& backend, bool on_host, Index cells) {
   using E = typename F::element;
   constexpr int dim = E::dim;
   auto const mesh = distorted_mesh<E>(cells);
-  Body body{backend, mesh, soft, Group<F>{}, Group<Stiffer<F>>{}};
+  Group<F> group;
+  if constexpr (element_values<F> > 0) {
+    Random random(5);
+    for (std::size_t e = 0; e < std::get<0>(mesh.tables).size(); ++e)
+      group.values.push_back({1 + random(), 2 + random()});
+  }
+  Body body{backend, mesh, soft, group, Group<Stiffer<F>>{}};
   std::vector<Point<dim>> u(mesh.nodes.size()), v(u);
   std::vector<Index> held;
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -111,6 +117,8 @@ void check_same(OnBackend& body, OnHost& host, double rounding) {
   };
   CHECK(held_in(body.parts()) == held_in(host.parts()));
   CHECK(std::get<0>(layout.tables).user_elements() == std::get<0>(other.tables).user_elements());
+  auto const values = [](auto const& table) { return table.in_user_order(table.values); };
+  CHECK(values(std::get<0>(layout.tables)) == values(std::get<0>(other.tables)));
   CHECK(body.displacements() == host.displacements());
   CHECK(largest_difference(body.velocities(), host.velocities()) < 40 * rounding);
   using E = typename std::remove_cvref_t<decltype(std::get<0>(layout.tables))>::element;
@@ -243,6 +251,71 @@ TEST_CASE("a body that is coarsened in its backend's memory is the one that the 
     check_both_ways<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 3, 8, 2);
   });
   check_both_ways<Formulation<Tri3, Gauss<1>, NeoHookean>>(KeepingFloat{}, 6, 5, 2);
+}
+
+template <class E>
+using Graded = Formulation<E, Gauss<1>, PerElement<NeoHookean>::law>;
+
+TEST_CASE("elements keep the values that their laws read where a body's backend changes its mesh",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_both_ways<Graded<Tri3>>(backend, 5, 5, 2);
+    check_rounds<Graded<Tet4>>(backend, 3, 12, 2);
+  });
+}
+
+/// Pulls two nodes together.
+template <class T>
+struct Spring {
+  static constexpr int nodes = 2, dim = 2;
+  T stiffness;  // N/m
+  template <class S>
+  PLIANT_HOST_DEVICE S energy(Matrix<S, 2, 2> const&, Matrix<S, 2, 2> const& u) const {
+    return stiffness / 2 * (square(u(1, 0) - u(0, 0)) + square(u(1, 1) - u(0, 1)));
+  }
+};
+
+TEST_CASE("force terms are made anew where a body's backend changes its mesh", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    TwoBodies<F, B> both(backend, 6);
+    int made = 0;
+    bool fails = false;
+    auto const springs = [&](B const& b, NodeRows const& rows) {
+      if (fails) throw std::runtime_error("no springs");
+      ++made;
+      auto const last = static_cast<Index>(rows.of_node.size()) - 1;
+      return std::make_unique<ConnectedTerm<B, Spring>>(
+          b, std::vector<std::array<Index, 2>>{{rows.of_node[3], rows.of_node[at(last)]}},
+          Spring<double>{20}, rows.count());
+    };
+    both.body.add(springs);
+    both.host.add(springs);
+    both.refine_one_in(5);
+    both.coarsen_all_but_one_in(6);
+    CHECK(made == 6);
+    both.check_all();
+    auto const nodes = both.body.nodes();
+    auto const forces = both.body.forces();
+    fails = true;
+    CHECK_THROWS_AS(refine(both.body, {{0, 1}}), std::runtime_error);
+    fails = false;
+    CHECK(both.body.nodes() == nodes);
+    CHECK(largest_difference(both.body.forces(), forces) <= 100 * both.rounding);
+    both.refine_one_in(5);
+    both.check_all();
+  });
+}
+
+TEST_CASE("where values are set by place, the host changes the mesh", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    Body body{backend, distorted_mesh<Tri3>(3), soft,
+              Group<Graded<Tri3>>{.values_at = [](Point<2> const& x) {
+                return std::array<double, 2>{1 + x[0], 2 + x[1]};
+              }}};
+    refine(body, {{0, 1}});
+    CHECK(!is_on_backend(body));
+  });
 }
 
 TEST_CASE("rules refine a body in its backend's memory as on the host", "[adaptation]") {

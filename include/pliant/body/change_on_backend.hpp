@@ -33,8 +33,7 @@ template <class Parts>
 inline constexpr bool changes_on_backend = [] {
   if constexpr (keeps_trees<typename Parts::backend_type> &&
                 is_of_one_refinable_type<typename Parts::mesh_type>) {
-    using Laws = typename std::tuple_element_t<0, decltype(Parts::layout_type::tables)>::Laws;
-    return !Parts::has_internal_variables && Laws::value_count == 0;
+    return !Parts::has_internal_variables;
   } else {
     return false;
   }
@@ -44,10 +43,10 @@ inline constexpr bool changes_on_backend = [] {
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>
 bool can_change_on_backend(Parts const& parts) {
-  if (parts.mesh_is_on_host || !parts.listeners.empty() || !parts.term_makers.empty() ||
-      parts.sleep != nullptr || !parts.pressures.empty() || !parts.driven.empty())
+  if (parts.mesh_is_on_host || !parts.listeners.empty() || parts.sleep != nullptr ||
+      !parts.pressures.empty() || !parts.driven.empty())
     return false;
-  return parts.first->interpolation.empty();
+  return parts.first->interpolation.empty() && !sets_values_by_place(parts);
 }
 
 /// What the host knows of a mesh that was changed in a backend's memory.

@@ -206,6 +206,10 @@ class ChangedPartsOn {
         elements_of_rows<Elements>(backend_, std::move(rows), Table::groups, std::move(tags), rows_,
                                    node_order<E>, blocks, &before.elements);
     table.laws = before.laws;
+    // Children have their parent's, so that those of a family are equal.
+    if constexpr (Table::Laws::value_count > 0)
+      table.values = inherited_values<T>(backend_, on_.order, before.values.data(),
+                                         Index{Table::Laws::value_count});
     table.straight = before.straight;
     table.numbers = WhenAsked<ElementNumbers>::by(
         [topology = topology_, order = parts_.layout.first_order, first = blocks.first] {
@@ -236,6 +240,7 @@ class ChangedPartsOn {
     state.record.totals = closed_totals(parts_);
     state.record.born = state.steps;
     if (state.load.size() > 0) make_loads(next);
+    renew_terms(next);
     std::get<0>(state.elements).statistics = {};
     std::get<0>(next.layout.tables).elements.regroup();
     make_room_for_forces(next);
@@ -249,8 +254,9 @@ class ChangedPartsOn {
     auto const& table = std::get<0>(of.layout.tables);
     energies_.add_strain(time, table, table.elements, of.layout, of.state.u);
   }
-  /// Of elements at some places.
+  /// Of elements at some places; of all where laws read what is kept per element, by its number.
   void add_strain(Time time, Parts const& of, Array<Index> const& places, Index count) {
+    if constexpr (Table::Laws::reads_elements) return add_strain(time, of);
     auto const& table = std::get<0>(of.layout.tables);
     energies_.add_strain(
         time, table,
@@ -258,13 +264,20 @@ class ChangedPartsOn {
                      places.data(), count, Table::groups, of.layout.rows),
         of.layout, of.state.u);
   }
+  /// The energy of the user's force terms, J.
+  static double energy_of_terms(Parts const& of) {
+    double sum = 0;
+    for (auto const& term : of.terms)
+      if (term->has_energy()) sum += term->energy(of.backend, of.here());
+    return sum;
+  }
   /// Waits for what was asked of the backend. Throws Error where a field was not finite.
   void read_energies(ChangedTopology<Parts>& changed) {
     energies_.add_kinetic(Energies::after, changed.parts);
     auto const sums = energies_.read();
     if (sums.not_finite > 0) check_fields();
-    changed.strain_energy_before = sums.strain[Energies::before];
-    changed.strain_energy = sums.strain[Energies::after];
+    changed.strain_energy_before = sums.strain[Energies::before] + energy_of_terms(parts_);
+    changed.strain_energy = sums.strain[Energies::after] + energy_of_terms(changed.parts);
     changed.kinetic_energy_before = sums.kinetic[Energies::before];
     changed.kinetic_energy = sums.kinetic[Energies::after];
   }

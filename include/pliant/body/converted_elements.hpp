@@ -87,6 +87,22 @@ std::vector<Tag> carried_groups(Parts const& parts, std::vector<std::vector<Tag>
       type);
 }
 
+/// Whether a group sets the values of new elements by their places.
+template <class Parts>
+bool sets_values_by_place(Parts const& parts) {
+  return std::apply(
+      []<class... F>(Group<F> const&... groups) {
+        auto const does = []<class G>(Group<G> const& group) {
+          if constexpr (element_values<G> > 0)
+            return static_cast<bool>(group.values_at);
+          else
+            return false;
+        };
+        return (does(groups) || ...);
+      },
+      parts.groups);
+}
+
 /// What sets the values of a new element of a table's type by its place; empty where no group has values_at.
 template <class Table, class Parts>
 std::function<void(Point<Parts::dim> const&, std::span<double>)> setter_by_place(
