@@ -256,13 +256,16 @@ class ChangedPartsOn {
   }
   /// Of elements at some places; of all where laws read what is kept per element, by its number.
   void add_strain(Time time, Parts const& of, Array<Index> const& places, Index count) {
-    if constexpr (Table::Laws::reads_elements) return add_strain(time, of);
-    auto const& table = std::get<0>(of.layout.tables);
-    energies_.add_strain(
-        time, table,
-        element_list(backend_, table.elements, std::get<0>(of.state.elements).tags.data(),
-                     places.data(), count, Table::groups, of.layout.rows),
-        of.layout, of.state.u);
+    if constexpr (Table::Laws::reads_elements) {
+      add_strain(time, of);
+    } else {
+      auto const& table = std::get<0>(of.layout.tables);
+      energies_.add_strain(
+          time, table,
+          element_list(backend_, table.elements, std::get<0>(of.state.elements).tags.data(),
+                       places.data(), count, Table::groups, of.layout.rows),
+          of.layout, of.state.u);
+    }
   }
   /// The energy of the user's force terms, J.
   static double energy_of_terms(Parts const& of) {
