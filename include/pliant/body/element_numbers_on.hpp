@@ -37,7 +37,8 @@ struct ElementNumbersView {
     }
     auto left = words[low];
     for (Index k = before[low]; k < number; ++k) left &= left - 1;
-    return low * per_word + std::countr_zero(left);
+    // How many zeros it ends in: std::countr_zero gives 32 in what nvcc 13.0 makes for devices.
+    return low * per_word + std::popcount(~left & (left - 1));
   }
 };
 
