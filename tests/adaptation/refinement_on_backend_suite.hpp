@@ -10,6 +10,7 @@
 
 #include "support/formulations.hpp"
 #include "support/keeps_trees.hpp"
+#include "support/spring.hpp"
 
 // Bodies that are refined in their backend's memory, beside bodies that are refined on the host.
 namespace pliant::test::refinement_on_backend_suite {
@@ -263,17 +264,6 @@ TEST_CASE("elements keep the values that their laws read where a body's backend 
     check_rounds<Graded<Tet4>>(backend, 3, 12, 2);
   });
 }
-
-/// Pulls two nodes together.
-template <class T>
-struct Spring {
-  static constexpr int nodes = 2, dim = 2;
-  T stiffness;  // N/m
-  template <class S>
-  PLIANT_HOST_DEVICE S energy(Matrix<S, 2, 2> const&, Matrix<S, 2, 2> const& u) const {
-    return stiffness / 2 * (square(u(1, 0) - u(0, 0)) + square(u(1, 1) - u(0, 1)));
-  }
-};
 
 TEST_CASE("force terms are made anew where a body's backend changes its mesh", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {

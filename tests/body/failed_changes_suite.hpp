@@ -5,6 +5,7 @@
 
 #include "support/formulations.hpp"
 #include "support/repeatable.hpp"
+#include "support/spring.hpp"
 
 // Changes that fail half way leave the body as it was.
 namespace pliant::test::failed_changes_suite {
@@ -18,18 +19,6 @@ std::string saved(TheBody const& body) {
   body.save(stream);
   return stream.str();
 }
-
-/// Pulls two nodes together.
-template <class T>
-struct Spring {
-  static constexpr int nodes = 2, dim = 2;
-  T stiffness;  // N/m
-  template <class S>
-  PLIANT_HOST_DEVICE S energy(Matrix<S, 2, 2> const&, Matrix<S, 2, 2> const& u) const {
-    S const x = u(1, 0) - u(0, 0), y = u(1, 1) - u(0, 1);
-    return stiffness / 2 * (x * x + y * y);
-  }
-};
 
 enum class Made { well, null, by_throwing };
 

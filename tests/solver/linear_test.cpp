@@ -9,6 +9,7 @@
 
 #include "support/formulations.hpp"
 #include "support/random.hpp"
+#include "support/spring.hpp"
 
 // Sparse matrices of blocks, conjugate gradients and the multilevel method, beside dense matrices and factors.
 namespace pliant::test::linear {
@@ -407,17 +408,6 @@ TEST_CASE("a large body that nothing holds is singular", "[solver]") {
   CHECK_THROWS_WITH(solve_static(body, {.linear = LinearMethod::multilevel}),
                     says("solve_static: the matrix is singular"));
 }
-
-/// Pulls two nodes together.
-template <class T>
-struct Spring {
-  static constexpr int nodes = 2, dim = 2;
-  T stiffness;  // N/m
-  template <class S>
-  PLIANT_HOST_DEVICE S energy(Matrix<S, 2, 2> const&, Matrix<S, 2, 2> const& u) const {
-    return stiffness / 2 * (square(u(0, 0) - u(1, 0)) + square(u(0, 1) - u(1, 1)));
-  }
-};
 
 TEST_CASE("force terms between nodes that share no element are assembled", "[solver]") {
   auto const mesh = mesh::rectangle({.size = {1, 1}, .cells = {3, 3}});
