@@ -76,48 +76,48 @@ auto operator+(A a, B b) {
   return detail::Calculated<detail::Operation::plus, A, B>{{a, b}};
 }
 template <Measure A>
-auto operator+(A a, double b) {
-  return detail::Calculated<detail::Operation::plus, A, detail::Constant>{{a, {b}}};
+auto operator+(A a, detail::Number b) {
+  return detail::Calculated<detail::Operation::plus, A, detail::Constant>{{a, {b.value}}};
 }
 template <Measure B>
-auto operator+(double a, B b) {
-  return detail::Calculated<detail::Operation::plus, detail::Constant, B>{{{a}, b}};
+auto operator+(detail::Number a, B b) {
+  return detail::Calculated<detail::Operation::plus, detail::Constant, B>{{{a.value}, b}};
 }
 template <Measure A, Measure B>
 auto operator-(A a, B b) {
   return detail::Calculated<detail::Operation::minus, A, B>{{a, b}};
 }
 template <Measure A>
-auto operator-(A a, double b) {
-  return detail::Calculated<detail::Operation::minus, A, detail::Constant>{{a, {b}}};
+auto operator-(A a, detail::Number b) {
+  return detail::Calculated<detail::Operation::minus, A, detail::Constant>{{a, {b.value}}};
 }
 template <Measure B>
-auto operator-(double a, B b) {
-  return detail::Calculated<detail::Operation::minus, detail::Constant, B>{{{a}, b}};
+auto operator-(detail::Number a, B b) {
+  return detail::Calculated<detail::Operation::minus, detail::Constant, B>{{{a.value}, b}};
 }
 template <Measure A, Measure B>
 auto operator*(A a, B b) {
   return detail::Calculated<detail::Operation::times, A, B>{{a, b}};
 }
 template <Measure A>
-auto operator*(A a, double b) {
-  return detail::Calculated<detail::Operation::times, A, detail::Constant>{{a, {b}}};
+auto operator*(A a, detail::Number b) {
+  return detail::Calculated<detail::Operation::times, A, detail::Constant>{{a, {b.value}}};
 }
 template <Measure B>
-auto operator*(double a, B b) {
-  return detail::Calculated<detail::Operation::times, detail::Constant, B>{{{a}, b}};
+auto operator*(detail::Number a, B b) {
+  return detail::Calculated<detail::Operation::times, detail::Constant, B>{{{a.value}, b}};
 }
 template <Measure A, Measure B>
 auto operator/(A a, B b) {
   return detail::Calculated<detail::Operation::over, A, B>{{a, b}};
 }
 template <Measure A>
-auto operator/(A a, double b) {
-  return detail::Calculated<detail::Operation::over, A, detail::Constant>{{a, {b}}};
+auto operator/(A a, detail::Number b) {
+  return detail::Calculated<detail::Operation::over, A, detail::Constant>{{a, {b.value}}};
 }
 template <Measure B>
-auto operator/(double a, B b) {
-  return detail::Calculated<detail::Operation::over, detail::Constant, B>{{{a}, b}};
+auto operator/(detail::Number a, B b) {
+  return detail::Calculated<detail::Operation::over, detail::Constant, B>{{{a.value}, b}};
 }
 
 }  // namespace pliant

@@ -65,19 +65,19 @@ template <class C>
 concept ElementCondition = requires { requires C::is_condition; };
 
 template <Measure C>
-auto operator>(C criterion, double limit) {
-  return detail::Comparison<C>{{criterion}, detail::limit(limit), 1};
+auto operator>(C criterion, detail::Number limit) {
+  return detail::Comparison<C>{{criterion}, detail::limit(limit.value), 1};
 }
 template <Measure C>
-auto operator<(C criterion, double limit) {
-  return detail::Comparison<C>{{criterion}, detail::limit(limit), -1};
+auto operator<(C criterion, detail::Number limit) {
+  return detail::Comparison<C>{{criterion}, detail::limit(limit.value), -1};
 }
 template <Measure C>
-auto operator<(double limit, C criterion) {
+auto operator<(detail::Number limit, C criterion) {
   return criterion > limit;
 }
 template <Measure C>
-auto operator>(double limit, C criterion) {
+auto operator>(detail::Number limit, C criterion) {
   return criterion < limit;
 }
 

@@ -23,6 +23,13 @@ concept Measure = requires {
 };
 
 namespace detail {
+/// A number beside a criterion. An operator of two plain numbers is an error for compilers that look at a declaration before
+/// its constraints (clang++ 14), wherever namespace pliant is searched for one.
+struct Number {
+  double value;
+  Number(double number) : value(number) {}
+};
+
 /// The unit that several criteria share; `other` where they differ. Nothing where one does not say its own.
 template <class... Cs>
 struct SharedUnit {};
