@@ -47,7 +47,7 @@ struct ElementTable<B, E, detail::TypeList<Fs...>> {
   /// The user's numbers, by the internal number.
   std::vector<Index> const& user_elements() const { return numbers->all(); }
   /// Of one element, without a look at the others.
-  Index user_element(Index element) const { return (*numbers)[element]; }
+  Index user_element(Index e) const { return (*numbers)[e]; }
 
   /// The rows of values per element, in the order of the backend's memory.
   std::vector<scalar> in_internal_order(std::vector<double> const& rows) const {
