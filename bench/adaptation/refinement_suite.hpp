@@ -34,12 +34,21 @@ void time_refinement(benchmark::State& state, B const& backend, int cells) {
   report_elements(state, body);
 }
 
-/// Some elements of a mesh in which one was refined before, or what that made of them back to what they were.
+/// Some elements of a mesh in which one was refined before, or what that made of them back to what they were. `acted`: there is
+/// a pressure at its top, and its right end is driven.
 template <class E, class B>
 void time_change(benchmark::State& state, B const& backend, int cells,
-                 std::vector<Index> const& marked, bool back) {
+                 std::vector<Index> const& marked, bool back, bool acted) {
   auto body = shaken_body<Usual<E, SaintVenantKirchhoff>>(backend, cells);
   report_elements(state, body);
+  if (acted) {
+    body.press(body.mesh().boundary("top"), 10);
+    body.drive(body.mesh().boundary("right"), [](double time) {
+      Point<E::dim> u{};
+      u[0] = time;
+      return u;
+    });
+  }
   auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
   auto const children = [&] {
     std::vector<Index> found;
@@ -67,11 +76,13 @@ inline void add_refinements() {
       add<Usual<E, SaintVenantKirchhoff>, T>(
           "refine", name, cells,
           [backend, cells](benchmark::State& state) { time_refinement<E>(state, backend, cells); });
-      auto const change = [&](std::string const& what, std::vector<Index> const& marked) {
+      auto const change = [&](std::string const& what, std::vector<Index> const& marked,
+                              bool acted = false) {
         for (bool const back : {false, true})
           add<Usual<E, SaintVenantKirchhoff>, T>(
-              (back ? "coarsen " : "refine ") + what, name, cells, [=](benchmark::State& state) {
-                time_change<E>(state, backend, cells, marked, back);
+              (back ? "coarsen " : "refine ") + what + (acted ? ", pressed and driven" : ""), name,
+              cells, [=](benchmark::State& state) {
+                time_change<E>(state, backend, cells, marked, back, acted);
               });
       };
       std::size_t const count = element_count<E>(cells);
@@ -81,6 +92,9 @@ inline void add_refinements() {
       change("a ten thousandth", first_elements(count / 10000));
       change("a hundredth", first_elements(count / 100));
       change("each hundredth", each_of(count, 100));
+      change("two", first_elements(2), true);
+      change("each hundredth", each_of(count, 100), true);
+      change("a tenth", first_elements(count / 10), true);
     };
     one(Tri3{}, 2e4);
     one(Quad4{}, 2e4);

@@ -132,10 +132,9 @@ class ChangesOnBackend {
   void commit(char const* action, std::size_t count, Change const& make) {
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
     commit_change<true>(parts_, action, count, [&] {
-      ChangedPartsOn<Parts> parts(parts_, *kept);
+      ChangedPartsOn<Parts> parts(parts_, kept);
       auto changed = make(parts);
       kept->numbers.find(backend(), kept->tree);
-      changed.parts.topology_on = kept;
       return changed;
     });
     kept->tree.keep();

@@ -6,6 +6,7 @@
 
 #include <pliant/adaptation/refinement.hpp>
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/is_marked.hpp>
 
 // What rules know of the elements of a table by their internal numbers, in the backend's memory: where the mesh is changed
 // there, the host is not asked.
@@ -25,10 +26,6 @@ struct TakeListed {
   Index const* places;
   U* to;
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[places[i]]; }
-};
-struct IsMarked {
-  std::uint32_t const* masks;
-  PLIANT_HOST_DEVICE bool operator()(Index i) const { return masks[i] != 0; }
 };
 
 /// The user's numbers.
@@ -66,7 +63,7 @@ template <class Parts, class Table, class Visit>
 void visit_marked(Parts const& parts, Table const& table, std::uint32_t const* masks,
                   Visit const& visit) {
   auto const& backend = parts.backend;
-  auto places = backend.select(table.count(), IsMarked{masks});
+  auto places = backend.select(table.count(), IsMarked<std::uint32_t>{masks});
   if (places.empty()) return;
   auto const count = static_cast<Index>(places.size());
   auto const list = upload(backend, places);

@@ -15,6 +15,7 @@
 #include <pliant/body/energy_sums_on.hpp>
 #include <pliant/body/fill_new_nodes_on.hpp>
 #include <pliant/body/gone_nodes_on.hpp>
+#include <pliant/force/forces.hpp>
 #include <pliant/topology/refined_elements.hpp>
 
 namespace pliant::detail {
@@ -37,8 +38,8 @@ class ChangedPartsOn {
   using Array = typename Parts::template Array<U>;
 
  public:
-  ChangedPartsOn(Parts& parts, On& on)
-      : parts_(parts), on_(on), backend_(parts.backend), energies_(backend_) {}
+  ChangedPartsOn(Parts& parts, std::shared_ptr<On> on)
+      : parts_(parts), on_(std::move(on)), backend_(parts.backend), energies_(backend_) {}
 
   /// Linear elements keep their momentum: what their children interpolate is what they did, and lumped masses are the integrals
   /// of shape functions.
@@ -49,31 +50,31 @@ class ChangedPartsOn {
     auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
     backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
     follow_on_host(std::move(cells), false);
-    on_.order.refine(on_.tree, done);
-    on_.rows.refine(on_.tree, on_.order, done);
-    rows_ = on_.rows.count();
+    on_->order.refine(on_->tree, done);
+    on_->rows.refine(on_->tree, on_->order, done);
+    rows_ = on_->rows.count();
     Copies copies(backend_);
-    auto points = copies.template extended<double>(on_.points, values());
+    auto points = copies.template extended<double>(on_->points, values());
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
     auto layout = new_layout(
-        copies, [&] { return on_.hanging.rows_after(on_.tree, done, on_.rows.of_node()); });
-    on_.points = std::move(points);
+        copies, [&] { return on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()); });
+    on_->points = std::move(points);
     auto const fill = [&](auto field) {
-      return filling_new_nodes<E>(on_.tree, done, on_.rows.of_node(), field);
+      return filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), field);
     };
-    in_turn(backend_, fill(on_.point_field()), fill(node_field<dim>(u)), fill(node_field<dim>(v)),
+    in_turn(backend_, fill(on_->point_field()), fill(node_field<dim>(u)), fill(node_field<dim>(v)),
             LoopStep{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
-                                                         on_.rows.of_node(),
-                                                         {on_.points.data()},
+                                                         on_->rows.of_node(),
+                                                         {on_->points.data()},
                                                          layout.middle,
                                                          node_field<dim>(layout.rest)}});
-    on_.held.refine(backend_, on_.tree, done, on_.rows.of_node(), rows_, layout.held.data());
-    on_.masses.extend(rows_);
-    on_.masses.exchange(refined_elements<E>(on_.tree, done, on_.rows.of_node(), at_rest()));
+    on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, layout.held.data());
+    on_->masses.extend(rows_);
+    on_->masses.exchange(refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest()));
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
-    RefinedPlaces<B> const places(backend_, on_.order, done);
+    RefinedPlaces<B> const places(backend_, on_->order, done);
     add_strain(Energies::before, parts_, places.go, places.go_count);
     auto changed = with_fields(std::move(layout), std::move(u), std::move(v), {});
     changed.parts.state.load = std::move(load);
@@ -93,38 +94,38 @@ class ChangedPartsOn {
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
     follow_on_host(std::move(parents), true);
-    on_.order.coarsen(on_.tree, done);
-    on_.rows.coarsen(done);
-    rows_ = on_.rows.count();
+    on_->order.coarsen(on_->tree, done);
+    on_->rows.coarsen(done);
+    rows_ = on_->rows.count();
     Copies copies(backend_);
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
     auto layout =
-        new_layout(copies, [&] { return on_.hanging.rows(on_.tree, on_.rows.of_node()); });
-    on_.held.hold(backend_, on_.tree, on_.rows.of_node(), rows_, layout.held.data());
-    MergedElements<E> const families{on_.order.merged_families(), on_.order.merged_count(),
+        new_layout(copies, [&] { return on_->hanging.rows(on_->tree, on_->rows.of_node()); });
+    on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, layout.held.data());
+    MergedElements<E> const families{on_->order.merged_families(), on_->order.merged_count(),
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
                                      std::get<0>(layout.tables).elements.rows_of_nodes(),
                                      ElementsByRows<E>(at_rest())};
     MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_),
         weights(backend_, layout.interpolation, rows_);
-    on_.masses.take_gone(families);
-    on_.momentum.begin(families, weights_before, weights, on_.masses);
-    on_.masses.add_come(families);
+    on_->masses.take_gone(families);
+    on_->momentum.begin(families, weights_before, weights, on_->masses);
+    on_->masses.add_come(families);
     read_masses(layout, weights);
     double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);
     auto const taken =
-        on_.momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
-                               kilograms_->data(), layout.held.data(), node_field<dim>(v));
+        on_->momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
+                                kilograms_->data(), layout.held.data(), node_field<dim>(v));
     auto const clear = [&](Array<T>& field) {
-      return LoopStep{on_.rows.freed_count(),
-                      ClearListed<T, dim>{on_.rows.freed(), node_field<dim>(field)}};
+      return LoopStep{on_->rows.freed_count(),
+                      ClearListed<T, dim>{on_->rows.freed(), node_field<dim>(field)}};
     };
     in_turn(backend_, clear(u), clear(v), clear(layout.rest));
     if (load.size() > 0)
-      InterpolationOn<B>(backend_,
-                         on_.gone.rows(families, on_.rows.freed(), on_.rows.freed_count(), rows_))
+      InterpolationOn<B>(
+          backend_, on_->gone.rows(families, on_->rows.freed(), on_->rows.freed_count(), rows_))
           .apply_transpose(backend_, node_field<dim>(load));
     auto changed = with_fields(std::move(layout), std::move(u), std::move(v), taken);
     changed.parts.state.load = std::move(load);
@@ -137,7 +138,7 @@ class ChangedPartsOn {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] std::size_t values() const { return node_stride * at(rows_); }
-  NodeField<double const, dim> at_rest() const { return {on_.points.data()}; }
+  NodeField<double const, dim> at_rest() const { return {on_->points.data()}; }
 
   static RowSize<T, dim> sizes_of(Array<T> const& field) { return {node_field<dim>(field)}; }
   /// Throws Error where a field is not finite.
@@ -156,7 +157,7 @@ class ChangedPartsOn {
     auto const changed = changed_when_asked(parts_, std::move(cells), merged);
     topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
     prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
-    on_.prescribed = prescribed_;
+    on_->prescribed = prescribed_;
   }
   /// Of nodes; empty where there is none.
   Array<T> extended_load(Copies& copies) {
@@ -168,7 +169,7 @@ class ChangedPartsOn {
   /// hanging nodes.
   template <class Hanging>
   Layout new_layout(Copies& copies, Hanging const& hanging) {
-    auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_.rows.lists(copies));
+    auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_->rows.lists(copies));
     WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
         [snapshot] { return std::make_shared<NodeRows>(snapshot->download_all()); });
     own_masses_ = std::make_shared<Array<ExactSum>>();
@@ -179,13 +180,14 @@ class ChangedPartsOn {
       });
     };
     auto const& before = parts_.layout;
-    Layout layout(before, rows_,
-                  NodeLists<B>(on_.rows.nodes(), node_rows, listed(own_masses_), listed(kilograms_),
-                               copies.copy_of(on_.rows.node(), at(rows_), at(rows_))));
+    Layout layout(
+        before, rows_,
+        NodeLists<B>(on_->rows.nodes(), node_rows, listed(own_masses_), listed(kilograms_),
+                     copies.copy_of(on_->rows.node(), at(rows_), at(rows_))));
     layout.rest = copies.template extended<T>(before.rest, values());
     layout.held = copies.template extended<DirectionMask>(before.held, at(rows_));
     copies.make();
-    auto blocks = blocks_after_refinement(on_.order, before.first_of_block[0]);
+    auto blocks = blocks_after_refinement(on_->order, before.first_of_block[0]);
     make_table(std::get<0>(layout.tables), blocks);
     layout.first_of_block[0] = std::move(blocks.first);
     auto const scratch = std::get<0>(layout.tables).elements.scratch_nodes();
@@ -196,11 +198,12 @@ class ChangedPartsOn {
   }
   void make_table(Table& table, ElementBlocks const& blocks) {
     auto const& before = std::get<0>(parts_.layout.tables);
-    auto rows = element_rows<E, row_width<Elements>>(
-        backend_, on_.tree.view(), on_.order, on_.rows.of_node(), before.elements.rows_of_nodes());
+    auto rows =
+        element_rows<E, row_width<Elements>>(backend_, on_->tree.view(), on_->order,
+                                             on_->rows.of_node(), before.elements.rows_of_nodes());
     Array<Tag> tags;
     if constexpr (Table::groups > 1)
-      tags = inherited_values<Tag>(backend_, on_.order,
+      tags = inherited_values<Tag>(backend_, on_->order,
                                    std::get<0>(parts_.state.elements).tags.data());
     table.elements =
         elements_of_rows<Elements>(backend_, std::move(rows), Table::groups, std::move(tags), rows_,
@@ -208,7 +211,7 @@ class ChangedPartsOn {
     table.laws = before.laws;
     // Children have their parent's, so that those of a family are equal.
     if constexpr (Table::Laws::value_count > 0)
-      table.values = inherited_values<T>(backend_, on_.order, before.values.data(),
+      table.values = inherited_values<T>(backend_, on_->order, before.values.data(),
                                          Index{Table::Laws::value_count});
     table.straight = before.straight;
     table.numbers = WhenAsked<ElementNumbers>::by(
@@ -219,10 +222,10 @@ class ChangedPartsOn {
         });
   }
   void read_masses(Layout& layout, MassWeightsOn<B> const& weights) {
-    on_.masses.read(weights, kilograms_->data());
-    on_.masses.round(kilograms_->data(), layout.mass.data());
+    on_->masses.read(weights, kilograms_->data());
+    on_->masses.round(kilograms_->data(), layout.mass.data());
     Copies copies(backend_);
-    *own_masses_ = copies.copy_of(on_.masses.own(), at(rows_), at(rows_));
+    *own_masses_ = copies.copy_of(on_->masses.own(), at(rows_), at(rows_));
     copies.make();
   }
   ChangedTopology<Parts> with_fields(Layout layout, Array<T> u, Array<T> v,
@@ -240,6 +243,9 @@ class ChangedPartsOn {
     state.record.totals = closed_totals(parts_);
     state.record.born = state.steps;
     if (state.load.size() > 0) make_loads(next);
+    next.topology_on = on_;
+    on_->acting.drive(next, *on_);
+    if (next.upload_pressures) next.upload_pressures(next);
     renew_terms(next);
     std::get<0>(state.elements).statistics = {};
     std::get<0>(next.layout.tables).elements.regroup();
@@ -267,26 +273,19 @@ class ChangedPartsOn {
           of.layout, of.state.u);
     }
   }
-  /// The energy of the user's force terms, J.
-  static double energy_of_terms(Parts const& of) {
-    double sum = 0;
-    for (auto const& term : of.terms)
-      if (term->has_energy()) sum += term->energy(of.backend, of.here());
-    return sum;
-  }
   /// Waits for what was asked of the backend. Throws Error where a field was not finite.
   void read_energies(ChangedTopology<Parts>& changed) {
     energies_.add_kinetic(Energies::after, changed.parts);
     auto const sums = energies_.read();
     if (sums.not_finite > 0) check_fields();
-    changed.strain_energy_before = sums.strain[Energies::before] + energy_of_terms(parts_);
-    changed.strain_energy = sums.strain[Energies::after] + energy_of_terms(changed.parts);
+    changed.strain_energy_before = sums.strain[Energies::before] + energy_of_added_terms(parts_);
+    changed.strain_energy = sums.strain[Energies::after] + energy_of_added_terms(changed.parts);
     changed.kinetic_energy_before = sums.kinetic[Energies::before];
     changed.kinetic_energy = sums.kinetic[Energies::after];
   }
 
   Parts& parts_;
-  On& on_;
+  std::shared_ptr<On> on_;
   B const& backend_;
   Energies energies_;
   Index rows_ = 0;

@@ -10,46 +10,57 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/is_marked.hpp>
+#include <pliant/body/change_passes.hpp>
+#include <pliant/body/facet_passes.hpp>
 #include <pliant/body/held_passes.hpp>
+#include <pliant/body/leaf_order_on.hpp>
 #include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
 
-/// What conditions hold of a mesh of linear elements in a backend's memory: facets, as sides of its tree, and nodes.
+/// What conditions hold, and pressures press, of a mesh of linear elements in a backend's memory: facets, as sides of its tree,
+/// and nodes. Sets of facets are numbered: those of conditions in their order, and those of pressures behind them.
 template <int Dim, Backend B>
 class HeldSidesOn {
   template <class U>
   using Array = typename B::template Array<U>;
 
  public:
-  /// Finds what conditions hold; whether there is room for so many. `tree`: as it is in the backend's memory; row_of(the user's
-  /// number): the row of a node, of `rows`.
+  /// Finds what is prescribed; whether there is room for so many sets. `tree`: as it is in the backend's memory; row_of(the
+  /// user's number): the row of a node, of `rows`.
   template <class RowOf>
-  bool set(B const& backend, Hierarchy<Dim> const& tree,
-           std::vector<Condition<Dim>> const& conditions, RowOf const& row_of, Index rows) {
+  bool set(B const& backend, Hierarchy<Dim> const& tree, Prescribed<Dim> const& prescribed,
+           RowOf const& row_of, Index rows) {
     std::map<std::vector<Index>, detail::ConditionBits> known;
     std::vector<char> is_corner(tree.points().size(), 0);
     std::vector<DirectionMask> held(at(rows), 0);
     std::vector<std::uint8_t> named(at(rows), 0);
     std::size_t count = 0;
     directions_ = {};
-    for (auto const& condition : conditions) {
+    auto const add = [&](std::vector<Facet<Dim>> const& facets, DirectionMask directions) {
+      if (count == detail::most_conditions) return false;
+      directions_.of_condition[count] = directions;
+      for (auto const& facet : facets) {
+        known[sorted(facet)] |= detail::ConditionBits{1} << count;
+        for (Index const node : facet) is_corner[at(node)] = 1;
+      }
+      ++count;
+      return true;
+    };
+    for (auto const& condition : prescribed.conditions) {
       if (condition.facets.empty()) {
         for (Index const node : condition.nodes) {
           held[at(row_of(node))] |= condition.directions;
           named[at(row_of(node))] = 1;
         }
-        continue;
+      } else if (!add(condition.facets, condition.directions)) {
+        return false;
       }
-      if (count == detail::most_conditions) return false;
-      directions_.of_condition[count] = condition.directions;
-      for (auto const& facet : condition.facets) {
-        known[sorted(facet)] |= detail::ConditionBits{1} << count;
-        for (Index const node : facet) is_corner[at(node)] = 1;
-      }
-      ++count;
     }
+    for (auto const& pressure : prescribed.pressures)
+      if (!add(pressure.facets, 0)) return false;
     held_ = upload(backend, held);
     named_ = upload(backend, named);
     rows_ = rows;
@@ -141,7 +152,43 @@ class HeldSidesOn {
                            {tree.view()}, bits_.data(), directions_, direction(k), of_node, held});
   }
 
+  /// The rows of the nodes at the facets of a set.
+  Array<Index> nodes_of_set(B const& backend, TreeOn<B> const& tree, Index const* of_node,
+                            std::size_t set) const {
+    auto marks = zeros<std::uint8_t>(backend, at(rows_));
+    backend.for_each(count_, detail::MarkNodesOfSet<Dim>{
+                                 {tree.view()}, bits_.data(), bit(set), of_node, marks.data()});
+    return selected(backend, rows_, detail::IsMarked<std::uint8_t>{marks.data()});
+  }
+  /// The facets of a set as elements have them: (facets, Width), the first of which are rows of nodes, seen from outside.
+  template <class Cell, int Width>
+  Array<Index> facets_of_set(B const& backend, TreeOn<B> const& tree, LeafOrderOn<B> const& order,
+                             Index const* of_node, std::size_t set) const {
+    constexpr auto sides = static_cast<Index>(Cell::sides().size());
+    detail::SidesInSet<Dim> const in_set{{tree.view()}, bits_.data(), bit(set)};
+    auto cells =
+        selected(backend, order.count(), detail::HasSideInSet<Dim>{in_set, order.leaves()});
+    backend.for_each(static_cast<Index>(cells.size()),
+                     detail::LookUp{order.leaves(), cells.data()});
+    detail::SidesOfCells<Dim, sides> const of_cells{in_set, cells.data()};
+    auto const places = selected(backend, static_cast<Index>(cells.size()) * sides, of_cells);
+    auto rows = zeros<Index>(backend, places.size() * Width);
+    backend.for_each(
+        static_cast<Index>(places.size()),
+        detail::PutFacet<Dim, sides, Width>{of_cells, places.data(), of_node, rows.data()});
+    return rows;
+  }
+
  private:
+  static detail::ConditionBits bit(std::size_t set) { return detail::ConditionBits{1} << set; }
+  /// The i below n for which wanted(i).
+  template <class Wanted>
+  static Array<Index> selected(B const& backend, Index n, Wanted const& wanted) {
+    auto list = unset<Index>(backend, at(n));
+    auto count = zeros<Index>(backend, 1);
+    backend.select(n, wanted, list.data(), count.data());
+    return detail::extended(backend, list, at(download<Index>(count)[0]));
+  }
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static DirectionMask direction(int k) { return static_cast<DirectionMask>(1 << k); }
   static Index count_in(TreeSizes const& sizes) { return Dim == 2 ? sizes.edges : sizes.sides; }

@@ -26,8 +26,8 @@ struct Layout;
 
 template <Backend B, Element... Es, class... Fs>
 struct Layout<B, Mesh<Es...>, Fs...> : NodeLists<B> {
-  using NodeLists<B>::nodes, NodeLists<B>::node_rows, NodeLists<B>::mass_list,
-      NodeLists<B>::internal_of;
+  using NodeLists<B>::nodes, NodeLists<B>::node_rows, NodeLists<B>::node_rows_when_asked,
+      NodeLists<B>::mass_list, NodeLists<B>::internal_of;
   static constexpr int dim = Mesh<Es...>::dim;
   using T = typename B::scalar;
   template <class U>

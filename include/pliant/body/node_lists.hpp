@@ -32,6 +32,7 @@ class NodeLists {
   /// How many nodes the mesh has.
   Index nodes() const { return nodes_; }
   NodeRows const& node_rows() const { return *rows_; }
+  WhenAsked<NodeRows> const& node_rows_when_asked() const { return rows_; }
   /// Sums of the nodes' lumped masses in the user's order, slaves' with them.
   SharedList<detail::ExactSum> const& own_masses() const { return *own_masses_; }
   /// The same in kg, slaves' handed on.

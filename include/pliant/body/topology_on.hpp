@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/acting_on.hpp>
 #include <pliant/body/element_numbers_on.hpp>
 #include <pliant/body/family_momentum_on.hpp>
 #include <pliant/body/gone_nodes_on.hpp>
@@ -26,6 +27,7 @@ struct TopologyOn;
 /// Of a mesh with elements of one type.
 template <Element E, Backend B>
 struct TopologyOn<Mesh<E>, B> {
+  using element = E;
   static constexpr int dim = E::dim;
   /// After so many changes the host makes them too, so that what it would have to do has an end.
   static constexpr int most_changes_behind = 256;
@@ -40,7 +42,8 @@ struct TopologyOn<Mesh<E>, B> {
   GoneNodesOn<E, B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
   HeldSidesOn<dim, B> held;
-  WhenAsked<Prescribed<dim>> prescribed{};  // that `held` is of
+  ActingOn<dim, B> acting;
+  WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
   int changes_behind = 0;                   // that the host may not have made yet
 
   /// Of a body as it is. Takes a look at all of it.
@@ -50,15 +53,15 @@ struct TopologyOn<Mesh<E>, B> {
 
   [[nodiscard]] ElementNumbersView element_numbers() const { return numbers.of(order); }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
-  /// Brings what is held up to a body's conditions, where these have changed; whether that can be.
+  /// Brings what is prescribed up to a body's conditions and pressures, where these have changed; whether that can be.
   template <class Parts>
   bool follow_conditions(Parts const& parts) {
     if (prescribed.is(parts.state.prescribed)) return true;
-    if (!held.set(
-            parts.backend, *detail::tree_of(parts.state.topology.shared()).tree,
-            parts.state.prescribed->conditions,
-            [&](Index node) { return parts.layout.internal_of(node); }, rows.count()))
+    auto const row_of = [&](Index node) { return parts.layout.internal_of(node); };
+    if (!held.set(parts.backend, *detail::tree_of(parts.state.topology.shared()).tree,
+                  *parts.state.prescribed, row_of, rows.count()))
       return false;
+    acting.set(parts.backend, *parts.state.prescribed, row_of);
     prescribed = parts.state.prescribed;
     return true;
   }

@@ -41,10 +41,7 @@ double energy_of_some(Parts const& parts, VisitElements const& visit_elements,
             parts.backend, std::move(nodes), Table::groups, own, parts.layout.rows));
     }
   });
-  for_each_added_term(parts, [&](auto const& term) {
-    if (term.has_energy()) sum += term.energy(parts.backend, parts.at(parts.u()));
-  });
-  return sum;
+  return sum + energy_of_added_terms(parts);
 }
 
 }  // namespace pliant::detail

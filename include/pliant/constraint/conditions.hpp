@@ -102,11 +102,15 @@ void upload_conditions(Parts& parts) {
   parts.driven.clear();
   for (auto const& condition : parts.state.prescribed->conditions) {
     if (!condition.motion) continue;
-    std::vector<Index> internal;
-    for (Index node : condition.nodes) internal.push_back(parts.layout.internal_of(node));
-    parts.driven.emplace_back(parts.backend, condition, internal, [&](Index node) -> auto& {
-      return parts.state.topology->point(node);
-    });
+    std::vector<Index> rows;
+    std::vector<Point<Parts::dim>> places;
+    for (Index node : condition.nodes) {
+      rows.push_back(parts.layout.internal_of(node));
+      if (!condition.motion.is_uniform()) places.push_back(parts.state.topology->point(node));
+    }
+    parts.driven.emplace_back(parts.backend, condition.motion, condition.directions,
+                              upload(parts.backend, rows), std::move(places),
+                              parts.layout.node_rows_when_asked());
   }
   parts.layout.held.upload(held_directions<Parts>(parts, parts.state.prescribed->conditions));
   ++parts.revision;
@@ -212,7 +216,8 @@ Handle add_condition(Parts& parts, Condition<Parts::dim> condition) {
                   "\" already; give each a name of its own");
     for (Index node : condition.nodes)
       (void)detail::position_at<Parts::dim, typename Parts::T>(
-          condition.motion, parts.state.topology->point(node), node, parts.state.time);
+          condition.motion, parts.state.topology->point(node), [&] { return node; },
+          parts.state.time);
     parts.motions.insert_or_assign(condition.name, condition.motion);
   }
   Handle const handle = condition.handle;

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/value_at.hpp>
+#include <pliant/body/node_rows.hpp>
+#include <pliant/body/when_asked.hpp>
 #include <pliant/constraint/condition.hpp>
 
 namespace pliant {
@@ -77,14 +82,14 @@ struct MotionWork {
   }
 };
 
-/// Where a motion wants a node. Throws Error where that is not finite in the precision T.
-template <int Dim, class T = double>
-Point<Dim> position_at(Motion<Dim> const& motion, Point<Dim> const& place, Index node,
+/// Where a motion wants a node. Throws Error where that is not finite in the precision T. `node`(): the user's number.
+template <int Dim, class T = double, std::invocable NodeNumber>
+Point<Dim> position_at(Motion<Dim> const& motion, Point<Dim> const& place, NodeNumber const& node,
                        double time) {
   Point<Dim> const u = motion(place, time);
   for (double x : u)
     if (!std::isfinite(static_cast<T>(x)))
-      throw Error("body.drive: the motion of node ", node, " is ", u, " at time ", time,
+      throw Error("body.drive: the motion of node ", node(), " is ", u, " at time ", time,
                   " s; it must be finite", std::isfinite(x) ? " in single precision" : "");
   return u;
 }
@@ -98,43 +103,48 @@ class DrivenNodes {
   using Field = NodeField<T, Dim>;
 
  public:
-  /// `internal`: the internal numbers of the condition's nodes; place_of(node): where one rests.
-  template <std::invocable<Index> PlaceOf>
-  DrivenNodes(B const& backend, Condition<Dim> const& condition, std::vector<Index> const& internal,
-              PlaceOf const& place_of)
-      : condition_(condition), nodes_(upload(backend, internal)) {
-    if (condition.motion.is_uniform()) return;
-    for (Index node : condition.nodes) places_.push_back(place_of(node));
-    rows_ = zeros<T>(backend, 2 * Dim * internal.size());
-    host_rows_.resize(2 * Dim * internal.size());
+  /// `nodes`: their rows in fields. `places`: where they are at rest, m, in the same order, for a motion that depends on it;
+  /// else none. `of_rows`: the nodes by their rows, for errors.
+  DrivenNodes(B const& backend, Motion<Dim> motion, DirectionMask directions,
+              typename B::template Array<Index> nodes, std::vector<Point<Dim>> places,
+              WhenAsked<NodeRows> of_rows)
+      : motion_(std::move(motion)),
+        directions_(directions),
+        nodes_(std::move(nodes)),
+        places_(std::move(places)),
+        of_rows_(std::move(of_rows)) {
+    if (motion_.is_uniform()) return;
+    rows_ = zeros<T>(backend, 2 * Dim * nodes_.size());
+    host_rows_.resize(2 * Dim * nodes_.size());
   }
 
   /// What the motion asks for at a time, reached over `over` seconds. Throws Error where it is not finite,
   /// before anything changes; place() then puts the nodes there.
   void ask(double time, double over) {
-    auto const ask_one = [&](Point<Dim> const& place, Index node, auto& displacement,
+    auto const ask_one = [&](Point<Dim> const& place, std::size_t n, auto& displacement,
                              auto& velocity) {
-      Point<Dim> const to = detail::position_at<Dim, T>(condition_.motion, place, node, time);
+      auto const node = [&] { return number_of(n); };
+      Point<Dim> const to = detail::position_at<Dim, T>(motion_, place, node, time);
       Point<Dim> const from =
-          over > 0 ? detail::position_at<Dim, T>(condition_.motion, place, node, time - over) : to;
+          over > 0 ? detail::position_at<Dim, T>(motion_, place, node, time - over) : to;
       for (std::size_t k = 0; k < Dim; ++k) {
         displacement[static_cast<int>(k)] = static_cast<T>(to[k]);
         T const speed = over > 0 ? static_cast<T>((to[k] - from[k]) / over) : T(0);
         if (!std::isfinite(speed))
-          throw Error("body.drive: the motion of node ", node, " goes from ", from, " to ", to,
+          throw Error("body.drive: the motion of node ", node(), " goes from ", from, " to ", to,
                       " within ", over, " s; this speed is not finite");
         velocity[static_cast<int>(k)] = speed;
       }
     };
-    if (condition_.nodes.empty()) return;
-    if (condition_.motion.is_uniform()) {
-      ask_one({}, condition_.nodes[0], displacement_, velocity_);
+    if (nodes_.size() == 0) return;
+    if (motion_.is_uniform()) {
+      ask_one({}, 0, displacement_, velocity_);
       return;
     }
     for (std::size_t n = 0; n < places_.size(); ++n) {
       T* const row = host_rows_.data() + 2 * Dim * n;
       T* const speed = row + Dim;
-      ask_one(places_[n], condition_.nodes[n], row, speed);
+      ask_one(places_[n], n, row, speed);
     }
     rows_.upload(host_rows_);
   }
@@ -142,28 +152,35 @@ class DrivenNodes {
   void add_work(B const& backend, NodeField<T const, Dim> v, NodeField<T const, Dim> f,
                 T const* mass, Vector<T, Dim> const& gravity, T const* load, double lag,
                 double kick, bool drifts, double* to) const {
-    backend.add_sum(static_cast<Index>(nodes_.size()),
-                    detail::MotionWork<T, Dim>{
-                        v, f, mass, load, gravity, nodes_.data(), condition_.directions, velocity_,
-                        rows_.size() > 0 ? rows_.data() : nullptr, lag, kick, drifts},
-                    to);
+    backend.add_sum(
+        static_cast<Index>(nodes_.size()),
+        detail::MotionWork<T, Dim>{v, f, mass, load, gravity, nodes_.data(), directions_, velocity_,
+                                   rows_.size() > 0 ? rows_.data() : nullptr, lag, kick, drifts},
+        to);
   }
   /// Copies one field to another where the condition drives nodes.
   void copy(B const& backend, NodeField<T const, Dim> from, Field to) const {
     backend.for_each(static_cast<Index>(nodes_.size()),
-                     detail::CopyListed<T, Dim>{from, to, nodes_.data(), condition_.directions});
+                     detail::CopyListed<T, Dim>{from, to, nodes_.data(), directions_});
   }
   void place(B const& backend, Field u, Field v) const {
     backend.for_each(
         static_cast<Index>(nodes_.size()),
-        detail::Prescribe<T, Dim>{u, v, nodes_.data(), condition_.directions, displacement_,
-                                  velocity_, rows_.size() > 0 ? rows_.data() : nullptr});
+        detail::Prescribe<T, Dim>{u, v, nodes_.data(), directions_, displacement_, velocity_,
+                                  rows_.size() > 0 ? rows_.data() : nullptr});
   }
 
  private:
-  Condition<Dim> condition_;
+  [[nodiscard]] Index number_of(std::size_t n) const {
+    auto const row = static_cast<std::size_t>(download<Index>(nodes_)[n]);
+    return of_rows_->node[row];
+  }
+
+  Motion<Dim> motion_;
+  DirectionMask directions_;
   typename B::template Array<Index> nodes_;
   std::vector<Point<Dim>> places_;  // at rest, of motions that depend on it
+  WhenAsked<NodeRows> of_rows_;
   std::vector<T> host_rows_;
   typename B::template Array<T> rows_;
   Vector<T, Dim> displacement_{}, velocity_{};

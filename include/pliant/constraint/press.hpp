@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/body/change_on_backend.hpp>
 #include <pliant/constraint/conditions.hpp>
 #include <pliant/force/pressure.hpp>
 
@@ -10,6 +11,10 @@ namespace pliant {
 template <class Parts>
 void upload_pressures(Parts& parts) {
   parts.pressures.clear();
+  if constexpr (detail::changes_on_backend<Parts>) {
+    auto const& on = parts.topology_on;
+    if (on && on->prescribed.is(parts.state.prescribed)) return on->acting.press(parts, *on);
+  }
   for (auto const& pressure : parts.state.prescribed->pressures) {
     if (pressure.pascals == 0) continue;
     auto internal = pressure.facets;

@@ -1,7 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
 
+#include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/elements_of_rows.hpp>
+#include <pliant/body/when_asked.hpp>
 #include <pliant/force/connected_kernels.hpp>
 #include <pliant/force/force_term.hpp>
 #include <pliant/law/parameters.hpp>
@@ -28,19 +36,28 @@ class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
   static constexpr int Nodes = Physics<double>::nodes, Dim = Physics<double>::dim;
   using Own = detail::InSpace<Physics<typename B::scalar>, typename B::scalar>;
   using OnHost = detail::InSpace<Physics<double>, double>;
+  using Sets = std::vector<std::array<Index, Nodes>>;
 
  public:
+  using Elements = typename B::template Elements<Nodes>;
   using typename Base::At, typename Base::Field, typename Base::ConstField, typename Base::T,
       typename Base::HostField;
 
   /// `sets`: internal numbers of nodes, of which there are `nodes`. `origin`: the place in space, m, that
   /// positions are relative to (layout.middle); zero for a physics of differences alone.
-  ConnectedTerm(B const& backend, std::vector<std::array<Index, Nodes>> sets,
-                Physics<double> const& physics, Index nodes, Point<Dim> const& origin = {})
+  ConnectedTerm(B const& backend, Sets sets, Physics<double> const& physics, Index nodes,
+                Point<Dim> const& origin = {})
       : on_host_{physics, vector_of<double>(origin)},
         physics_{law_cast<typename B::scalar>(physics), vector_of<typename B::scalar>(origin)},
         sets_(std::move(sets)),
-        elements_(backend, sets_, 1, std::vector<Tag>(sets_.size(), 0), nodes) {}
+        elements_(backend, *sets_, 1, std::vector<Tag>(sets_->size(), 0), nodes) {}
+  /// The same where rows of nodes are in the backend's memory: (sets, row_width<Elements>).
+  ConnectedTerm(B const& backend, typename B::template Array<Index> rows,
+                Physics<double> const& physics, Index nodes, Point<Dim> const& origin = {})
+      : on_host_{physics, vector_of<double>(origin)},
+        physics_{law_cast<typename B::scalar>(physics), vector_of<typename B::scalar>(origin)},
+        sets_(sets_of(backend, rows)),
+        elements_(elements_of_rows<Elements>(backend, std::move(rows), 1, {}, nodes)) {}
 
   Index scratch_nodes() const override { return elements_.scratch_nodes(); }
   bool has_energy() const override { return detail::HasEnergy<Own, T>; }
@@ -70,7 +87,7 @@ class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
   }
   void for_each_element(HostField const& rest, HostField const& u, bool with_stiffness,
                         std::function<void(ElementMatrix const&)> const& visit) const override {
-    for (auto const& nodes : sets_) {
+    for (auto const& nodes : *sets_) {
       Matrix<double, Nodes, Dim> x, v;
       for (int a = 0; a < Nodes; ++a)
         for (int k = 0; k < Dim; ++k) {
@@ -96,6 +113,20 @@ class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
   }
 
  private:
+  /// Read when they are asked for.
+  static WhenAsked<Sets> sets_of(B const& backend, typename B::template Array<Index> const& rows) {
+    auto kept =
+        std::make_shared<typename B::template Array<Index>>(unset<Index>(backend, rows.size()));
+    detail::copy_values<B, Index>(backend, rows.data(), kept->data(), rows.size());
+    return WhenAsked<Sets>::by([kept] {
+      auto const all = download<Index>(*kept);
+      auto sets = std::make_shared<Sets>(all.size() / row_width<Elements>);
+      for (std::size_t k = 0; k < sets->size(); ++k)
+        std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(k * row_width<Elements>), Nodes,
+                    (*sets)[k].begin());
+      return sets;
+    });
+  }
   template <class S>
   static Vector<S, Dim> vector_of(Point<Dim> const& x) {
     Vector<S, Dim> v;
@@ -105,8 +136,8 @@ class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
 
   OnHost on_host_;
   Own physics_;
-  std::vector<std::array<Index, Nodes>> sets_;
-  typename B::template Elements<Nodes> elements_;
+  WhenAsked<Sets> sets_;
+  Elements elements_;
 };
 
 }  // namespace pliant

@@ -11,6 +11,15 @@ void for_each_added_term(Parts const& parts, Visit const& visit) {
   for (auto const& term : parts.pressures) visit(*term);
   for (auto const& term : parts.terms) visit(*term);
 }
+/// The energy of these, J, of those that have one.
+template <class Parts>
+double energy_of_added_terms(Parts const& parts) {
+  double sum = 0;
+  for_each_added_term(parts, [&](auto const& term) {
+    if (term.has_energy()) sum += term.energy(parts.backend, parts.here());
+  });
+  return sum;
+}
 /// visit(term) for the element groups and these.
 template <class Parts, class Visit>
 void for_each_force_term(Parts const& parts, Visit const& visit) {

@@ -35,8 +35,8 @@ class StaticProblem {
     for (auto const& condition : body_.state().prescribed->conditions) {
       if (!condition.motion) continue;
       for (Index node : condition.nodes) {
-        auto const to =
-            position_at<dim>(condition.motion, body_.mesh().nodes[at(node)], node, time);
+        auto const to = position_at<dim>(
+            condition.motion, body_.mesh().nodes[at(node)], [&] { return node; }, time);
         for (int k = 0; k < dim; ++k)
           if (condition.directions >> k & 1) u[dim * node + k] = to[at(k)];
       }

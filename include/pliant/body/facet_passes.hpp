@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <pliant/body/held_passes.hpp>
+
+// Passes over facets of a mesh, as sides of its tree, for loops of a backend.
+namespace pliant::detail {
+
+/// Marks the nodes at sides of a set that have no parts.
+template <int Dim>
+struct MarkNodesOfSet {
+  SidesView<Dim> sides;
+  ConditionBits const* bits;
+  ConditionBits set;
+  Index const* of_node;
+  std::uint8_t* marks;  // by row
+
+  PLIANT_HOST_DEVICE void operator()(Index side) const {
+    if ((bits[side] & set) == 0 || sides.first_part(side) >= 0) return;
+    sides.visit_corners(side, [&](Index node) { atomic_store(marks[of_node[node]], 1); });
+  }
+};
+/// Which sides of a tree belong to a set.
+template <int Dim>
+struct SidesInSet {
+  SidesView<Dim> sides;
+  ConditionBits const* bits;
+  ConditionBits set;
+
+  /// Of side s of a cell; of an edge in the plane.
+  PLIANT_HOST_DEVICE bool operator()(TreeCell const& cell, Index s) const {
+    Index const side = Dim == 2 ? cell.edges[at(s)] : cell.sides[at(s)];
+    return (bits[side] & set) != 0;
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE TreeCell const& cell(Index c) const {
+    return sides.tree.cells[at(c)];
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+};
+/// Whether the leaf at a place has a side in a set.
+template <int Dim>
+struct HasSideInSet {
+  SidesInSet<Dim> in_set;
+  Index const* leaves;
+
+  PLIANT_HOST_DEVICE bool operator()(Index place) const {
+    auto const& cell = in_set.cell(leaves[place]);
+    auto const& p = cell.pattern();
+    for (Index s = 0; s < (Dim == 2 ? p.edges : p.sides); ++s)
+      if (in_set(cell, s)) return true;
+    return false;
+  }
+};
+/// Whether side i % Sides of a listed cell, i / Sides, is in a set.
+template <int Dim, Index Sides>
+struct SidesOfCells {
+  SidesInSet<Dim> in_set;
+  Index const* cells;
+
+  PLIANT_HOST_DEVICE bool operator()(Index i) const {
+    return in_set(in_set.cell(cells[i / Sides]), i % Sides);
+  }
+};
+/// Puts the rows of the nodes of a listed side, as they are seen from outside of its element.
+template <int Dim, Index Sides, int Width>
+struct PutFacet {
+  SidesOfCells<Dim, Sides> of_cells;
+  Index const* places;  // as SidesOfCells counts
+  Index const* of_node;
+  Index* rows;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell = of_cells.in_set.cell(of_cells.cells[places[k] / Sides]);
+    auto const s = static_cast<std::size_t>(places[k] % Sides);
+    auto const& p = cell.pattern();
+    int const corners = Dim == 2 ? 2 : p.corners_of_side(static_cast<int>(s));
+    for (int a = 0; a < corners; ++a) {
+      auto const c = static_cast<std::size_t>(cell.mirrored ? corners - 1 - a : a);
+      int const corner = Dim == 2 ? p.edge[s][c] : p.side[s][c];
+      rows[std::ptrdiff_t{Width} * k + a] = of_node[cell.nodes[static_cast<std::size_t>(corner)]];
+    }
+  }
+};
+
+}  // namespace pliant::detail
