@@ -43,8 +43,9 @@ struct TopologyOn<Mesh<E>, B> {
   typename B::template Array<double> points;  // (rows, node_stride), m
   HeldSidesOn<dim, B> held;
   ActingOn<dim, B> acting;
-  WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
-  int changes_behind = 0;                   // that the host may not have made yet
+  WhenAsked<Prescribed<dim>> prescribed{};      // that these are of
+  int changes_behind = 0;                       // that the host may not have made yet
+  std::shared_ptr<Hierarchy<dim> const> first;  // the host's tree, from which it goes on
 
   /// Of a body as it is. Takes a look at all of it.
   template <class Parts>
@@ -77,7 +78,8 @@ struct TopologyOn<Mesh<E>, B> {
         hanging(parts.backend, !LinearSimplex<E>),
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),
-        gone(parts.backend) {
+        gone(parts.backend),
+        first(known.tree) {
     std::vector<double> values(node_stride * static_cast<std::size_t>(rows.count()));
     for (Index node = 0; node < parts.layout.nodes(); ++node)
       for (std::size_t k = 0; k < dim; ++k)

@@ -13,7 +13,7 @@
 #include <pliant/topology/cell_division.hpp>
 #include <pliant/topology/cell_merging.hpp>
 #include <pliant/topology/cells_at_edges.hpp>
-#include <pliant/topology/number_table.hpp>
+#include <pliant/topology/initial_cells.hpp>
 #include <pliant/topology/tree_compaction.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
@@ -28,52 +28,21 @@ class CellTree {
   explicit CellTree(Index nodes) { lists_.nodes = nodes; }
 
   /// Adds a cell of the initial mesh, whose nodes stand in the order of an element (see Element): corners,
-  /// then one per edge, one per side with four corners, one in the middle, as far as it has them. Throws
-  /// Error where more than two cells share a side, or two lie on the same side of an edge in the plane.
+  /// then one per edge, one per side with four corners, one in the middle, as far as it has them.
   template <std::size_t N>
   void add(CellKind kind, CellNodes has, std::array<Index, N> const& nodes) {
     TreeCell cell{.kind = kind, .has = has, .had = has};
-    auto const& p = pattern_of(kind);
-    std::size_t next = static_cast<std::size_t>(p.corners);
-    std::copy_n(nodes.begin(), next, cell.nodes.begin());
-    auto const c = static_cast<Index>(lists_.cells.size());
-    for (std::size_t e = 0; e < at(p.edges); ++e) {
-      std::array const ends{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
-      auto const [edge, is_new] =
-          initial_edges_.find_or_add({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
-      if (is_new) lists_.edges.push_back({.nodes = ends});
-      auto const& known = lists_.edges[at(edge)];
-      // Counter-clockwise neighbours run along their common edge in opposite directions.
-      if (Dim == 2 && !is_new && (known.leaves > 1 || known.nodes == ends))
-        throw Error("Hierarchy: cell ", c, " overlaps another one at the edge from node ", ends[0],
-                    " to ", ends[1], "; give each edge one cell on either side at most");
-      cell.edges[e] = edge;
-      if (has != CellNodes::corners) lists_.edges.edit(at(edge)).middle = nodes[next++];
-    }
-    for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto const side = TreeView::side_of(cell, s);
-      auto key = side.nodes;
-      std::ranges::sort(key);
-      auto const [number, is_new] = initial_sides_.find_or_add(key);
-      if (is_new) lists_.sides.push_back(side);
-      auto& known = lists_.sides.edit(at(number));
-      if (known.cells[1] >= 0)
-        throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", side.nodes[0], ", ",
-                    side.nodes[1], " and ", side.nodes[2],
-                    " with two others; give each side two cells at most");
-      known.cells[known.cells[0] < 0 ? 0 : 1] = c;
-      cell.sides[s] = number;
-      if (has == CellNodes::all && side.corners() == 4) known.centre = nodes[next++];
-    }
-    if (has == CellNodes::all && p.centre >= 0) cell.centre = nodes[next++];
+    auto const others = nodes.begin() + pattern_of(kind).corners;
+    std::copy(nodes.begin(), others, cell.nodes.begin());
+    initial_others_.insert(initial_others_.end(), others, nodes.end());
     lists_.cells.push_back(cell);
-    lists_.count_leaf(cell, 1);
     lists_.count_leaves(has, 1);
   }
-  /// Ends the initial mesh: what only `add` needs is given up.
+  /// Ends the initial mesh, of which edges and sides are found. Throws Error where more than two cells share a side, or two
+  /// lie on the same side of an edge in the plane.
   void seal() {
-    initial_edges_.clear();
-    initial_sides_.clear();
+    detail::InitialCells<Dim>(lists_, initial_others_).join();
+    initial_others_ = {};
     lists_.initial = {size(lists_.cells), size(lists_.edges), size(lists_.sides), lists_.nodes};
   }
 
@@ -207,8 +176,7 @@ class CellTree {
 
   TreeLists lists_;
   std::shared_ptr<CellsAtEdges const> at_edges_;  // follows from the lists
-  NumberTable<2> initial_edges_;                  // by their corners, ascending
-  NumberTable<4> initial_sides_;
+  std::vector<Index> initial_others_;             // see InitialCells, until seal
 };
 
 }  // namespace pliant

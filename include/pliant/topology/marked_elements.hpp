@@ -35,7 +35,7 @@ struct MarkedElements {
 
 namespace detail {
 
-/// The refinement tree of a topology, and for each type the cells that its elements are: those that it has, or new ones.
+/// The refinement tree of a topology, and for each type the cells that its elements are: those that it has, or those of a first tree.
 template <class M>
 struct RefinementTree {
   std::shared_ptr<Hierarchy<M::dim> const> tree;
@@ -57,7 +57,7 @@ RefinementTree<M> tree_of(std::shared_ptr<Topology<M> const> const& topology) {
     next += static_cast<Index>(count);
     cells->push_back(CellSet::range(first, next));
   }
-  return {std::make_shared<Hierarchy<M::dim>>(mesh), std::move(cells)};
+  return {topology->tree_or_first(), std::move(cells)};
 }
 
 /// Throws Error for an element that there is not.

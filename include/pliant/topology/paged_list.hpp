@@ -60,13 +60,16 @@ class PagedList {
   /// With the entries of a list on the host.
   PagedList(B const& backend, SharedList<V> const& list) {
     extend(backend, list.size());
-    for_each_batch(backend,
-                   [&](std::size_t first, std::span<Page<V>* const> pages, Array<V>& batch) {
-                     std::vector<V> values(std::min(size_ - first, pages.size() * per_page));
-                     for (std::size_t i = 0; i < values.size(); ++i) values[i] = list[first + i];
-                     batch.upload(values);
-                     copy(backend, pages, batch, true);
-                   });
+    for_each_batch(
+        backend, [&](std::size_t first, std::span<Page<V>* const> pages, Array<V>& batch) {
+          std::vector<V> values(std::min(size_ - first, pages.size() * per_page));
+          detail::for_each_on_host(static_cast<Index>(values.size()), 16384, [&](Index i) {
+            auto const k = static_cast<std::size_t>(i);
+            values[k] = list[first + k];
+          });
+          batch.upload(values);
+          copy(backend, pages, batch, true);
+        });
     keep();
   }
 

@@ -42,6 +42,14 @@ class Topology {
     std::call_once(made_->once, [&] { make(made_->mesh); });
     return made_->mesh;
   }
+  /// Its tree; of a mesh that nothing was done to one that is made, and shared for as long as somebody has it.
+  [[nodiscard]] std::shared_ptr<Hierarchy<dim> const> tree_or_first() const {
+    if (tree) return tree;
+    std::scoped_lock const lock(made_->mutex);
+    auto first = made_->first_tree.lock();
+    if (!first) made_->first_tree = first = std::make_shared<Hierarchy<dim> const>(stored_);
+    return first;
+  }
   [[nodiscard]] Index nodes() const {
     return static_cast<Index>(tree ? tree->points().size() : stored_.nodes.size());
   }
@@ -136,6 +144,8 @@ class Topology {
   struct Made {
     std::once_flag once;
     M mesh;
+    std::mutex mutex;
+    std::weak_ptr<Hierarchy<dim> const> first_tree;
   };
   M stored_;  // with a tree: boundaries alone
   std::shared_ptr<Made> made_ = std::make_shared<Made>();

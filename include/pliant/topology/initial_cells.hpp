@@ -1,0 +1,185 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/error.hpp>
+#include <pliant/topology/group_numbers.hpp>
+#include <pliant/topology/tree_lists.hpp>
+
+namespace pliant::detail {
+
+/// Finds the edges and sides of the cells of an initial mesh, on the threads of the host. They are numbered in the order in which
+/// cells come to them.
+template <int Dim>
+class InitialCells {
+ public:
+  /// `others`: the nodes of elements that are no corners, of one cell after the other; each has one per edge, one per side with
+  /// four corners and one in the middle, as far as it has them.
+  InitialCells(TreeLists& lists, std::vector<Index> const& others)
+      : lists_(lists), others_(others), first_other_(starts([](TreeCell const& cell) {
+          auto const& p = cell.pattern();
+          if (cell.has == CellNodes::corners) return 0;
+          return p.edges + (cell.has == CellNodes::all ? sides_of_four(p) + (p.centre >= 0) : 0);
+        })) {}
+
+  /// Throws Error where more than two cells share a side, or two lie on the same side of an edge in the plane.
+  void join() {
+    join_edges();
+    if constexpr (Dim == 3) join_sides();
+    for_each_cell([&](Index c) {
+      auto& cell = lists_.cells.edited(at(c));
+      if (cell.has == CellNodes::all && cell.pattern().centre >= 0)
+        cell.centre = others_[at(first_other_[at(c) + 1]) - 1];
+    });
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  static int sides_of_four(RefinementPattern const& p) {
+    int count = 0;
+    for (int s = 0; s < p.sides; ++s) count += p.corners_of_side(s) == 4;
+    return count;
+  }
+  [[nodiscard]] Index count() const { return static_cast<Index>(lists_.cells.size()); }
+  template <class F>
+  void for_each_cell(F const& f) const {
+    for_each_on_host(count(), 1024, f);
+  }
+  /// Where what each cell has so many of begins, and behind the last.
+  template <class Count>
+  std::vector<Index> starts(Count const& count_of) const {
+    std::vector<Index> first{0};
+    first.reserve(lists_.cells.size() + 1);
+    for (auto const& cell : lists_.cells)
+      first.push_back(first.back() + static_cast<Index>(count_of(cell)));
+    return first;
+  }
+
+  void join_edges() {
+    auto const first = starts([](TreeCell const& cell) { return cell.pattern().edges; });
+    auto const ends_of = [](TreeCell const& cell, std::size_t e) {
+      auto const& p = cell.pattern();
+      return std::array{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
+    };
+    std::vector<std::array<Index, 2>> groups(at(first.back()));
+    for_each_cell([&](Index c) {
+      auto const& cell = lists_.cells[at(c)];
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+        auto const ends = ends_of(cell, e);
+        groups[at(first[at(c)]) + e] = {std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
+      }
+    });
+    auto const numbers = number_groups(groups, lists_.nodes);
+    lists_.edges.extend(numbers.first.size());
+    std::atomic<bool> overlap = false;
+    for_each_cell([&](Index c) {
+      auto& cell = lists_.cells.edited(at(c));
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+        Index const i = first[at(c)] + static_cast<Index>(e);
+        cell.edges[e] = numbers.number[at(i)];
+        if (numbers.first[at(cell.edges[e])] == i)
+          lists_.edges.edited(at(cell.edges[e])) = {.nodes = ends_of(cell, e)};
+      }
+    });
+    for_each_cell([&](Index c) {
+      auto const& cell = lists_.cells[at(c)];
+      lists_.view().count_leaf(cell, 1);
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+        auto& edge = lists_.edges.edited(at(cell.edges[e]));
+        if (cell.has != CellNodes::corners)
+          atomic_store(edge.middle, others_[at(first_other_[at(c)]) + e]);
+        bool const is_first =
+            numbers.first[at(cell.edges[e])] == first[at(c)] + static_cast<Index>(e);
+        if (Dim == 2 && !is_first && edge.nodes == ends_of(cell, e)) overlap = true;
+      }
+    });
+    if constexpr (Dim == 2) {
+      for (auto const& edge : lists_.edges) overlap = overlap || edge.leaves > 2;
+      if (overlap) refuse_overlap();
+    }
+  }
+  /// Counter-clockwise neighbours run along their common edge in opposite directions.
+  [[noreturn]] void refuse_overlap() const {
+    std::vector<int> cells_at(lists_.edges.size(), 0);
+    for (Index c = 0;; ++c) {
+      auto const& cell = lists_.cells[at(c)];
+      auto const& p = cell.pattern();
+      for (std::size_t e = 0; e < at(p.edges); ++e) {
+        std::array const ends{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
+        int const before = cells_at[at(cell.edges[e])]++;
+        if (before > 0 && (before > 1 || lists_.edges[at(cell.edges[e])].nodes == ends))
+          throw Error("Hierarchy: cell ", c, " overlaps another one at the edge from node ",
+                      ends[0], " to ", ends[1], "; give each edge one cell on either side at most");
+      }
+    }
+  }
+
+  void join_sides() {
+    auto const first = starts([](TreeCell const& cell) { return cell.pattern().sides; });
+    std::vector<std::array<Index, 4>> groups(at(first.back()));
+    for_each_cell([&](Index c) {
+      auto const& cell = lists_.cells[at(c)];
+      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
+        auto& key = groups[at(first[at(c)]) + s];
+        key = TreeView::side_of(cell, s).nodes;
+        std::ranges::sort(key);
+      }
+    });
+    auto const numbers = number_groups(groups, lists_.nodes);
+    lists_.sides.extend(numbers.first.size());
+    std::vector<Index> cells_at(numbers.first.size(), 0);
+    std::atomic<bool> crowded = false;
+    /// f(side, whether the cell is the first that comes to it, which side of the cell)
+    auto const for_each_side = [&](auto const& f) {
+      for_each_cell([&](Index c) {
+        auto& cell = lists_.cells.edited(at(c));
+        for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
+          Index const i = first[at(c)] + static_cast<Index>(s), number = numbers.number[at(i)];
+          f(c, cell, s, number, numbers.first[at(number)] == i);
+        }
+      });
+    };
+    for_each_side([&](Index c, TreeCell& cell, std::size_t s, Index number, bool is_first) {
+      cell.sides[s] = number;
+      if (atomic_add(cells_at[at(number)], 1) >= 2) crowded = true;
+      if (!is_first) return;
+      auto& side = lists_.sides.edited(at(number));
+      side = TreeView::side_of(cell, s);
+      side.cells[0] = c;
+    });
+    if (crowded) refuse_crowd();
+    for_each_side([&](Index c, TreeCell& cell, std::size_t s, Index number, bool is_first) {
+      auto& side = lists_.sides.edited(at(number));
+      if (!is_first) side.cells[1] = c;
+      auto const& p = cell.pattern();
+      if (cell.has != CellNodes::all || p.corners_of_side(static_cast<int>(s)) != 4) return;
+      std::size_t before = at(first_other_[at(c)]) + at(p.edges);
+      for (std::size_t k = 0; k < s; ++k) before += p.corners_of_side(static_cast<int>(k)) == 4;
+      atomic_store(side.centre, others_[before]);
+    });
+  }
+  [[noreturn]] void refuse_crowd() const {
+    std::vector<int> cells_at(lists_.sides.size(), 0);
+    for (Index c = 0;; ++c) {
+      auto const& cell = lists_.cells[at(c)];
+      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
+        if (++cells_at[at(cell.sides[s])] <= 2) continue;
+        auto const side = TreeView::side_of(cell, s);
+        throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", side.nodes[0], ", ",
+                    side.nodes[1], " and ", side.nodes[2],
+                    " with two others; give each side two cells at most");
+      }
+    }
+  }
+
+  TreeLists& lists_;
+  std::vector<Index> const& others_;
+  std::vector<Index> first_other_;
+};
+
+}  // namespace pliant::detail
