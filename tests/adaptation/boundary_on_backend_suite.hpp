@@ -107,6 +107,7 @@ TEST_CASE("what is prescribed between changes of a body's backend acts behind th
     both.coarsen_all_but_one_in(9);
     both.check_all();
     in_both([&](auto& body) { body.press(body.mesh().boundary("right"), -10); });
+    both.check_all();
     both.refine_one_in(4);
     both.check_all();
     CHECK(both.body.parts().driven.size() == 1);
