@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <pliant/adaptation/commit.hpp>
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/body/changed_parts_on.hpp>
 
 // Changes of a body's mesh that are made in its backend's memory.
@@ -34,6 +35,7 @@ class ChangesOnBackend {
                                      std::vector<Index> const& coarsen) {
     if (!parts_.topology_on) {
       if (refine.empty() && !parts_.state.topology->tree) return ChangeOn{};  // nothing to merge
+      HostThreads const threads(backend(), *parts_.state.topology);
       parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
     }
     if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/body/change_topology.hpp>
 #include <pliant/body/topology_on.hpp>
 #include <pliant/topology/plan.hpp>
@@ -62,6 +63,7 @@ auto changed_when_asked(Parts const& parts, std::shared_ptr<Cells> cells, bool m
   return WhenAsked<Changed>::by(
       [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
        merged, values = element_values_of(parts)]() -> std::shared_ptr<Changed const> {
+        HostThreads const threads(*before);
         auto numbers = download<Index>(*cells);
         if (merged) {
           std::vector<Index> children;

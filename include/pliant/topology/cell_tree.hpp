@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
 #include <pliant/math/each_once.hpp>
@@ -27,16 +28,26 @@ class CellTree {
   CellTree() = default;
   explicit CellTree(Index nodes) { lists_.nodes = nodes; }
 
-  /// Adds a cell of the initial mesh, whose nodes stand in the order of an element (see Element): corners,
+  /// Adds cells of the initial mesh, the nodes of each in the order of an element (see Element): corners,
   /// then one per edge, one per side with four corners, one in the middle, as far as it has them.
   template <std::size_t N>
-  void add(CellKind kind, CellNodes has, std::array<Index, N> const& nodes) {
-    TreeCell cell{.kind = kind, .has = has, .had = has};
-    auto const others = nodes.begin() + pattern_of(kind).corners;
-    std::copy(nodes.begin(), others, cell.nodes.begin());
-    initial_others_.insert(initial_others_.end(), others, nodes.end());
-    lists_.cells.push_back(cell);
-    lists_.count_leaves(has, 1);
+  void add(CellKind kind, CellNodes has, std::vector<std::array<Index, N>> const& elements) {
+    auto const corners = at(pattern_of(kind).corners);
+    auto const others = N - corners, first = lists_.cells.size(),
+               first_other = initial_others_.size();
+    lists_.cells.extend(elements.size());
+    initial_others_.resize(first_other + others * elements.size());
+    detail::for_each_on_host(size(elements), detail::few_elements(corners), [&](Index i) {
+      auto const& nodes = elements[at(i)];
+      auto const middle = nodes.begin() + static_cast<std::ptrdiff_t>(corners);
+      TreeCell cell{.kind = kind, .has = has, .had = has};
+      std::copy(nodes.begin(), middle, cell.nodes.begin());
+      std::copy(
+          middle, nodes.end(),
+          initial_others_.begin() + static_cast<std::ptrdiff_t>(first_other + others * at(i)));
+      lists_.cells.edited(first + at(i)) = cell;
+    });
+    lists_.count_leaves(has, size(elements));
   }
   /// Ends the initial mesh, of which edges and sides are found. Throws Error where more than two cells share a side, or two
   /// lie on the same side of an edge in the plane.

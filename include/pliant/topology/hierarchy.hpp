@@ -218,15 +218,16 @@ class Hierarchy {
 
   template <Element E>
   void add(std::vector<Connectivity<E>> const& elements) {
+    auto c = size(cells());
     for (auto const& nodes : elements) {
-      auto const c = size(cells());
       for (Index const n : nodes)
         if (n < 0 || n >= size(points_))
           throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
                       size(points_) - 1, "; mend its node numbers");
       if constexpr (Dim == 2) detail::check_convex<E>(c, nodes, points_);
-      tree_.add(kind_of<typename E::cell>, nodes_on_cell<E>, nodes);
+      ++c;
     }
+    tree_.add(kind_of<typename E::cell>, nodes_on_cell<E>, elements);
   }
   /// Divides leaves, and gives the nodes that it takes. Throws Error where that is more than a limit.
   WeightedNodes divide(char const* verb, std::vector<CellSplit> const& leaves,
