@@ -86,9 +86,10 @@ class InitialCells {
           lists_.edges.edited(at(cell.edges[e])) = {.nodes = ends_of(cell, e)};
       }
     });
+    auto const view = lists_.view();  // which says whether several threads count
     for_each_cell([&](Index c) {
       auto const& cell = lists_.cells[at(c)];
-      lists_.view().count_leaf(cell, 1);
+      view.count_leaf(cell, 1);
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
         auto& edge = lists_.edges.edited(at(cell.edges[e]));
         if (cell.has != CellNodes::corners)
