@@ -330,6 +330,20 @@ TEST_CASE("a family stays where a child is not marked or a neighbour is too fine
   CHECK(mesh.points().size() == 12);
 }
 
+TEST_CASE("a side has two cells at most", "[topology]") {
+  Mesh<Tet4> mesh;
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0.25, 0.25, 2}};
+  auto& elements = std::get<0>(mesh.tables);
+  elements = {{0, 1, 2, 3}, {0, 2, 1, 4}};
+  Hierarchy<3> const two(mesh);
+  Index shared = 0;
+  for (auto const& side : two.tree().sides()) shared += side.cells[1] >= 0;
+  CHECK(shared == 1);
+  elements.push_back({0, 1, 2, 5});
+  CHECK_THROWS_WITH(Hierarchy<3>(mesh),
+                    says("cell 2 shares the side at the nodes 0, 2 and 1 with two others"));
+}
+
 TEST_CASE("limits count nodes and leaves exactly", "[topology]") {
   auto const count = []<Element E>(E) {
     INFO(E::name());

@@ -105,9 +105,9 @@ class InitialCells {
     }
   }
   /// Counter-clockwise neighbours run along their common edge in opposite directions.
-  [[noreturn]] void refuse_overlap() const {
+  void refuse_overlap() const {
     std::vector<int> cells_at(lists_.edges.size(), 0);
-    for (Index c = 0;; ++c) {
+    for (Index c = 0; c < count(); ++c) {
       auto const& cell = lists_.cells[at(c)];
       auto const& p = cell.pattern();
       for (std::size_t e = 0; e < at(p.edges); ++e) {
@@ -135,7 +135,7 @@ class InitialCells {
     lists_.sides.extend(numbers.first.size());
     std::vector<Index> cells_at(numbers.first.size(), 0);
     std::atomic<bool> crowded = false;
-    /// f(side, whether the cell is the first that comes to it, which side of the cell)
+    // f(the number of a cell, the cell, which of its sides, that side's number, whether the cell is the first to have it)
     auto const for_each_side = [&](auto const& f) {
       for_each_cell([&](Index c) {
         auto& cell = lists_.cells.edited(at(c));
@@ -164,9 +164,9 @@ class InitialCells {
       atomic_store(side.centre, others_[before]);
     });
   }
-  [[noreturn]] void refuse_crowd() const {
+  void refuse_crowd() const {
     std::vector<int> cells_at(lists_.sides.size(), 0);
-    for (Index c = 0;; ++c) {
+    for (Index c = 0; c < count(); ++c) {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
         if (++cells_at[at(cell.sides[s])] <= 2) continue;
