@@ -87,7 +87,7 @@ class ActingOn {
       if (own.pascals == 0) continue;
       auto rows = on.held.template facets_of_set<Cell, width>(parts.backend, on.tree, on.order,
                                                               on.rows.of_node(), own.set);
-      parts.pressures.push_back(std::make_unique<Term>(
+      parts.pressures.push_back(Term::of_rows(
           parts.backend, std::move(rows), typename Physics::template physics<double>{own.pascals},
           parts.layout.rows));
     }

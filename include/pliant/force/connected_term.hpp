@@ -47,17 +47,18 @@ class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
   /// positions are relative to (layout.middle); zero for a physics of differences alone.
   ConnectedTerm(B const& backend, Sets sets, Physics<double> const& physics, Index nodes,
                 Point<Dim> const& origin = {})
-      : on_host_{physics, vector_of<double>(origin)},
-        physics_{law_cast<typename B::scalar>(physics), vector_of<typename B::scalar>(origin)},
-        sets_(std::move(sets)),
-        elements_(backend, *sets_, 1, std::vector<Tag>(sets_->size(), 0), nodes) {}
+      : ConnectedTerm(sets, Elements(backend, sets, 1, std::vector<Tag>(sets.size(), 0), nodes),
+                      physics, origin) {}
   /// The same where rows of nodes are in the backend's memory: (sets, row_width<Elements>).
-  ConnectedTerm(B const& backend, typename B::template Array<Index> rows,
-                Physics<double> const& physics, Index nodes, Point<Dim> const& origin = {})
-      : on_host_{physics, vector_of<double>(origin)},
-        physics_{law_cast<typename B::scalar>(physics), vector_of<typename B::scalar>(origin)},
-        sets_(sets_of(backend, rows)),
-        elements_(elements_of_rows<Elements>(backend, std::move(rows), 1, {}, nodes)) {}
+  static std::unique_ptr<ConnectedTerm> of_rows(B const& backend,
+                                                typename B::template Array<Index> rows,
+                                                Physics<double> const& physics, Index nodes,
+                                                Point<Dim> const& origin = {}) {
+    auto sets = sets_of(backend, rows);
+    return std::unique_ptr<ConnectedTerm>(new ConnectedTerm(
+        std::move(sets), elements_of_rows<Elements>(backend, std::move(rows), 1, {}, nodes),
+        physics, origin));
+  }
 
   Index scratch_nodes() const override { return elements_.scratch_nodes(); }
   bool has_energy() const override { return detail::HasEnergy<Own, T>; }
@@ -113,6 +114,12 @@ class ConnectedTerm : public AnyForceTerm<B, Physics<double>::dim> {
   }
 
  private:
+  ConnectedTerm(WhenAsked<Sets> sets, Elements elements, Physics<double> const& physics,
+                Point<Dim> const& origin)
+      : on_host_{physics, vector_of<double>(origin)},
+        physics_{law_cast<typename B::scalar>(physics), vector_of<typename B::scalar>(origin)},
+        sets_(std::move(sets)),
+        elements_(std::move(elements)) {}
   /// Read when they are asked for.
   static WhenAsked<Sets> sets_of(B const& backend, typename B::template Array<Index> const& rows) {
     auto kept =
