@@ -218,8 +218,7 @@ class Hierarchy {
 
   template <Element E>
   void add(std::vector<Connectivity<E>> const& elements) {
-    auto c = size(cells());
-    for (auto const& nodes : elements) {
+    for (auto c = size(cells()); auto const& nodes : elements) {
       for (Index const n : nodes)
         if (n < 0 || n >= size(points_))
           throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
