@@ -57,6 +57,14 @@ void check_changes(B const& backend, Index cells, std::size_t one_in, SetUp cons
 template <class E>
 using Soft = Formulation<E, Gauss<TensorCell<typename E::cell> ? 2 : 1>, NeoHookean>;
 
+template <class B, class SetUp>
+void check_all_elements(B const& backend, SetUp const& set_up) {
+  check_changes<Soft<Tri3>>(backend, 6, 5, set_up);
+  check_changes<Soft<Quad4>>(backend, 6, 5, set_up);
+  check_changes<Soft<Tet4>>(backend, 3, 12, set_up);
+  check_changes<Soft<Hex8>>(backend, 3, 8, set_up);
+}
+
 TEST_CASE("pressures act on the facets that a body's backend divides and merges", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     auto const press = [](auto& body) {
@@ -66,10 +74,7 @@ TEST_CASE("pressures act on the facets that a body's backend divides and merges"
       body.press(mesh.boundary("bottom"), 0);
       body.hold(mesh.boundary("top"), 1);  // the same facets
     };
-    check_changes<Soft<Tri3>>(backend, 6, 5, press);
-    check_changes<Soft<Quad4>>(backend, 6, 5, press);
-    check_changes<Soft<Tet4>>(backend, 3, 12, press);
-    check_changes<Soft<Hex8>>(backend, 3, 8, press);
+    check_all_elements(backend, press);
   });
 }
 
@@ -83,10 +88,7 @@ TEST_CASE("motions drive the nodes of facets that a body's backend divides and m
       body.drive(mesh.boundary("left"), turned<dim>);
       body.drive(std::vector<Index>{body.nodes() / 2}, drawn<dim>, {.directions = 2});
     };
-    check_changes<Soft<Tri3>>(backend, 6, 5, drive);
-    check_changes<Soft<Quad4>>(backend, 6, 5, drive);
-    check_changes<Soft<Tet4>>(backend, 3, 12, drive);
-    check_changes<Soft<Hex8>>(backend, 3, 8, drive);
+    check_all_elements(backend, drive);
   });
 }
 

@@ -60,7 +60,7 @@ class ActingOn {
       pressed_.push_back({pressure.pascals, sets++});
   }
 
-  /// Makes the driven nodes of parts behind a change; their layout has the rows of nodes. `points`: where these rest, by row.
+  /// Makes the driven nodes of parts behind a change, whose layout has the rows of nodes. `on`: the TopologyOn behind it.
   template <class Parts, class On>
   void drive(Parts& parts, On const& on) const {
     auto const& backend = parts.backend;
@@ -75,7 +75,7 @@ class ActingOn {
     }
   }
 
-  /// Makes the force terms of pressures of parts behind a change.
+  /// Makes the force terms of pressures of such parts.
   template <class Parts, class On>
   void press(Parts& parts, On const& on) const {
     using Cell = typename On::element::cell;
