@@ -256,20 +256,24 @@ auto unset(B const& backend, std::size_t count) {
   else
     return zeros<U>(backend, count);
 }
-/// The array with the values of a vector.
-template <Backend B, class U>
-auto upload(B const& backend, std::vector<U> const& values) {
+/// The array with some values, which are read before it returns.
+template <class U, Backend B>
+auto upload(B const& backend, std::span<U const> values) {
   using Array = typename B::template Array<U>;
-  using Values = std::span<U const>;
-  if constexpr (std::constructible_from<Array, Values>) {  // without zeros
-    return Array(Values(values));
-  } else if constexpr (requires { backend.template array<U>(Values(values)); }) {
-    return backend.template array<U>(Values(values));
+  if constexpr (std::constructible_from<Array, std::span<U const>>) {  // without zeros
+    return Array(values);
+  } else if constexpr (requires { backend.template array<U>(values); }) {
+    return backend.template array<U>(values);
   } else {
     auto array = zeros<U>(backend, values.size());
     array.upload(values);
     return array;
   }
+}
+/// The same of a vector's.
+template <Backend B, class U>
+auto upload(B const& backend, std::vector<U> const& values) {
+  return upload<U>(backend, std::span<U const>(values));
 }
 /// The values of an array, on the host.
 template <class U, class A>

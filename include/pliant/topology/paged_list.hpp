@@ -18,17 +18,17 @@ namespace pliant {
 
 namespace detail {
 
-/// A page in the place of another one, which it is a copy of at first; of none it has no values.
+/// A page that takes the place of another one, which it is a copy of at first.
 template <class V>
-struct ChangedPage {
+struct CopiedPage {
   Index place;  // in the table
-  Page<V>* before;
-  Page<V>* now;  // none where the list is shorter
+  Page<V> const* before;
+  Page<V>* now;
 };
 
-/// Copies pages, so many bytes at a time, and puts them into a table where there is one.
+/// Copies pages, so many bytes at a time, and puts the copies into a table where there is one.
 template <class V>
-struct PutPages {
+struct CopyPages {
   struct alignas(16) Word {
     std::uint32_t bits[4];
   };
@@ -36,14 +36,13 @@ struct PutPages {
   static constexpr Index words = sizeof(Page<V>) / sizeof(Word);
   static constexpr Index most_pages = std::numeric_limits<Index>::max() / words;  // in a loop
 
-  ChangedPage<V> const* changed;
+  CopiedPage<V> const* copied;
   Page<V>** table;
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    auto const& own = changed[i / words];
+    auto const& own = copied[i / words];
     Index const word = i % words;
     if (word == 0 && table != nullptr) table[own.place] = own.now;
-    if (own.before == nullptr) return;
     reinterpret_cast<Word*>(own.now)[word] = reinterpret_cast<Word const*>(own.before)[word];
   }
 };
@@ -95,13 +94,23 @@ class PagedList {
 
   /// Makes pages of which the byte is not zero the list's own, and room for `count` entries more, which have no value.
   void change(B const& backend, std::span<std::uint8_t const> touched, std::size_t count) {
-    std::vector<Index> places;
+    copied_.clear();
     for (std::size_t p = 0; p < touched.size(); ++p)
-      if (touched[p] != 0 && !is_own(p)) places.push_back(static_cast<Index>(p));
-    auto const shared = places.size(), needed = pages_for(size_ + count);
-    for (auto p = pages_.size(); p < needed; ++p) places.push_back(static_cast<Index>(p));
-    put_new(backend, places, shared, needed);
+      if (touched[p] != 0 && !is_own(p))
+        copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
+    auto const needed = std::max(pages_.size(), pages_for(size_ + count));
+    reserve(backend, copied_.size() + needed - pages_.size(), needed, copied_.size());
+    for (Copied& page : copied_) {
+      auto const p = static_cast<std::size_t>(page.place);
+      page.now = free_.back();
+      free_.pop_back();
+      leave(p, std::exchange(pages_[p], page.now));
+    }
+    auto const before = pages_.size();
+    take_pages(needed);
     size_ += count;
+    copy(backend, copied_, table_.data());
+    put_in_table(backend, before);
   }
   /// Makes room for so many entries more, beside those of the last page if that is shared with what was kept.
   void extend(B const& backend, std::size_t count) { change(backend, {}, count); }
@@ -110,38 +119,44 @@ class PagedList {
   [[nodiscard]] Pages<V> replace_from(B const& backend, std::size_t first, std::size_t count) {
     detail::grow(backend, table_before_, pages_.size());
     detail::copy_values<B, Page<V>*>(backend, table_.data(), table_before_.data(), pages_.size());
-    auto const needed = pages_for(first + count);
-    std::vector<Index> places;
-    for (auto p = first / per_page; p < needed; ++p) places.push_back(static_cast<Index>(p));
-    auto const shared = std::size_t{first % per_page != 0};
-    put_new(backend, places, shared, std::max(needed, pages_.size()));
-    for (auto p = needed; p < pages_.size(); ++p) change_page(p, nullptr);
-    pages_.resize(needed);
+    auto const staying = first / per_page, needed = pages_for(first + count);
+    reserve(backend, needed - staying, std::max(needed, pages_.size()), pages_.size() - staying);
+    std::vector<Page<V>*> const left(pages_.begin() + static_cast<std::ptrdiff_t>(staying),
+                                     pages_.end());
+    pages_.resize(staying);
+    take_pages(needed);
+    for (std::size_t k = 0; k < left.size(); ++k) leave(staying + k, left[k]);
     size_ = first + count;
+    put_in_table(backend, staying);
+    bool const keeps_entries = first % per_page != 0;  // of the first page that is left
+    if (keeps_entries)
+      copy(backend, {{static_cast<Index>(staying), left[0], pages_[staying]}}, nullptr);
     return {table_before_.data()};
   }
 
   /// Keeps what changed.
   void keep() {
-    for (Changed const& own : changed_) {
-      if (own.before != nullptr) free_.push_back(own.before);
-      change_of_[static_cast<std::size_t>(own.place)] = none;
+    for (Left const& page : left_) {
+      free_.push_back(page.before);
+      is_left_[page.place] = 0;
     }
-    changed_.clear();
+    left_.clear();
     kept_ = size_;
+    is_left_.resize(pages_.size());
+    kept_pages_ = pages_.size();
   }
   /// The list is what it was when it was kept.
   void take_back(B const& backend) {
-    pages_.resize(std::max(pages_.size(), pages_for(kept_)));
-    for (Changed const& own : changed_) {
-      auto const place = static_cast<std::size_t>(own.place);
-      if (own.now != nullptr) free_.push_back(own.now);
-      if (place < pages_.size()) pages_[place] = own.before;
-      change_of_[place] = none;
+    for (auto p = kept_pages_; p < pages_.size(); ++p) free_.push_back(pages_[p]);
+    for (Left const& page : left_)
+      if (page.place < pages_.size()) free_.push_back(pages_[page.place]);
+    pages_.resize(kept_pages_);
+    for (Left const& page : left_) {
+      pages_[page.place] = page.before;
+      is_left_[page.place] = 0;
     }
-    changed_.clear();
+    left_.clear();
     size_ = kept_;
-    pages_.resize(pages_for(size_));
     backend.synchronize();
     table_.upload(pages_);
   }
@@ -149,51 +164,49 @@ class PagedList {
  private:
   template <class U>
   using Array = typename B::template Array<U>;
-  using Changed = detail::ChangedPage<V>;
+  using Copied = detail::CopiedPage<V>;
+  /// A page that was kept, and that the list has not any more.
+  struct Left {
+    std::size_t place;
+    Page<V>* before;
+  };
   static constexpr std::size_t per_page = Page<V>::entries, per_batch = 256;  // pages
-  static constexpr Index none = -1;
 
   static std::size_t pages_for(std::size_t entries) { return (entries + per_page - 1) / per_page; }
   /// Whether a page is not what it was when the list was kept.
-  [[nodiscard]] bool is_own(std::size_t p) const {
-    return p < change_of_.size() && change_of_[p] != none;
-  }
-  /// Notes another page at a place, or none. One that came there since the list was kept is free.
-  void change_page(std::size_t p, Page<V>* page) {
-    if (change_of_.size() <= p) change_of_.resize(p + 1, none);
+  [[nodiscard]] bool is_own(std::size_t p) const { return p >= kept_pages_ || is_left_[p] != 0; }
+  /// Another page, or none, is in the place of one. One that came there since the list was kept is free.
+  void leave(std::size_t p, Page<V>* before) {
     if (is_own(p)) {
-      auto& now = changed_[static_cast<std::size_t>(change_of_[p])].now;
-      if (now != nullptr) free_.push_back(now);
-      now = page;
-      return;
+      free_.push_back(before);
+    } else {
+      left_.push_back({p, before});
+      is_left_[p] = 1;
     }
-    change_of_[p] = static_cast<Index>(changed_.size());
-    changed_.push_back({static_cast<Index>(p), p < pages_.size() ? pages_[p] : nullptr, page});
   }
-  /// Puts new pages at places, the first `copied` of them with what the pages there hold; there are `count` in all then.
-  void put_new(B const& backend, std::vector<Index> const& places, std::size_t copied,
-               std::size_t count) {
-    if (places.empty() && count == pages_.size()) return;
-    reserve(backend, places.size(), count);
-    std::vector<Changed> changed(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      auto const p = static_cast<std::size_t>(places[i]);
-      changed[i] = {places[i], i < copied ? pages_[p] : nullptr, free_[free_.size() - 1 - i]};
-    }
-    free_.resize(free_.size() - places.size());
-    changed_.reserve(changed_.size() + places.size());
-    for (Changed const& own : changed) change_page(static_cast<std::size_t>(own.place), own.now);
-    pages_.resize(count, nullptr);
-    for (Changed const& own : changed) pages_[static_cast<std::size_t>(own.place)] = own.now;
-    put(backend, changed, table_.data());
+  /// Free pages behind the others, until there are so many.
+  void take_pages(std::size_t count) {
+    auto const more = static_cast<std::ptrdiff_t>(count - pages_.size());
+    pages_.insert(pages_.end(), free_.rbegin(), free_.rbegin() + more);
+    free_.resize(free_.size() - static_cast<std::size_t>(more));
+  }
+  /// The pages from a place on.
+  void put_in_table(B const& backend, std::size_t first) {
+    auto const count = pages_.size() - first;
+    if (count == 0) return;
+    auto const put = upload<Page<V>*>(backend, std::span<Page<V>* const>(pages_).subspan(first));
+    detail::copy_values<B, Page<V>*>(backend, put.data(), table_.data() + first, count);
   }
 
-  /// Memory for so many pages more, and a table for so many in all, with some for changes to come.
-  void reserve(B const& backend, std::size_t more, std::size_t in_all) {
+  /// Memory for so many pages more, and a table for so many in all, with some for changes to come; and for notes of so many
+  /// that are left, so that nothing is lost where memory runs out.
+  void reserve(B const& backend, std::size_t more, std::size_t in_all, std::size_t left) {
+    left_.reserve(left_.size() + left);
     if (free_.size() < more) {
       auto const count = std::max({more - free_.size(), reserved_ / 4, std::size_t{16}});
       auto& chunk = chunks_.emplace_back(unset<V>(backend, count * per_page));
       reserved_ += count;
+      free_.reserve(reserved_);
       for (std::size_t p = count; p-- > 0;) free_.push_back(page_in(chunk, p));
     }
     if (table_.size() >= in_all) return;
@@ -205,24 +218,24 @@ class PagedList {
   static Page<V>* page_in(Array<V>& chunk, std::size_t p) {
     return reinterpret_cast<Page<V>*>(chunk.data() + p * per_page);
   }
-  void put(B const& backend, std::vector<Changed> const& changed, Page<V>** table) {
-    using Put = detail::PutPages<V>;
-    if (changed.empty()) return;
-    auto const listed = upload(backend, changed);
-    for (std::size_t first = 0; first < changed.size(); first += Put::most_pages) {
+  void copy(B const& backend, std::vector<Copied> const& copied, Page<V>** table) {
+    using Copy = detail::CopyPages<V>;
+    if (copied.empty()) return;
+    auto const listed = upload(backend, copied);
+    for (std::size_t first = 0; first < copied.size(); first += Copy::most_pages) {
       auto const count =
-          static_cast<Index>(std::min<std::size_t>(changed.size() - first, Put::most_pages));
-      backend.for_each(count * Put::words, Put{listed.data() + first, table});
+          static_cast<Index>(std::min<std::size_t>(copied.size() - first, Copy::most_pages));
+      backend.for_each(count * Copy::words, Copy{listed.data() + first, table});
     }
   }
   /// Copies pages from a batch, where they lie one after another, or to it.
   void copy(B const& backend, std::span<Page<V>* const> pages, Array<V>& batch, bool from_batch) {
-    std::vector<Changed> copies;
+    std::vector<Copied> copies;
     for (std::size_t p = 0; p < pages.size(); ++p) {
       auto* const other = page_in(batch, p);
       copies.push_back({0, from_batch ? other : pages[p], from_batch ? pages[p] : other});
     }
-    put(backend, copies, nullptr);
+    copy(backend, copies, nullptr);
   }
   /// visit(first entry, pages, batch) for some pages after the other.
   template <class Visit>
@@ -236,11 +249,13 @@ class PagedList {
   }
 
   std::vector<Page<V>*> pages_;  // in the backend's memory
-  std::size_t size_ = 0, kept_ = 0;
-  std::vector<Changed> changed_;  // since it was kept: each place once
-  std::vector<Index> change_of_;  // by place
-  Array<Page<V>*> table_;         // the same as pages_, and room
-  Array<Page<V>*> table_before_;  // the last replace_from
+  std::size_t size_ = 0;
+  std::size_t kept_ = 0, kept_pages_ = 0;  // size and pages when it was kept
+  std::vector<Left> left_;                 // since then: each place once
+  std::vector<std::uint8_t> is_left_;      // by place among those pages
+  std::vector<Copied> copied_;             // of a change
+  Array<Page<V>*> table_;                  // the same as pages_, and room
+  Array<Page<V>*> table_before_;           // the last replace_from
   std::vector<Array<V>> chunks_;
   std::vector<Page<V>*> free_;
   std::size_t reserved_ = 0;  // pages
