@@ -124,6 +124,10 @@ struct HoldSides {
   }
 };
 
+struct ClearBits {
+  ConditionBits* bits;
+  PLIANT_HOST_DEVICE void operator()(Index side) const { bits[side] = 0; }
+};
 /// to[new number] = from[old number] of sides that stay.
 struct MoveBits {
   NewNumbers numbers;

@@ -97,9 +97,8 @@ class HeldSidesOn {
   /// Holds the parts of facets that a refinement divided, and their nodes. `held`: directions by row, of `rows`.
   void refine(B const& backend, TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
               Index const* of_node, Index rows, DirectionMask* held) {
-    Index const now = count_in(tree.sizes());
-    detail::grow_keeping(backend, bits_, at(count_), at(now));
-    count_ = now;
+    Index const first_new = std::exchange(count_, count_in(tree.sizes()));
+    detail::grow_keeping(backend, bits_, at(first_new), at(count_));
     detail::grow_keeping(backend, held_, at(rows_), at(rows));
     detail::grow_keeping(backend, named_, at(rows_), at(rows));
     rows_ = rows;
@@ -112,6 +111,7 @@ class HeldSidesOn {
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       detail::in_turn(
           backend,
+          detail::LoopStep{count_ - first_new, detail::ClearBits{bits_.data() + first_new}},
           detail::LoopStep{refined.leaves,
                            detail::InheritConditions<Dim>{sides, refined.cells, bits_.data()}},
           hold(K)...);
@@ -125,20 +125,20 @@ class HeldSidesOn {
     auto found = zeros<Index>(backend, 1);
     Index const first = Dim == 2 ? done.initial.edges : done.initial.sides,
                 now = count_in(done.now);
-    auto moved = zeros<detail::ConditionBits>(backend, at(now));
+    detail::grow(backend, moved_, at(now));
     backend.for_each(
         count_,
-        detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved.data()});
+        detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()});
     backend.for_each(done.merged, detail::FindCutSides<Dim>{{tree.view()},
                                                             {done.initial.cells, done.cells},
                                                             done.parents,
-                                                            moved.data(),
+                                                            moved_.data(),
                                                             found.data()});
     backend.for_each(done.before.nodes - done.initial.nodes,
                      detail::FindNamedNodes{done.nodes, of_node + done.initial.nodes, named_.data(),
                                             found.data()});
     if (download<Index>(found)[0] != 0) return false;
-    bits_ = std::move(moved);
+    std::swap(bits_, moved_);
     count_ = now;
     return true;
   }
@@ -201,9 +201,10 @@ class HeldSidesOn {
   }
 
   detail::DirectionsOf directions_;
-  Array<detail::ConditionBits> bits_;  // by side
-  Array<DirectionMask> held_;          // by row: by conditions on nodes
-  Array<std::uint8_t> named_;          // by row: whether these name the node
+  Array<detail::ConditionBits> bits_;   // by side
+  Array<detail::ConditionBits> moved_;  // before a coarsening
+  Array<DirectionMask> held_;           // by row: by conditions on nodes
+  Array<std::uint8_t> named_;           // by row: whether these name the node
   Index count_ = 0, rows_ = 0;
 };
 
