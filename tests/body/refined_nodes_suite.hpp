@@ -128,8 +128,8 @@ struct RefinedNodes {
     detail::grow(backend, kilograms, now);
     detail::grow(backend, mass, now);
     Index const* const of_node = rows.of_node();
-    detail::in_turn(backend, filling_new_nodes<E>(tree, refined, of_node, node_field<dim>(points)),
-                    filling_new_nodes<E>(tree, refined, of_node, node_field<dim>(v)));
+    filling_new_nodes<E>(tree, refined, of_node, node_field<dim>(points), node_field<dim>(v))
+        .run(backend);
     auto disturbed = field_of<T>(v);
     disturb(disturbed);
     v = padded<T>(disturbed);

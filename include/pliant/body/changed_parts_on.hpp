@@ -61,10 +61,9 @@ class ChangedPartsOn {
     auto layout = new_layout(
         copies, [&] { return on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()); });
     on_->points = std::move(points);
-    auto const fill = [&](auto field) {
-      return filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), field);
-    };
-    in_turn(backend_, fill(on_->point_field()), fill(node_field<dim>(u)), fill(node_field<dim>(v)),
+    in_turn(backend_,
+            filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), on_->point_field(),
+                                 node_field<dim>(u), node_field<dim>(v)),
             LoopStep{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
                                                          on_->rows.of_node(),
                                                          {on_->points.data()},

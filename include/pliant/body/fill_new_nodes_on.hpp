@@ -1,58 +1,93 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <tuple>
+#include <utility>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/field.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/element/element.hpp>
 #include <pliant/math/uncontracted.hpp>
-#include <pliant/topology/shape_weights.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
 
 namespace detail {
 
-/// Gives a new node the weighted sum of what the nodes have that its cell had, as Transfer::fill_new_nodes does: sums are of
+/// Gives a new node the weighted sums of what the nodes have that its cell had, as Transfer::fill_new_nodes does: sums are of
 /// doubles, and what all have is not rounded.
-template <Element E, class T, int Dim>
+template <Element E, class... T>
 struct FillNewNodes {
+  static constexpr int dim = E::dim;
   TreeView tree;
   PlacedNode const* nodes;
   Index const* of_node;  // rows, by the user's number
-  NodeField<T, Dim> field;
+  std::tuple<NodeField<T, dim>...> fields;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    using S = Uncontracted;
     PlacedNode const& placed = nodes[k];
-    auto const parents = shape_weights<E>(tree.nodes_of(placed.cell), placed.place);
-    auto first = Vector<T, Dim>::zero();
-    auto sum = Vector<S, Dim>::zero();
-    bool same = true;
-    for (std::size_t p = 0; p < parents.size(); ++p) {
-      auto const value = field.at(of_node[parents[p].first]);
-      if (p == 0) first = value;
-      for (int d = 0; d < Dim; ++d) {
+    Vector<double, dim> xi;
+    for (int d = 0; d < dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
+    auto const weights = E::shape(xi);
+    auto const rows = rows_of_parents(placed.cell, weights);
+    Index const row = of_node[placed.node];
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (fill(std::get<I>(fields), row, rows, weights), ...);
+    }(std::index_sequence_for<T...>());
+  }
+
+ private:
+  using Rows = std::array<Index, static_cast<std::size_t>(E::nodes)>;
+
+  /// −1: the weight is zero.
+  template <class Weights>
+  [[nodiscard]] PLIANT_HOST_DEVICE Rows rows_of_parents(Index cell, Weights const& weights) const {
+    Rows rows;
+    auto const take = [&](auto const& parents) {
+      for (std::size_t a = 0; a < rows.size(); ++a)
+        rows[a] = weights[static_cast<int>(a)] != 0 ? of_node[parents[a]] : -1;
+    };
+    if constexpr (E::degree == 1)
+      take(tree.cells[static_cast<std::size_t>(cell)].nodes);
+    else
+      take(tree.nodes_of(cell));
+    return rows;
+  }
+  template <class U, class Weights>
+  static PLIANT_HOST_DEVICE void fill(NodeField<U, dim> field, Index row, Rows const& rows,
+                                      Weights const& weights) {
+    using S = Uncontracted;
+    auto first = Vector<U, dim>::zero();
+    auto sum = Vector<S, dim>::zero();
+    bool same = true, none = true;
+    for (std::size_t a = 0; a < rows.size(); ++a) {
+      if (rows[a] < 0) continue;
+      auto const value = field.at(rows[a]);
+      if (none) first = value;
+      none = false;
+      for (int d = 0; d < dim; ++d) {
         same = same && value[d] == first[d];
-        sum[d] += S(parents[p].second) * S(value[d]);
+        sum[d] += S(weights[static_cast<int>(a)]) * S(value[d]);
       }
     }
     if (!same)
-      for (int d = 0; d < Dim; ++d) first[d] = static_cast<T>(sum[d].value);
-    field.set(of_node[placed.node], first);
+      for (int d = 0; d < dim; ++d) first[d] = static_cast<U>(sum[d].value);
+    field.set(row, first);
   }
 };
 
 }  // namespace detail
 
-/// A step (see in_turn) that gives the nodes that a refinement made the values of a field where they lie in the cells that were
+/// A step (see in_turn) that gives the nodes that a refinement made the values of fields where they lie in the cells that were
 /// refined. All cells of the tree are elements of one type. `of_node`: rows by the user's numbers, in the backend's memory, those
 /// of new nodes with them.
-template <Element E, Backend B, class T, int Dim>
+template <Element E, Backend B, class... T>
 auto filling_new_nodes(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
-                       Index const* of_node, NodeField<T, Dim> field) {
-  return detail::LoopStep{refined.new_nodes, detail::FillNewNodes<E, T, Dim>{
-                                                 tree.view(), refined.nodes, of_node, field}};
+                       Index const* of_node, NodeField<T, E::dim>... fields) {
+  return detail::LoopStep{refined.new_nodes, detail::FillNewNodes<E, T...>{
+                                                 tree.view(), refined.nodes, of_node, {fields...}}};
 }
 
 }  // namespace pliant
