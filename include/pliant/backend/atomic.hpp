@@ -25,6 +25,16 @@ PLIANT_HOST_DEVICE void atomic_store(U& number, std::type_identity_t<U> value) {
   std::atomic_ref(number).store(value, std::memory_order_relaxed);
 #endif
 }
+/// Stores a value that other calls store too, and that stays: a device asks its caches first, since stores to one place wait for
+/// each other there.
+template <class U>
+PLIANT_HOST_DEVICE void atomic_set(U& number, std::type_identity_t<U> value) {
+#ifdef __CUDA_ARCH__
+  if (number != value) *static_cast<U volatile*>(&number) = value;
+#else
+  std::atomic_ref(number).store(value, std::memory_order_relaxed);
+#endif
+}
 /// Gives what the number was.
 PLIANT_HOST_DEVICE Index atomic_add(Index& number, Index by) {
 #ifdef __CUDA_ARCH__

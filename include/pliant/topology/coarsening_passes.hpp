@@ -57,15 +57,19 @@ struct IsKnowing {
   }
 };
 
-/// Marks the pages of what becomes leaves, and of their children.
+/// Marks the pages of what becomes leaves, and of their children. So many calls for each of the former.
 struct MarkMerged {
+  static constexpr Index each = 1 + RefinementPattern::most_children;
   Index const* parents;
   PageMarks marks;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell = marks.tree.cells[static_cast<std::size_t>(parents[k])];
-    marks.parts_of(parents[k]);
-    for (Index i = 0; i < cell.divided().children; ++i) marks.parts_of(cell.first_child + i);
+    Index const c = parents[k / each], i = k % each;
+    auto const& cell = marks.tree.cells[static_cast<std::size_t>(c)];
+    if (i == 0)
+      marks.whole(c);
+    else if (i <= cell.divided().children)
+      marks.whole(cell.first_child + i - 1);
   }
 };
 /// Marks the pages of cells of the initial mesh, their edges and sides.
@@ -73,13 +77,7 @@ struct MarkKnowing {
   Index const* cells;
   PageMarks marks;
 
-  PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell = marks.tree.cells[static_cast<std::size_t>(cells[k])];
-    auto const& p = cell.pattern();
-    marks.cell(cells[k]);
-    for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) marks.edge(cell.edges[e]);
-    for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) marks.side(cell.sides[s]);
-  }
+  PLIANT_HOST_DEVICE void operator()(Index k) const { marks.whole(cells[k]); }
 };
 
 /// The children of divided cells that are merged are counted nowhere any more. So many calls for each of these.
@@ -120,7 +118,7 @@ struct UseNodes {
     if (!view.stays(c)) return;
     auto* const own = stamps;
     Index const stamp = now;
-    view.use_nodes_of(c, [&](Index node) { atomic_store(own[node], stamp); });
+    view.use_nodes_of(c, [&](Index node) { atomic_set(own[node], stamp); });
   }
 };
 

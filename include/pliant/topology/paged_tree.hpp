@@ -18,6 +18,14 @@ struct PageMarks {
   PLIANT_HOST_DEVICE void cell(Index c) const { mark<TreeCell>(cells, c); }
   PLIANT_HOST_DEVICE void edge(Index e) const { mark<TreeEdge>(edges, e); }
   PLIANT_HOST_DEVICE void side(Index s) const { mark<TreeSide>(sides, s); }
+  /// A cell, its edges and its sides.
+  PLIANT_HOST_DEVICE void whole(Index c) const {
+    auto const& own = tree.cells[static_cast<std::size_t>(c)];
+    auto const& p = own.pattern();
+    cell(c);
+    for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) edge(own.edges[e]);
+    for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) side(own.sides[s]);
+  }
   /// See TreeView::visit_parts.
   PLIANT_HOST_DEVICE void parts_of(Index c) const {
     tree.visit_parts(
@@ -28,7 +36,7 @@ struct PageMarks {
  private:
   template <class V>
   static PLIANT_HOST_DEVICE void mark(std::uint8_t* pages, Index i) {
-    atomic_store(pages[static_cast<std::size_t>(i) / Page<V>::entries], 1);
+    atomic_set(pages[static_cast<std::size_t>(i) / Page<V>::entries], 1);
   }
 };
 

@@ -31,7 +31,7 @@ class TreeCoarsening {
     Index const merged = found[0], knowing = found[1];
     if (merged == 0) return done;
     tree.own(backend, [&](PageMarks const& marks) {
-      in_turn(backend, LoopStep{merged, MarkMerged{parents_.data(), marks}},
+      in_turn(backend, LoopStep{merged * MarkMerged::each, MarkMerged{parents_.data(), marks}},
               LoopStep{knowing, MarkKnowing{knowing_.data(), marks}});
     });
     grow(backend, first_children_, at(merged));
