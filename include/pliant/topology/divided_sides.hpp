@@ -15,38 +15,46 @@ PLIANT_HOST_DEVICE Index half_at(TreeView const& tree, Index e, Index node) {
   return edge.nodes[0] == node ? edge.first_half : edge.first_half + 1;
 }
 
-/// Fills the parts of a side whose edges are bisected, and which has its centre: four, and the edges between them.
+/// Fills the parts of a side whose edges are bisected, and which has its centre: four, and the edges between them. All is read
+/// before anything is written, so that a device waits for memory seldom.
 PLIANT_HOST_DEVICE void divide_side(TreeView const& tree, Index s) {
+  using Four = std::array<Index, 4>;
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };
-  auto const& side = tree.sides[at(s)];
-  auto const n = side.corners();
-  bool const quad = n == 4;
-  Index const inner = side.first_inner_edge;
-  std::array<Index, 4> middle{};
-  for (std::size_t k = 0; k < n; ++k) middle[k] = tree.edges[at(side.edges[k])].middle;
-  // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
-  for (std::size_t k = 0; k < n; ++k)
-    tree.edges[at(inner) + k] = {.nodes = {middle[k], quad ? side.centre : middle[(k + n - 1) % n]},
-                                 .side = s,
-                                 .level = side.level + 1};
+  TreeSide const side = tree.sides[at(s)];
+  bool const quad = side.corners() == 4;
+  Four middle{}, along{}, back{};  // back: the half of edge k at corner k + 1
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (k == 3 && !quad) break;
+    auto const& edge = tree.edges[at(side.edges[k])];
+    bool const begins_here = edge.nodes[0] == side.nodes[k];
+    middle[k] = edge.middle;
+    along[k] = begins_here ? edge.first_half : edge.first_half + 1;
+    back[k] = begins_here ? edge.first_half + 1 : edge.first_half;
+  }
+  Index const first = side.first_inner_edge;
+  Four const inner{first, first + 1, first + 2, first + 3};
+  auto const before = [&](Four const& own, std::size_t k) {
+    return k > 0 ? own[k - 1] : quad ? own[3] : own[2];
+  };
   TreeSide part{.parent = s, .level = side.level + 1};
-  for (std::size_t k = 0; k < n; ++k) {
-    auto const last = (k + n - 1) % n;
-    Index const along = half_at(tree, side.edges[k], side.nodes[k]),
-                back = half_at(tree, side.edges[last], side.nodes[k]),
-                across = inner + static_cast<Index>(k);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (k == 3 && !quad) break;
+    // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
+    tree.edges[at(inner[k])] = {.nodes = {middle[k], quad ? side.centre : before(middle, k)},
+                                .side = s,
+                                .level = side.level + 1};
     if (quad) {
-      part.nodes = {side.nodes[k], middle[k], side.centre, middle[last]};
-      part.edges = {along, across, inner + static_cast<Index>(last), back};
+      part.nodes = {side.nodes[k], middle[k], side.centre, before(middle, k)};
+      part.edges = {along[k], inner[k], before(inner, k), before(back, k)};
     } else {
-      part.nodes = {side.nodes[k], middle[k], middle[last], -1};
-      part.edges = {along, across, back, -1};
+      part.nodes = {side.nodes[k], middle[k], before(middle, k), -1};
+      part.edges = {along[k], inner[k], before(back, k), -1};
     }
     tree.sides[at(side.first_child) + k] = part;
   }
   if (quad) return;
   part.nodes = {middle[1], middle[2], middle[0], -1};
-  part.edges = {inner + 2, inner, inner + 1, -1};
+  part.edges = {inner[2], inner[0], inner[1], -1};
   tree.sides[at(side.first_child) + 3] = part;
 }
 
@@ -67,21 +75,37 @@ PLIANT_HOST_DEVICE void halve_side(TreeView const& tree, Index s, Index corner) 
   }
 }
 
-/// The edge between the parts of a divided side that has these ends, in some order.
-PLIANT_HOST_DEVICE Index inner_edge_of_side(TreeView const& tree, Index s, Index a, Index b) {
-  Index inner = tree.sides[static_cast<std::size_t>(s)].first_inner_edge;
-  auto const joins = [&](std::array<Index, 2> const& own) {
-    return (own[0] == a && own[1] == b) || (own[0] == b && own[1] == a);
-  };
-  while (!joins(tree.edges[static_cast<std::size_t>(inner)].nodes)) ++inner;
-  return inner;
+/// The edge between the parts of a side that is divided in four which joins the middles of two of its edges, or, where
+/// `other` is negative, of one and the centre.
+PLIANT_HOST_DEVICE Index inner_edge_of_side(TreeView const& tree, Index s, Index edge,
+                                            Index other) {
+  auto const& side = tree.sides[static_cast<std::size_t>(s)];
+  Index k = 0, after = 0;
+  while (side.edges[static_cast<std::size_t>(k)] != edge) ++k;
+  if (other < 0) return side.first_inner_edge + k;
+  while (side.edges[static_cast<std::size_t>(after)] != other) ++after;
+  // Edge k and the one before it meet at corner k.
+  return side.first_inner_edge + ((k + 2) % 3 == after ? k : after);
 }
 
-/// The part of a divided side that has the corners of another.
-PLIANT_HOST_DEVICE Index part_of_side(TreeView const& tree, Index s, TreeSide const& wanted) {
+/// The part of a side that is divided in four which has the corners of another, of which only the one at corner k of the side
+/// has that.
+PLIANT_HOST_DEVICE Index quarter_of_side(TreeView const& tree, Index s,
+                                         std::array<Index, 4> const& corners) {
+  auto const& side = tree.sides[static_cast<std::size_t>(s)];
+  Index part = 3;  // of a triangle, between the others
+  for (std::size_t k = 0; k < 4; ++k)
+    for (Index const node : corners)
+      if (node >= 0 && node == side.nodes[k]) part = static_cast<Index>(k);
+  return side.first_child + part;
+}
+
+/// The part of a halved side that has the corners of another.
+PLIANT_HOST_DEVICE Index half_of_side(TreeView const& tree, Index s,
+                                      std::array<Index, 4> const& corners) {
   Index part = tree.sides[static_cast<std::size_t>(s)].first_child;
   auto const has_all = [&](std::array<Index, 4> const& nodes) {
-    for (Index const node : wanted.nodes) {
+    for (Index const node : corners) {
       bool has = false;
       for (Index const own : nodes) has = has || own == node;
       if (!has) return false;

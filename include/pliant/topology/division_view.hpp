@@ -165,14 +165,13 @@ struct DivisionView {
       child.nodes[a] = point(parent, p, p.child[i][a]);
     for (std::size_t e = 0; e < at(shape.edges); ++e)
       child.edges[e] =
-          edge_of_child(parent, p, child, e, p.child_edge[i][e], first_inner_edge(own, p));
+          edge_of_child(parent, p, i, shape.edge[e], p.child_edge[i][e], first_inner_edge(own, p));
     for (std::size_t s = 0; s < at(shape.sides); ++s) {
       auto const& of_parent = p.child_side[i][s];
       auto const k = at(of_parent.number);
       if (of_parent.home == RefinementPattern::Home::side) {
         Index const whole = parent.sides[k];
-        child.sides[s] =
-            is_divided(p, k) ? part_of_side(tree, whole, TreeView::side_of(child, s)) : whole;
+        child.sides[s] = is_divided(p, k) ? part_of_side(p, whole, child, s) : whole;
         tree.sides[at(child.sides[s])].cells[has(own.second, k) ? 1 : 0] = number;
         continue;
       }
@@ -237,20 +236,32 @@ struct DivisionView {
     while (p.side_centre[s] != i) ++s;
     return tree.sides[at(own_cell.sides[s])].centre;
   }
+  /// The edge between two corners of child i.
   [[nodiscard]] PLIANT_HOST_DEVICE Index edge_of_child(TreeCell const& parent,
-                                                       RefinementPattern const& p,
-                                                       TreeCell const& child, std::size_t e,
+                                                       RefinementPattern const& p, std::size_t i,
+                                                       std::array<int, 2> const& corners,
                                                        RefinementPattern::Part part,
                                                        Index first_inner_edge) const {
     if (part.home == RefinementPattern::Home::inside) return first_inner_edge + part.number;
-    auto const& shape = child.pattern();
-    Index const a = child.nodes[at(shape.edge[e][0])], b = child.nodes[at(shape.edge[e][1])];
-    if (part.home == RefinementPattern::Home::side)
-      return inner_edge_of_side(tree, parent.sides[at(part.number)], a, b);
+    int const a = p.child[i][at(corners[0])], b = p.child[i][at(corners[1])];  // points
+    if (part.home == RefinementPattern::Home::side) {
+      Index const side = parent.sides[at(part.number)];
+      if (!p.halves) return tree.sides[at(side)].first_inner_edge;
+      auto const edge_at = [&](int point) {
+        return point < p.corners + p.edges ? parent.edges[at(point - p.corners)] : -1;
+      };
+      return edge_at(a) >= 0 ? inner_edge_of_side(tree, side, edge_at(a), edge_at(b))
+                             : inner_edge_of_side(tree, side, edge_at(b), -1);
+    }
     Index const whole = parent.edges[at(part.number)];
     if (!p.halves) return whole;
-    auto const& ends = tree.edges[at(whole)].nodes;
-    return half_at(tree, whole, a == ends[0] || a == ends[1] ? a : b);
+    return half_at(tree, whole, parent.nodes[at(a < p.corners ? a : b)]);
+  }
+  /// The part of a divided side of the parent that side s of a child is.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index part_of_side(RefinementPattern const& p, Index whole,
+                                                      TreeCell const& child, std::size_t s) const {
+    auto const corners = TreeView::side_of(child, s).nodes;
+    return p.halves ? quarter_of_side(tree, whole, corners) : half_of_side(tree, whole, corners);
   }
 };
 
