@@ -67,7 +67,7 @@ class HangingNodes {
   /// Whether the displacement on a whole edge of a leaf is linear.
   [[nodiscard]] bool is_linear(Index e) const {
     auto const& edge = edges_[at(e)];
-    if (edge.linear > 0 || (mixed() && linear_edge_[at(e)])) return true;
+    if (edge.is_linear() || (mixed() && linear_edge_[at(e)])) return true;
     return edge.first_half >= 0 && (is_linear(edge.first_half) || is_linear(edge.first_half + 1));
   }
   void add(Found& found, int level, bool on_side, Index node, Masters masters) {

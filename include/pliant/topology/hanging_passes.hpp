@@ -75,14 +75,14 @@ struct HangingView {
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_edge(Index e, Visit const& visit) const {
     auto const& own = edge(e);
-    if (own.linear > 0) return visit(own.middle, 0);
+    if (own.is_linear()) return visit(own.middle, 0);
     for (int half = 0; half < 2; ++half)
       if (Index const node = edge(own.first_half + half).middle; node >= 0) visit(node, half);
   }
   PLIANT_HOST_DEVICE void add_masters_on_edge(Index e, int i, double weight,
                                               MasterList& list) const {
     auto const& own = edge(e);
-    if (own.linear > 0) {
+    if (own.is_linear()) {
       list.add(own.nodes[0], weight * 0.5);
       list.add(own.nodes[1], weight * 0.5);
       return;

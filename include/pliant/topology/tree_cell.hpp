@@ -63,7 +63,8 @@ struct alignas(16) TreeCell {
   }
 };
 
-struct TreeEdge {
+/// Copied by 16 bytes at once, as cells are.
+struct alignas(16) TreeEdge {
   std::array<Index, 2> nodes{-1, -1};
   Index middle = -1;      ///< the node in its middle, or -1
   Index parent = -1;      ///< the edge of which it is a half
@@ -71,9 +72,13 @@ struct TreeEdge {
   Index side = -1;        ///< the divided side between whose parts it lies, if it is no half
   Index cell = -1;        ///< the divided cell inside of which it lies, if it is none of these
   int leaves = 0;         ///< of how many leaves it is a whole edge
-  int linear = 0;         ///< of how many of these that have corners only
+  int raised = 0;         ///< of how many of these that have nodes between their corners
   int refined = 0;        ///< of how many refined cells; split ones count by their children
   int level = 0;          ///< of the cells of which it is a whole edge
+  int unused = 0;         ///< without it nvcc stores bytes
+
+  /// Whether it is an edge of a leaf that has corners only.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_linear() const { return leaves > raised; }
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
@@ -84,14 +89,14 @@ struct TreeEdge {
     visit("side", r.side...);
     visit("cell", r.cell...);
     visit("leaves", r.leaves...);
-    visit("linear leaves", r.linear...);
+    visit("raised leaves", r.raised...);
     visit("refined cells", r.refined...);
     visit("level", r.level...);
   }
 };
 
-/// The side of solid cells, refined as a triangle or quadrilateral is.
-struct TreeSide {
+/// The side of solid cells, refined as a triangle or quadrilateral is. Copied by 16 bytes at once, as cells are.
+struct alignas(16) TreeSide {
   std::array<Index, 4> nodes{-1, -1, -1, -1};
   std::array<Index, 4> edges{-1, -1, -1, -1};  ///< edge k begins at corner k
   std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side, on either side
@@ -101,6 +106,7 @@ struct TreeSide {
   Index first_inner_edge =
       -1;  ///< of three in a triangle, four in a quadrilateral, or the diagonal
   int level = 0;
+  int unused = 0;  ///< as in TreeEdge
 
   [[nodiscard]] PLIANT_HOST_DEVICE std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
   /// One of its cells; −1 where it has none.

@@ -99,9 +99,9 @@ class TreeFacets {
     if constexpr (Dim == 2) {
       auto const& edge = edges[at(s)];
       for (Index node : edge.nodes) facet.push_back(node);
-      bool quadratic = edge.leaves > edge.linear;
+      bool quadratic = edge.raised > 0;
       for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
-        quadratic = quadratic || edges[at(half)].leaves > edges[at(half)].linear;
+        quadratic = quadratic || edges[at(half)].raised > 0;
       if (quadratic) facet.push_back(edge.middle);
     } else {
       auto const& side = tree_.sides()[at(s)];

@@ -72,7 +72,7 @@ struct TreeView {
     for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
       auto& edge = edges[at(cell.edges[e])];
       add(edge.leaves, by);
-      if (cell.has == CellNodes::corners) add(edge.linear, by);
+      if (cell.has != CellNodes::corners) add(edge.raised, by);
     }
   }
   /// The same for a refined cell. Split ones count by their children.
