@@ -23,6 +23,8 @@ struct PatchPlan {
   DeviceArray<PatchNode> nodes;               // (patches, node capacity)
   DeviceArray<std::uint16_t> diagonals;       // (patches, diagonal capacity)
   DeviceArray<PatchCounts> counts;            // (patches): what each has
+  PatchCounts
+      changed{};  // the most that any needed where many were planned again; zero: they never were
 };
 
 inline constexpr int plan_threads = 512;
@@ -154,18 +156,40 @@ struct KnownPatches {
   std::vector<Index> patches{};
 };
 
+/// Whether many patches of a table are planned again.
+template <class Planner>
+bool many_change(KnownPatches<Planner> const& known) {
+  auto const planned = std::ranges::count(known.patches, Index{-1});
+  return known.plan != nullptr && 8 * planned >= std::ssize(known.patches);
+}
+/// The least multiples of four.
+inline PatchCounts in_fours(PatchCounts const& counts) {
+  auto const rounded = [](int n) { return (n + 3) / 4 * 4; };
+  return {rounded(counts.nodes), rounded(counts.diagonals), rounded(counts.fans),
+          rounded(counts.slots)};
+}
+inline PatchCounts larger(PatchCounts const& a, PatchCounts const& b) {
+  return {std::max(a.nodes, b.nodes), std::max(a.diagonals, b.diagonals), std::max(a.fans, b.fans),
+          std::max(a.slots, b.slots)};
+}
 /// What to give patches room for before it is known what they need: as much as before a change, where few are planned again;
-/// else as much as any needs, but for diagonals, so that few have to be planned twice.
+/// else a little more than such patches ever needed, and at first as much as any needs, but for diagonals, so that few have to be
+/// planned twice.
 template <class Planner>
 PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size) {
   PatchCounts const usual = Planner::usual(patch_size);
   if (known.plan == nullptr) return usual;
   PatchCounts const& before = known.plan->capacity;
-  auto const planned = std::ranges::count(known.patches, Index{-1});
-  if (8 * planned < std::ssize(known.patches)) return before;
-  auto most = Planner::most(patch_size);
-  most.diagonals = 2 * std::max(before.diagonals, usual.diagonals);
-  return most;
+  if (!many_change(known)) return before;
+  auto const& changed = known.plan->changed;
+  auto guess = Planner::most(patch_size);
+  if (changed.slots > 0) {
+    auto const more = [](int n, int most) { return std::min(n + n / 32, most); };
+    guess = in_fours({more(changed.nodes, guess.nodes), 0, more(changed.fans, guess.fans),
+                      more(changed.slots, guess.slots)});
+  }
+  guess.diagonals = 2 * std::max(before.diagonals, usual.diagonals);
+  return guess;
 }
 
 /// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `known`: a plan of patches of
@@ -218,17 +242,20 @@ PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& conn
          patches_before.data(), from, view(plan, first), most.data());
   PatchCounts counts;
   most.download({&counts, 1});
+  auto const changed = known.plan == nullptr ? PatchCounts{}
+                       : many_change(known)  ? larger(known.plan->changed, counts)
+                                             : known.plan->changed;
+  plan.changed = changed;
   // What a patch stages shares the memory of a multiprocessor with others: there is little room to spare.
   bool const is_right = holds(guess, counts) && guess.slots <= counts.slots + counts.slots / 16 &&
                         guess.nodes <= counts.nodes + counts.nodes / 16;
   if (is_right && accepts(guess)) return plan;
-  auto const in_fours = [](int n) { return (n + 3) / 4 * 4; };
-  PatchCounts const capacity{in_fours(counts.nodes), in_fours(counts.diagonals),
-                             in_fours(counts.fans), in_fours(counts.slots)};
+  auto const capacity = in_fours(counts);
   auto const guessed = std::exchange(plan, {});
   plan.capacity = capacity;
   if (!accepts(capacity)) return plan;
   plan = room_for(capacity);
+  plan.changed = changed;
   launch("plan patches", shape, backend.stream(), plan_patches_left<Planner>, input,
          view(guessed, first), view(plan, first), most.data());
   return plan;
