@@ -61,6 +61,23 @@ std::vector<KeptPoints<Parts::dim>> kept_points(Parts const& parts) {
   return kept;
 }
 
+/// Looks for the nearest of some places; the first of those that are equally near but for rounding.
+class NearestPlace {
+ public:
+  /// Whether a place is nearer to another than all before.
+  template <int Dim>
+  bool is_nearer(Vector<double, Dim> const& place, Vector<double, Dim> const& at) {
+    double const apart = dot(place - at, place - at);
+    if (!(apart < least_ - rounding)) return false;
+    least_ = apart;
+    return true;
+  }
+
+ private:
+  static constexpr double rounding = 1e-12;  // of places on cells of size one
+  double least_ = std::numeric_limits<double>::infinity();
+};
+
 /// What the points of the elements of a type keep on the new mesh.
 struct CarriedPoints {
   std::vector<double> rows;   // (elements, variables), by the user's number
@@ -92,7 +109,7 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
         auto at = now.places[q];
         if (origin.child >= 0)
           at = on_parent<Cell>(at, *family.pattern, origin.child, family.mirrored);
-        double least = std::numeric_limits<double>::infinity();
+        NearestPlace nearest;
         double const* from = nullptr;
         auto const look_at = [&](Member const& member, auto const& place_of) {
           auto const& old = kept[member.type];
@@ -100,10 +117,7 @@ CarriedPoints carried_points(std::vector<KeptPoints<Dim>> const& kept, std::vect
           auto const& group = old.groups[old.tags[number]];
           if (*group.law != *now.law) return;
           for (std::size_t p = 0; p < group.places.size(); ++p) {
-            auto const there = place_of(group.places[p]);
-            double const apart = dot(there - at, there - at);
-            if (!(apart < least)) continue;
-            least = apart;
+            if (!nearest.is_nearer(place_of(group.places[p]), at)) continue;
             from = &old.rows[old.width * number + static_cast<std::size_t>(group.size) * p];
           }
         };

@@ -31,15 +31,8 @@ inline constexpr bool is_of_one_refinable_type<Mesh<E>> =
 
 /// Whether bodies of a kind may be refined and coarsened in their backend's memory.
 template <class Parts>
-inline constexpr bool changes_on_backend = [] {
-  if constexpr (keeps_trees<typename Parts::backend_type> &&
-                is_of_one_refinable_type<typename Parts::mesh_type>) {
-    return !Parts::has_internal_variables;
-  } else {
-    return false;
-  }
-}();
-
+inline constexpr bool changes_on_backend = keeps_trees<typename Parts::backend_type> &&
+                                           is_of_one_refinable_type<typename Parts::mesh_type>;
 /// Whether nothing of a body has to look at lists of the host when its mesh changes, and the host has not changed it: what it
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>

@@ -9,6 +9,7 @@
 #include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/elements_of_rows.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/body/carried_points_on.hpp>
 #include <pliant/body/change_on_backend.hpp>
 #include <pliant/body/change_passes.hpp>
 #include <pliant/body/element_rows_on.hpp>
@@ -234,6 +235,7 @@ class ChangedPartsOn {
     auto& next = changed.parts;
     next.state.u = std::move(u);
     next.state.v = std::move(v);
+    carry_points(backend_, on_->tree.view(), on_->order, std::as_const(parts_), next);
     next.layout.interpolation.apply(next.backend, next.u(), next.v());
     return changed;
   }
