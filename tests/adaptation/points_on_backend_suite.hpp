@@ -58,7 +58,7 @@ TEST_CASE("quadrature points keep their memory where a body's backend changes it
     check_points<Viscous<Tri3, Gauss<2>>>(backend, 5, 5);
     check_points<Viscous<Quad4, Gauss<2>>>(backend, 4, 4);
     check_points<Viscous<Tet4, Gauss<1>>>(backend, 2, 8);
-    check_points<Viscous<Tet4, Gauss<2>>>(backend, 2, 8);
+    check_points<Viscous<Tet4, Gauss<2>>>(backend, 2, 3);  // children of mirrored ones too
   });
 }
 

@@ -56,23 +56,35 @@ struct MarkBeside {
   }
 };
 
+/// Marks the pieces of patches at listed nodes.
+struct MarkAtNodes {
+  Index const* nodes;
+  Index const *first, *pieces;
+  std::uint8_t* marks;
+
+  PLIANT_HOST_DEVICE void operator()(Index n) const {
+    for (Index k = first[nodes[n]]; k < first[nodes[n] + 1]; ++k) set_flag(marks[pieces[k]]);
+  }
+};
+struct ClearMarks {
+  std::uint8_t* marks;
+  PLIANT_HOST_DEVICE void operator()(Index piece) const { marks[piece] = 0; }
+};
+
 /// Patches with driven nodes do not sleep: marks their pieces at these, and no others, where conditions have changed since
 /// looks began with them.
 template <class Parts>
 void mark_driven(Parts& parts) {
   auto& rows = *parts.patch_nodes;
-  if (rows.driven_by == parts.state.prescribed.shared()) return;
-  std::vector<std::uint8_t> driven(rows.driven.size());
-  for (auto const& condition : parts.state.prescribed->conditions) {
-    if (!condition.motion) continue;
-    for (Index node : condition.nodes) {
-      auto const i = static_cast<std::size_t>(parts.layout.internal_of(node));
-      for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k)
-        driven[static_cast<std::size_t>(rows.pieces_of_node[static_cast<std::size_t>(k)])] = 1;
-    }
+  if (rows.driven_by == parts.state.prescribed.handle()) return;
+  for (auto* marks : {rows.driven.data(), rows.stirred.data()}) {
+    parts.backend.for_each(rows.pieces_count(), ClearMarks{marks});
+    for (auto const& driven : parts.driven)
+      parts.backend.for_each(
+          static_cast<Index>(driven.rows().size()),
+          MarkAtNodes{driven.rows().data(), rows.first.data(), rows.pieces.data(), marks});
   }
-  for (auto* marks : {&rows.driven, &rows.stirred}) marks->upload(driven);
-  rows.driven_by = parts.state.prescribed.shared();
+  rows.driven_by = parts.state.prescribed.handle();
 }
 
 /// Marks the pieces of patches that are not at rest, by 1, so many rings of neighbours around them, by more, and leaves the

@@ -37,7 +37,7 @@ inline constexpr bool changes_on_backend = keeps_trees<typename Parts::backend_t
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>
 bool can_change_on_backend(Parts const& parts) {
-  if (parts.mesh_is_on_host || !parts.listeners.empty() || parts.sleep != nullptr) return false;
+  if (parts.mesh_is_on_host || !parts.listeners.empty()) return false;
   return parts.first->interpolation.empty() && !sets_values_by_place(parts);
 }
 

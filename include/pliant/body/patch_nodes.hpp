@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/body/awake_set.hpp>
 #include <pliant/math/group_by_key.hpp>
 
@@ -77,58 +79,108 @@ std::size_t patch_count(Parts& parts) {
   return count;
 }
 
-/// The patches of a type's elements, by internal numbers.
+/// The nodes of a patch, ascending, and the piece of the patch that each lies in.
+struct NodesOfPiece {
+  std::vector<Index> nodes, pieces;
+  Index count = 0;  // of pieces
+};
+
+/// Elements by the rows of their nodes, and rows of slaves with their masters, copied from a backend's memory.
+struct PatchSources {
+  std::vector<Index> rows;  // (elements, width)
+  std::size_t width = 0;
+  std::vector<Index> slave_at, first, masters;  // slave_at: by row, which slave is there; −1: none
+
+  /// The nodes of the elements of a patch, `nodes` of each.
+  [[nodiscard]] NodesOfPiece patch(Index first_element, Index last_element, int nodes) const {
+    // f(first node of an element, node)
+    auto const for_each_node = [&](auto const& f) {
+      for (Index e = first_element; e < last_element; ++e) {
+        Index const* const own = rows.data() + width * static_cast<std::size_t>(e);
+        for (int a = 0; a < nodes; ++a) {
+          f(own[0], own[a]);
+          Index const slave = slave_at[static_cast<std::size_t>(own[a])];
+          for (Index k = slave < 0 ? 0 : first[static_cast<std::size_t>(slave)];
+               slave >= 0 && k < first[static_cast<std::size_t>(slave) + 1]; ++k)
+            f(own[0], masters[static_cast<std::size_t>(k)]);
+        }
+      }
+    };
+    NodesOfPiece of_patch;
+    for_each_node([&](Index, Index node) { of_patch.nodes.push_back(node); });
+    std::ranges::sort(of_patch.nodes);
+    of_patch.nodes.erase(std::unique(of_patch.nodes.begin(), of_patch.nodes.end()),
+                         of_patch.nodes.end());
+    Pieces pieces(of_patch.nodes);
+    for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
+    of_patch.count =
+        pieces.for_each_node([&](Index, Index piece) { of_patch.pieces.push_back(piece); });
+    return of_patch;
+  }
+};
+
+/// Of all elements of a body; rows of elements are left out.
+template <class Parts>
+PatchSources patch_sources(Parts const& parts) {
+  PatchSources sources;
+  sources.slave_at.resize(static_cast<std::size_t>(parts.layout.rows), -1);
+  auto const& slaves = parts.layout.interpolation.slaves();
+  if (slaves.count == 0) return sources;
+  auto const node = download<Index>(slaves.node);
+  for (Index k = 0; k < slaves.count; ++k)
+    sources.slave_at[static_cast<std::size_t>(node[static_cast<std::size_t>(k)])] = k;
+  sources.first = download<Index>(slaves.first);
+  sources.masters = download<Index>(slaves.other);
+  return sources;
+}
+
+/// The patches of a body's elements, by internal numbers; from what is in the backend's memory.
 template <class Parts>
 PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
-  PatchNodes<typename Parts::backend_type> made;
+  using B = typename Parts::backend_type;
+  PatchNodes<B> made;
   auto const& layout = parts.layout;
-  auto const& interpolation = parts.state.topology->interpolation;
   std::vector<Index> nodes_of_pairs, pieces_of_pairs, first_other;
   made.patch_of_piece.resize(patch_count(parts));
   std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
   made.first_of_type = made.first_run = {0};
+  auto sources = patch_sources(std::as_const(parts));
+  std::size_t connectivity = 0;
+  parts.for_each_type([&](auto& table, auto&) {
+    connectivity += std::remove_cvref_t<decltype(table)>::element::nodes *
+                    static_cast<std::size_t>(table.count());
+  });
+  HostThreads const threads(HostThreads::worth(connectivity));
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto const& elements = parts.state.topology->mesh().template elements<E>();
-    auto const& user = table.user_elements();
-    Index const before = made.first_of_type.back();
+    auto const rows = table.elements.rows_of_nodes();
+    sources.width = static_cast<std::size_t>(rows.width);
+    auto copy =
+        zeros<Index>(parts.backend, sources.width * static_cast<std::size_t>(table.count()));
+    copy_values<B, Index>(parts.backend, rows.nodes, copy.data(), copy.size());
+    sources.rows = download<Index>(copy);
+    Index const before = made.first_of_type.back(), count = table.elements.patch_count();
     auto const bounds = table.elements.patch_bounds();
-    for (Index p = 0; p < table.elements.patch_count(); ++p) {
-      Index const first = bounds[static_cast<std::size_t>(p)],
-                  last = bounds[static_cast<std::size_t>(p) + 1];
-      // f(first node of an element, node)
-      auto const for_each_node = [&](auto const& f) {
-        for (Index e = first; e < last; ++e) {
-          auto const& own = elements[static_cast<std::size_t>(user[static_cast<std::size_t>(e)])];
-          Index const joined = layout.internal_of(own[0]);
-          for (Index node : own) {
-            f(joined, layout.internal_of(node));
-            if (auto const slave = interpolation.row_of(node))
-              for (auto const& [master, weight] : slave->masters)
-                f(joined, layout.internal_of(master));
-          }
-        }
-      };
-      std::vector<Index> nodes, runs;
-      for_each_node([&](Index, Index node) { nodes.push_back(node); });
-      std::ranges::sort(nodes);
-      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-      for (Index node : nodes) runs.push_back(node / nodes_of_run);
+    std::vector<NodesOfPiece> of_patches(static_cast<std::size_t>(count));
+    for_each_on_host(count, 16, [&](Index p) {
+      auto const own = static_cast<std::size_t>(p);
+      of_patches[own] = sources.patch(bounds[own], bounds[own + 1], E::nodes);
+    });
+    for (Index p = 0; p < count; ++p) {
+      auto const& own = of_patches[static_cast<std::size_t>(p)];
+      std::vector<Index> runs;
+      for (Index const node : own.nodes) runs.push_back(node / nodes_of_run);
       made.runs.insert(made.runs.end(), runs.begin(), std::unique(runs.begin(), runs.end()));
       made.first_run.push_back(static_cast<Index>(made.runs.size()));
-      Pieces pieces(std::move(nodes));
-      for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
-      Index const patch = before + p;
-      Index const others = made.pieces_count() - 1;
+      Index const patch = before + p, others = made.pieces_count() - 1;
       first_other.push_back(made.pieces_count());
-      Index const count = pieces.for_each_node([&](Index node, Index piece) {
-        nodes_of_pairs.push_back(node);
+      nodes_of_pairs.insert(nodes_of_pairs.end(), own.nodes.begin(), own.nodes.end());
+      for (Index const piece : own.pieces)
         pieces_of_pairs.push_back(piece == 0 ? patch : others + piece);
-      });
-      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(count - 1),
+      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(own.count - 1),
                                  patch);
     }
-    made.first_of_type.push_back(before + table.elements.patch_count());
+    made.first_of_type.push_back(before + count);
   });
   first_other.push_back(made.pieces_count());
   auto const by_node = group_by_key(nodes_of_pairs, layout.rows);

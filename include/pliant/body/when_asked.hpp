@@ -33,6 +33,8 @@ class WhenAsked {
   friend bool operator==(WhenAsked const& a, std::nullptr_t) { return a.slot_ == nullptr; }
   /// Whether both are one and the same, which makes none.
   [[nodiscard]] bool is(WhenAsked const& other) const { return slot_ == other.slot_; }
+  /// What is one and the same for all that share the value.
+  [[nodiscard]] std::shared_ptr<void const> handle() const { return slot_; }
   V const& operator*() const { return *shared(); }
   V const* operator->() const { return shared().get(); }
   V const* get() const { return slot_ ? shared().get() : nullptr; }

@@ -118,6 +118,8 @@ class DrivenNodes {
     host_rows_.resize(2 * Dim * nodes_.size());
   }
 
+  /// Their rows in fields, in the backend's memory.
+  [[nodiscard]] typename B::template Array<Index> const& rows() const { return nodes_; }
   /// What the motion asks for at a time, reached over `over` seconds. Throws Error where it is not finite,
   /// before anything changes; place() then puts the nodes there.
   void ask(double time, double over) {
