@@ -1,5 +1,12 @@
 #pragma once
 
+#include <concepts>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <pliant/law/decorators/viscosity.hpp>
+
 #include "support/bodies.hpp"
 #include "support/measure.hpp"
 #include "support/registration.hpp"
@@ -34,14 +41,49 @@ void time_refinement(benchmark::State& state, B const& backend, int cells) {
   report_elements(state, body);
 }
 
-/// Some elements of a mesh in which one was refined before, or what that made of them back to what they were. `acted`: there is
-/// a pressure at its top, and its right end is driven.
-template <class E, class B>
+/// What a change of a mesh has to carry, or to undo.
+enum class Beside {
+  nothing,
+  boundary,  // a pressure at the top, and a right end that is driven
+  memory,    // what quadrature points keep
+  sleep      // all patches sleep; steps until they do so again are counted
+};
+inline std::string in_words(Beside beside) {
+  switch (beside) {
+    case Beside::boundary:
+      return ", pressed and driven";
+    case Beside::memory:
+      return ", viscous";
+    case Beside::sleep:
+      return ", asleep, and steps until it sleeps again";
+    default:
+      return "";
+  }
+}
+
+template <class F, class B>
+auto body_to_change(B const& backend, int cells) {
+  using E = typename F::element;
+  if constexpr (internal_variables_of<F> > 0) {
+    auto const mesh = mesh_of<E>(cells);
+    Body body{backend, mesh, soft,
+              Group<F>{typename F::template law<double>{{3, 2}, {0.5}, {0.1}}}};
+    body.clamp(mesh.boundary("left"));
+    body.set_displacements(shaken(mesh.nodes, 1, 1));
+    return body;
+  } else {
+    return shaken_body<F>(backend, cells);
+  }
+}
+
+/// Some elements of a mesh in which one was refined before, or what that made of them back to what they were.
+template <class F, class B>
 void time_change(benchmark::State& state, B const& backend, int cells,
-                 std::vector<Index> const& marked, bool back, bool acted) {
-  auto body = shaken_body<Usual<E, SaintVenantKirchhoff>>(backend, cells);
+                 std::vector<Index> const& marked, bool back, Beside beside) {
+  using E = typename F::element;
+  auto body = body_to_change<F>(backend, cells);
   report_elements(state, body);
-  if (acted) {
+  if (beside == Beside::boundary) {
     body.press(body.mesh().boundary("top"), 10);
     body.drive(body.mesh().boundary("right"), [](double time) {
       Point<E::dim> u{};
@@ -49,6 +91,11 @@ void time_change(benchmark::State& state, B const& backend, int cells,
       return u;
     });
   }
+  CentralDifference step;
+  Adaptation adapt{sleep({.below = 1e6, .for_steps = 4})};
+  auto const fall_asleep = [&] {
+    if (beside == Beside::sleep) step(body, 12, adapt);
+  };
   auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
   auto const children = [&] {
     std::vector<Index> found;
@@ -59,11 +106,19 @@ void time_change(benchmark::State& state, B const& backend, int cells,
   };
   for (auto _ : state) {
     refine(body, {{last}});
-    double const there = seconds(backend, [&] { refine(body, {marked}); });
+    fall_asleep();
+    double const there = seconds(backend, [&] {
+      refine(body, {marked});
+      fall_asleep();
+    });
     auto const made = children();
-    double const again = seconds(backend, [&] { coarsen(body, {made}); });
+    double const again = seconds(backend, [&] {
+      coarsen(body, {made});
+      fall_asleep();
+    });
     state.SetIterationTime(back ? again : there);
   }
+  if (beside == Beside::sleep && asleep(body).patches == 0) state.SkipWithError("nothing sleeps");
 }
 
 inline void add_refinements() {
@@ -76,14 +131,16 @@ inline void add_refinements() {
       add<Usual<E, SaintVenantKirchhoff>, T>(
           "refine", name, cells,
           [backend, cells](benchmark::State& state) { time_refinement<E>(state, backend, cells); });
-      auto const change = [&](std::string const& what, std::vector<Index> const& marked,
-                              bool acted = false) {
+      auto const change = [&]<Beside beside = Beside::nothing>(std::string const& what,
+                                                               std::vector<Index> const& marked) {
+        using F = std::conditional_t<beside == Beside::memory,
+                                     Usual<E, Prony<SaintVenantKirchhoff>::template law>,
+                                     Usual<E, SaintVenantKirchhoff>>;
         for (bool const back : {false, true})
-          add<Usual<E, SaintVenantKirchhoff>, T>(
-              (back ? "coarsen " : "refine ") + what + (acted ? ", pressed and driven" : ""), name,
-              cells, [=](benchmark::State& state) {
-                time_change<E>(state, backend, cells, marked, back, acted);
-              });
+          add<F, T>((back ? "coarsen " : "refine ") + what + in_words(beside), name, cells,
+                    [=](benchmark::State& state) {
+                      time_change<F>(state, backend, cells, marked, back, beside);
+                    });
       };
       std::size_t const count = element_count<E>(cells);
       change("two", first_elements(2));
@@ -92,9 +149,16 @@ inline void add_refinements() {
       change("a ten thousandth", first_elements(count / 10000));
       change("a hundredth", first_elements(count / 100));
       change("each hundredth", each_of(count, 100));
-      change("two", first_elements(2), true);
-      change("each hundredth", each_of(count, 100), true);
-      change("a tenth", first_elements(count / 10), true);
+      if constexpr (std::same_as<E, Tet4>) {
+        auto const change_beside = [&]<Beside beside>() {
+          change.template operator()<beside>("two", first_elements(2));
+          change.template operator()<beside>("each hundredth", each_of(count, 100));
+          change.template operator()<beside>("a tenth", first_elements(count / 10));
+        };
+        change_beside.template operator()<Beside::boundary>();
+        change_beside.template operator()<Beside::memory>();
+        change_beside.template operator()<Beside::sleep>();
+      }
     };
     one(Tri3{}, 2e4);
     one(Quad4{}, 2e4);
