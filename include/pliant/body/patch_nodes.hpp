@@ -80,7 +80,7 @@ std::size_t patch_count(Parts& parts) {
 }
 
 /// The nodes of a patch, ascending, and the piece of the patch that each lies in.
-struct NodesOfPiece {
+struct PiecesOfPatch {
   std::vector<Index> nodes, pieces;
   Index count = 0;  // of pieces
 };
@@ -90,9 +90,11 @@ struct PatchSources {
   std::vector<Index> rows;  // (elements, width)
   std::size_t width = 0;
   std::vector<Index> slave_at, first, masters;  // slave_at: by row, which slave is there; −1: none
+  std::size_t in_all = 0;                       // nodes of elements of all types
 
+  [[nodiscard]] std::size_t connectivity_size() const { return in_all; }
   /// The nodes of the elements of a patch, `nodes` of each.
-  [[nodiscard]] NodesOfPiece patch(Index first_element, Index last_element, int nodes) const {
+  [[nodiscard]] PiecesOfPatch patch(Index first_element, Index last_element, int nodes) const {
     // f(first node of an element, node)
     auto const for_each_node = [&](auto const& f) {
       for (Index e = first_element; e < last_element; ++e) {
@@ -106,7 +108,7 @@ struct PatchSources {
         }
       }
     };
-    NodesOfPiece of_patch;
+    PiecesOfPatch of_patch;
     for_each_node([&](Index, Index node) { of_patch.nodes.push_back(node); });
     std::ranges::sort(of_patch.nodes);
     of_patch.nodes.erase(std::unique(of_patch.nodes.begin(), of_patch.nodes.end()),
@@ -124,6 +126,11 @@ template <class Parts>
 PatchSources patch_sources(Parts const& parts) {
   PatchSources sources;
   sources.slave_at.resize(static_cast<std::size_t>(parts.layout.rows), -1);
+  parts.for_each_type([&](auto const& table, auto const&) {
+    sources.in_all +=
+        static_cast<std::size_t>(std::remove_cvref_t<decltype(table)>::element::nodes) *
+        static_cast<std::size_t>(table.count());
+  });
   auto const& slaves = parts.layout.interpolation.slaves();
   if (slaves.count == 0) return sources;
   auto const node = download<Index>(slaves.node);
@@ -145,12 +152,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
   std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
   made.first_of_type = made.first_run = {0};
   auto sources = patch_sources(std::as_const(parts));
-  std::size_t connectivity = 0;
-  parts.for_each_type([&](auto& table, auto&) {
-    connectivity += std::remove_cvref_t<decltype(table)>::element::nodes *
-                    static_cast<std::size_t>(table.count());
-  });
-  HostThreads const threads(HostThreads::worth(connectivity));
+  HostThreads const threads(parts.backend, sources);
   parts.for_each_type([&](auto& table, auto&) {
     using E = typename std::remove_cvref_t<decltype(table)>::element;
     auto const rows = table.elements.rows_of_nodes();
@@ -161,7 +163,7 @@ PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
     sources.rows = download<Index>(copy);
     Index const before = made.first_of_type.back(), count = table.elements.patch_count();
     auto const bounds = table.elements.patch_bounds();
-    std::vector<NodesOfPiece> of_patches(static_cast<std::size_t>(count));
+    std::vector<PiecesOfPatch> of_patches(static_cast<std::size_t>(count));
     for_each_on_host(count, 16, [&](Index p) {
       auto const own = static_cast<std::size_t>(p);
       of_patches[own] = sources.patch(bounds[own], bounds[own + 1], E::nodes);
