@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,11 @@
 
 // Changes of a body's mesh that are made in its backend's memory.
 namespace pliant::detail {
+
+/// Elements to refine, and to coarsen, of a body with one element type, by the user's numbers.
+struct MarkedOn {
+  std::span<Index const> refine{}, coarsen{};
+};
 
 /// What became of a change.
 struct ChangeOn {
@@ -31,10 +37,10 @@ class ChangesOnBackend {
       : parts_(parts), limits_{parts.limits.nodes, parts.limits.elements, max_level} {}
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
-  std::optional<ChangeOn> operator()(std::vector<Index> const& refine,
-                                     std::vector<Index> const& coarsen) {
+  std::optional<ChangeOn> operator()(MarkedOn const& marked) {
     if (!parts_.topology_on) {
-      if (refine.empty() && !parts_.state.topology->tree) return ChangeOn{};  // nothing to merge
+      if (marked.refine.empty() && !parts_.state.topology->tree)
+        return ChangeOn{};  // nothing to merge
       HostThreads const threads(backend(), *parts_.state.topology);
       parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
     }
@@ -44,7 +50,7 @@ class ChangesOnBackend {
       on().changes_behind = 0;
     }
     try {
-      return change(refine, coarsen);
+      return change(marked);
     } catch (...) {
       if (parts_.topology_on) on().tree.take_back();
       throw;
@@ -55,17 +61,16 @@ class ChangesOnBackend {
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   On& on() { return *parts_.topology_on; }
   B const& backend() const { return parts_.backend; }
-  Cells cells_of(std::vector<Index> const& numbers) {
+  Cells cells_of(std::span<Index const> numbers) {
     auto cells = upload(backend(), numbers);
     backend().for_each(size(numbers), LookUpCells{on().element_numbers(), cells.data()});
     return cells;
   }
 
-  std::optional<ChangeOn> change(std::vector<Index> const& refine,
-                                 std::vector<Index> const& coarsen) {
+  std::optional<ChangeOn> change(MarkedOn const& marked) {
     ChangeOn done;
-    auto to_refine = cells_of(refine), to_merge = cells_of(coarsen);
-    if (!refine.empty() && !coarsen.empty()) leave_what_is_refined(to_refine, to_merge);
+    auto to_refine = cells_of(marked.refine), to_merge = cells_of(marked.coarsen);
+    if (to_refine.size() > 0 && to_merge.size() > 0) leave_what_is_refined(to_refine, to_merge);
     if (to_merge.size() > 0) {
       auto const merged = on().tree.coarsen(to_merge.data(), size(to_merge));
       if (merged.merged > 0) {
@@ -161,27 +166,30 @@ class ChangesOnBackend {
 
 /// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.
 template <class Parts>
-std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedElements const& wanted,
+std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedOn const& marked,
                                           int max_level = 30) {
   if constexpr (changes_on_backend<Parts>) {
-    auto others = wanted;
-    auto const refine = std::exchange(others.refine, {});
-    auto const coarsen = std::exchange(others.coarsen, {});
-    if (!others.none() || !can_change_on_backend(parts)) return std::nullopt;
+    if (!can_change_on_backend(parts)) return std::nullopt;
     auto const& table = std::get<0>(parts.layout.tables);
     using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto const listed = [&](char const* verb, std::vector<std::vector<Index>> const& lists) {
-      if (lists.empty()) return std::vector<Index>{};
-      for (Index const e : lists[0])
-        check_number<E>(verb, e, static_cast<std::size_t>(table.count()));
-      return lists[0];
-    };
-    auto const to_refine = listed("refine", refine), to_coarsen = listed("coarsen", coarsen);
-    if (to_refine.empty() && to_coarsen.empty()) return ChangeOn{};
-    return ChangesOnBackend<Parts>(parts, max_level)(to_refine, to_coarsen);
+    auto const count = static_cast<std::size_t>(table.count());
+    check_numbers<E>("refine", marked.refine, count);
+    check_numbers<E>("coarsen", marked.coarsen, count);
+    if (marked.refine.empty() && marked.coarsen.empty()) return ChangeOn{};
+    return ChangesOnBackend<Parts>(parts, max_level)(marked);
   } else {
     return std::nullopt;
   }
+}
+/// The same where nothing else is marked.
+template <class Parts>
+std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedElements const& marked,
+                                          int max_level) {
+  if (!marked.only_refines_and_coarsens()) return std::nullopt;
+  auto const first = [](auto const& lists) {
+    return lists.empty() ? std::span<Index const>{} : std::span<Index const>(lists[0]);
+  };
+  return change_on_backend(parts, MarkedOn{first(marked.refine), first(marked.coarsen)}, max_level);
 }
 
 }  // namespace pliant::detail

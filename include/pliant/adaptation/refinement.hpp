@@ -75,7 +75,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.refine = marked}, max_level))
+  if (auto const done =
+          detail::change_on_backend(body.parts(), detail::MarkedOn{.refine = marked[0]}, max_level))
     return {done->refined, done->new_nodes};
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
@@ -96,7 +97,8 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.coarsen = marked}))
+  if (auto const done =
+          detail::change_on_backend(body.parts(), detail::MarkedOn{.coarsen = marked[0]}))
     return {done->merged, done->gone_nodes};
   auto const plan = plan_change(body.parts(), {.coarsen = marked});
   if (!plan) return {};

@@ -24,12 +24,18 @@ struct MarkedElements {
       merge{};
   int raised_rings = 0;  ///< so many rings of neighbours across edges are raised along
 
-  bool none() const {
-    auto const empty = [](auto const& list) {
+  bool none() const { return are_empty(refine, coarsen) && only_refines_and_coarsens(); }
+  bool only_refines_and_coarsens() const {
+    return are_empty(raise, lower, split, split_in_two, merge);
+  }
+
+ private:
+  template <class... Lists>
+  static bool are_empty(Lists const&... lists) {
+    auto const is_empty = [](auto const& list) {
       return std::ranges::all_of(list, [](auto const& own) { return own.empty(); });
     };
-    return empty(refine) && empty(coarsen) && empty(raise) && empty(lower) && empty(split) &&
-           empty(split_in_two) && empty(merge);
+    return (is_empty(lists) && ...);
   }
 };
 
@@ -66,6 +72,17 @@ void check_number(char const* verb, Index element, std::size_t count) {
   if (element < 0 || element >= static_cast<Index>(count))
     throw Error(verb, ": there is no ", E::name(), " element ", element,
                 "; they are numbered 0 to ", count - 1);
+}
+
+/// The same of many: in a loop that compilers vectorise, of the signs of what is negative for a number that is none.
+template <Element E>
+void check_numbers(char const* verb, std::span<Index const> elements, std::size_t count) {
+  using Bits = std::make_unsigned_t<Index>;
+  Bits signs = 0;
+  for (Index const e : elements)
+    signs |= static_cast<Bits>(e) | (static_cast<Bits>(count) - 1 - static_cast<Bits>(e));
+  if (static_cast<Index>(signs) >= 0) return;
+  for (Index const e : elements) check_number<E>(verb, e, count);
 }
 
 /// The cells of marked elements, which are given by the user's numbers for each element type.
