@@ -30,9 +30,9 @@ class CellDivision {
         for (std::size_t k = 0; k < static_cast<std::size_t>(count(r)); ++k) make(r, k);
       });
     };
-    for_each_part([&](Index r) { return division.pattern(r).edges; },
+    for_each_part([&](Index r) { return division.pattern_at(r).edges; },
                   [&](Index r, std::size_t e) { division.make_on_edge(r, e); });
-    for_each_part([&](Index r) { return division.pattern(r).sides; },
+    for_each_part([&](Index r) { return division.pattern_at(r).sides; },
                   [&](Index r, std::size_t s) { division.make_on_side(r, s); });
     plan_.for_each([&](Index r) { division.make_inside(r); });
     for_each_part([&](Index r) { return division.parts[r].cells; },

@@ -6,6 +6,7 @@
 #include <pliant/backend/atomic.hpp>
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
+#include <pliant/topology/patterns.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
 namespace pliant::detail {
@@ -38,14 +39,16 @@ PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) 
   auto const at = [](Index k) { return static_cast<std::size_t>(k); };
   auto const& cell = tree.cells[at(c)];
   auto const& p = cell.divided();
-  auto const& child = tree.cells[at(cell.first_child + i)];
-  tree.count_leaf(child, -1);
-  for (std::size_t s = 0; s < at(child.pattern().sides); ++s) {
-    auto const& of_parent = p.child_side[at(i)][s];
-    bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
-                          of_parent.number != p.halved_side;
-    replace_at_side(tree, child.sides[s], cell.first_child + i, is_whole ? c : -1);
-  }
+  TreeCell const child = tree.cells[at(cell.first_child + i)];
+  with_cell(child.kind, [&]<class Cell>(Cell) {
+    tree.count_leaf<Cell>(child, -1);
+    for (std::size_t s = 0; s < sides_of<Cell>; ++s) {
+      auto const& of_parent = p.child_side[at(i)][s];
+      bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
+                            of_parent.number != p.halved_side;
+      replace_at_side(tree, child.sides[s], cell.first_child + i, is_whole ? c : -1);
+    }
+  });
 }
 /// Makes a divided cell, whose children were left out, a leaf.
 PLIANT_HOST_DEVICE void merge_cell(TreeView const& tree, Index c) {

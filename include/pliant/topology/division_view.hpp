@@ -34,7 +34,7 @@ struct DivisionView {
 
   [[nodiscard]] PLIANT_HOST_DEVICE Index leaf(Index r) const { return leaves[r].cell; }
   [[nodiscard]] PLIANT_HOST_DEVICE TreeCell& cell(Index r) const { return tree.cells[at(leaf(r))]; }
-  [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern(Index r) const {
+  [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern_at(Index r) const {
     return pattern_of(cell(r).kind, leaves[r].division);
   }
   static PLIANT_HOST_DEVICE bool is_divided(RefinementPattern const& p, std::size_t side) {
@@ -58,7 +58,7 @@ struct DivisionView {
   /// Finds what the leaf makes; numbers are not known yet.
   PLIANT_HOST_DEVICE void find_parts(Index r) const {
     auto const& own_cell = cell(r);
-    auto const& p = pattern(r);
+    auto const& p = pattern_at(r);
     LeafParts own{.edges = p.inner_edges, .sides = p.inner_sides, .cells = p.children};
     for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
       auto const& edge = tree.edges[at(own_cell.edges[e])];
@@ -85,7 +85,7 @@ struct DivisionView {
   /// Middle and halves of edge e.
   PLIANT_HOST_DEVICE void make_on_edge(Index r, std::size_t e) const {
     auto const& own_cell = cell(r);
-    auto const& p = pattern(r);
+    auto const& p = pattern_at(r);
     auto const& own = parts[r];
     if (!has(own.middles, e) && !has(own.halves, e)) return;
     Index const number = own_cell.edges[e];
@@ -105,7 +105,7 @@ struct DivisionView {
   /// Centre and parts of side s, whose edges have all of theirs.
   PLIANT_HOST_DEVICE void make_on_side(Index r, std::size_t s) const {
     auto const& own_cell = cell(r);
-    auto const& p = pattern(r);
+    auto const& p = pattern_at(r);
     auto const& own = parts[r];
     auto& side = tree.sides[at(own_cell.sides[s])];
     if (has(own.centres, s)) {
@@ -131,7 +131,7 @@ struct DivisionView {
   PLIANT_HOST_DEVICE void make_inside(Index r) const {
     Index const c = leaf(r);
     auto& parent = tree.cells[at(c)];
-    auto const& p = pattern(r);
+    auto const& p = pattern_at(r);
     auto const& own = parts[r];
     parent.division = leaves[r].division;
     parent.first_child = own.cell;
@@ -150,44 +150,50 @@ struct DivisionView {
   }
   /// Child i, which is a leaf, and the sides inside of which it is the first cell.
   PLIANT_HOST_DEVICE void make_child(Index r, std::size_t i) const {
+    with_cell(pattern_at(r).child_kind[i], [&]<class Cell>(Cell) { make_child_on<Cell>(r, i); });
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  /// Child i, which is a `Cell`: compilers know how many of each it has, so that a device keeps it in registers.
+  template <class Cell>
+  PLIANT_HOST_DEVICE void make_child_on(Index r, std::size_t i) const {
     Index const c = leaf(r);
     auto const& parent = tree.cells[at(c)];
-    auto const& p = pattern(r);
+    auto const& p = pattern_at(r);
     auto const& own = parts[r];
     Index const number = own.cell + static_cast<Index>(i);
-    TreeCell child{.kind = p.child_kind[i],
+    TreeCell child{.kind = kind_of<Cell>,
                    .has = parent.has,
                    .mirrored = parent.mirrored != p.mirrored[i],
                    .level = level_of_children(parent, p),
                    .parent = c};
-    auto const& shape = child.pattern();
-    for (std::size_t a = 0; a < at(shape.corners); ++a)
+    auto const& shape = pattern_of(kind_of<Cell>);
+    for (std::size_t a = 0; a < Cell::corners; ++a)
       child.nodes[a] = point(parent, p, p.child[i][a]);
-    for (std::size_t e = 0; e < at(shape.edges); ++e)
-      child.edges[e] =
-          edge_of_child(parent, p, i, shape.edge[e], p.child_edge[i][e], first_inner_edge(own, p));
-    for (std::size_t s = 0; s < at(shape.sides); ++s) {
+    for (std::size_t e = 0; e < Cell::edges().size(); ++e)
+      child.edges[e] = edge_of_child(parent, p, p.child[i][at(shape.edge[e][0])],
+                                     p.child[i][at(shape.edge[e][1])], p.child_edge[i][e],
+                                     first_inner_edge(own, p));
+    for (std::size_t s = 0; s < sides_of<Cell>; ++s) {
+      auto side = TreeView::side_of<Cell>(child, s);
       auto const& of_parent = p.child_side[i][s];
       auto const k = at(of_parent.number);
       if (of_parent.home == RefinementPattern::Home::side) {
         Index const whole = parent.sides[k];
-        child.sides[s] = is_divided(p, k) ? part_of_side(p, whole, child, s) : whole;
+        child.sides[s] = is_divided(p, k) ? part_of_side(p, whole, side.nodes) : whole;
         tree.sides[at(child.sides[s])].cells[has(own.second, k) ? 1 : 0] = number;
         continue;
       }
       child.sides[s] = own.side + own.sides - p.inner_sides + of_parent.number;
       auto const& children = p.children_at_inner_side[k];
       if (at(children[0]) != i) continue;
-      auto side = TreeView::side_of(child, s);
       side.cells = {own.cell + children[0], own.cell + children[1]};
       tree.sides[at(child.sides[s])] = side;
     }
     tree.cells[at(number)] = child;
-    tree.count_leaf(child, 1);
+    tree.count_leaf<Cell>(child, 1);
   }
-
- private:
-  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   template <class Bits>
   static PLIANT_HOST_DEVICE bool has(Bits bits, std::size_t k) {
     return (bits >> k & 1) != 0;
@@ -202,7 +208,7 @@ struct DivisionView {
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_shared(Index r, Visit const& visit) const {
     auto const& own_cell = cell(r);
-    auto const& p = pattern(r);
+    auto const& p = pattern_at(r);
     for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
       auto& edge = tree.edges[at(own_cell.edges[e])];
       visit(edge.middle);
@@ -216,7 +222,7 @@ struct DivisionView {
     }
   }
   PLIANT_HOST_DEVICE void place(Index r, Index node, int point) const {
-    made[node - first_node] = {node, leaf(r), cell(r).has, pattern(r).place[at(point)]};
+    made[node - first_node] = {node, leaf(r), cell(r).has, pattern_at(r).place[at(point)]};
   }
   static PLIANT_HOST_DEVICE Index first_inner_edge(LeafParts const& own,
                                                    RefinementPattern const& p) {
@@ -236,14 +242,12 @@ struct DivisionView {
     while (p.side_centre[s] != i) ++s;
     return tree.sides[at(own_cell.sides[s])].centre;
   }
-  /// The edge between two corners of child i.
+  /// The edge of a child between two points.
   [[nodiscard]] PLIANT_HOST_DEVICE Index edge_of_child(TreeCell const& parent,
-                                                       RefinementPattern const& p, std::size_t i,
-                                                       std::array<int, 2> const& corners,
+                                                       RefinementPattern const& p, int a, int b,
                                                        RefinementPattern::Part part,
                                                        Index first_inner_edge) const {
     if (part.home == RefinementPattern::Home::inside) return first_inner_edge + part.number;
-    int const a = p.child[i][at(corners[0])], b = p.child[i][at(corners[1])];  // points
     if (part.home == RefinementPattern::Home::side) {
       Index const side = parent.sides[at(part.number)];
       if (!p.halves) return tree.sides[at(side)].first_inner_edge;
@@ -257,10 +261,9 @@ struct DivisionView {
     if (!p.halves) return whole;
     return half_at(tree, whole, parent.nodes[at(a < p.corners ? a : b)]);
   }
-  /// The part of a divided side of the parent that side s of a child is.
+  /// The part of a divided side of the parent that has such corners.
   [[nodiscard]] PLIANT_HOST_DEVICE Index part_of_side(RefinementPattern const& p, Index whole,
-                                                      TreeCell const& child, std::size_t s) const {
-    auto const corners = TreeView::side_of(child, s).nodes;
+                                                      std::array<Index, 4> const& corners) const {
     return p.halves ? quarter_of_side(tree, whole, corners) : half_of_side(tree, whole, corners);
   }
 };

@@ -152,7 +152,7 @@ struct MakeOnEdges {
   static constexpr Index each = RefinementPattern::most_edges;
   DivisionView division;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    if (k % each < division.pattern(k / each).edges)
+    if (k % each < division.pattern_at(k / each).edges)
       division.make_on_edge(k / each, static_cast<std::size_t>(k % each));
   }
 };
@@ -160,7 +160,7 @@ struct MakeOnSides {
   static constexpr Index each = RefinementPattern::most_sides;
   DivisionView division;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    if (k % each < division.pattern(k / each).sides)
+    if (k % each < division.pattern_at(k / each).sides)
       division.make_on_side(k / each, static_cast<std::size_t>(k % each));
   }
 };

@@ -75,6 +75,17 @@ struct TreeView {
       if (cell.has != CellNodes::corners) add(edge.raised, by);
     }
   }
+  /// The same of a leaf that is a `Cell`.
+  template <class Cell>
+  PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
+    constexpr std::size_t n = Cell::edges().size();
+    TreeEdge* own[n];  // all of them first, so that a device waits for memory once
+    for (std::size_t e = 0; e < n; ++e) own[e] = &edges[at(cell.edges[e])];
+    for (std::size_t e = 0; e < n; ++e) {
+      add(own[e]->leaves, by);
+      if (cell.has != CellNodes::corners) add(own[e]->raised, by);
+    }
+  }
   /// The same for a refined cell. Split ones count by their children.
   PLIANT_HOST_DEVICE void count_refined(TreeCell const& cell, int by) const {
     for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
@@ -86,6 +97,18 @@ struct TreeView {
     auto const& p = cell.pattern();
     TreeSide side{.level = cell.level};
     for (std::size_t k = 0; k < at(p.corners_of_side(static_cast<int>(s))); ++k) {
+      side.nodes[k] = cell.nodes[at(p.side[s][k])];
+      side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
+    }
+    return side;
+  }
+  /// The same of a cell that is a `Cell`.
+  template <class Cell>
+  static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) {
+    auto const& p = pattern_of(kind_of<Cell>);
+    TreeSide side{.level = cell.level};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (p.side[s][k] < 0) break;
       side.nodes[k] = cell.nodes[at(p.side[s][k])];
       side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
     }
