@@ -101,7 +101,8 @@ class HangingNodesOn {
         backend_, number_slaves(known_, false), detail::ScanStep{places, hung, start_.data()},
         detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counters_.data()}});
     known_ = 0;
-    Index const n = counted<1>()[0];
+    // One hangs on each edge where all leaves have corners only.
+    Index const n = tree.is_linear() && side_count_ == 0 ? places : counted<1>()[0];
     if (n == 0) return {};
     need(nodes_, n);
     need(order_, n);

@@ -58,6 +58,8 @@ class TreeOn {
   /// Whether the tree that it was made of had leaves with corners only beside others, or cells of another degree than in the
   /// initial mesh.
   [[nodiscard]] bool mixes_degrees() const { return mixes_degrees_; }
+  /// Whether all of its leaves have corners only.
+  [[nodiscard]] bool is_linear() const { return !has_quadratic_; }
   /// How many bytes its lists take.
   [[nodiscard]] std::size_t bytes() const { return lists_.bytes(); }
   /// Copies of the lists on the host.
