@@ -73,12 +73,19 @@ class DeviceArray {
   /// Overwrites the first values, after all that was queued on the backend's stream before, and
   /// waits for it.
   void upload(std::span<U const> values) {
-    copy(data_, values.data(), values.size(), cudaMemcpyHostToDevice);
+    if (!has_room(values.size())) return;
+    auto const device = stream_->enter();
+    detail::check(cudaMemcpyAsync(data_, values.data(), values.size_bytes(), cudaMemcpyHostToDevice,
+                                  stream_->get()),
+                  "cudaMemcpyAsync");
+    stream_->synchronize();
   }
   /// Reads the first values, after all that was queued on the backend's stream before, and waits
   /// for it.
   void download(std::span<U> values) const {
-    copy(values.data(), data_, values.size(), cudaMemcpyDeviceToHost);
+    if (!has_room(values.size())) return;
+    auto const device = stream_->enter();
+    stream_->download(values.data(), data_, values.size_bytes());
   }
 
  private:
@@ -93,15 +100,12 @@ class DeviceArray {
     if (status != cudaSuccess) data_ = nullptr;
     detail::check_memory(status, bytes);
   }
-  void copy(void* to, void const* from, std::size_t count, cudaMemcpyKind kind) const {
+  /// Whether there is anything to copy. Throws Error where there is no room for it.
+  bool has_room(std::size_t count) const {
     if (count > size_)
       throw Error("CUDA: copy of ", count, " values, but the array holds ", size_,
                   "; make the array larger");
-    if (count == 0) return;
-    auto const device = stream_->enter();
-    detail::check(cudaMemcpyAsync(to, from, count * sizeof(U), kind, stream_->get()),
-                  "cudaMemcpyAsync");
-    stream_->synchronize();
+    return count > 0;
   }
 
   detail::SharedStream stream_;

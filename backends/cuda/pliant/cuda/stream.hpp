@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -11,8 +12,8 @@ namespace pliant {
 
 /// Which GPU, and where on it work is queued.
 ///
-/// By default a backend makes a stream of its own, which neither waits for the legacy default stream
-/// (stream 0) nor is waited for by it. Work of a caller's own that a backend's verbs read has to be
+/// By default a backend makes a stream of its own, one above the least priority, which neither waits for the legacy
+/// default stream (stream 0) nor is waited for by it. Work of a caller's own that a backend's verbs read has to be
 /// finished before they are called, or ordered by an event: `cudaStreamWaitEvent(backend.stream(),
 /// event)`; and the other way round after `backend.synchronize()` or an event recorded on
 /// `backend.stream()`. A caller who passes `stream`, one of `device`, has his work and the backend's in
@@ -32,11 +33,17 @@ class DeviceStream {
       : device_(checked(options.device)), stream_(options.stream) {
     auto const guard = enter();
     use_pool();
-    if (stream_ != nullptr) return;
-    check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-    owns_stream_ = true;
+    if (stream_ == nullptr) {
+      check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, above_side_streams),
+            "cudaStreamCreateWithPriority");
+      owns_stream_ = true;
+    }
+    cudaError_t const status = cudaMallocHost(&staged_, most_staged);
+    if (status != cudaSuccess && owns_stream_) cudaStreamDestroy(stream_);
+    check(status, "cudaMallocHost");
   }
   ~DeviceStream() {
+    cudaFreeHost(staged_);
     if (owns_stream_) cudaStreamDestroy(stream_);
   }
   DeviceStream(DeviceStream const&) = delete;
@@ -47,6 +54,15 @@ class DeviceStream {
   /// The device is the calling thread's current one while what this returns lives.
   [[nodiscard]] DeviceGuard enter() const { return DeviceGuard(device_); }
   void synchronize() const { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+  /// Copies to the host what is in the device's memory once all that was queued before is done, and waits for it. A little of it
+  /// goes through memory that is pinned, which takes less time.
+  void download(void* to, void const* from, std::size_t bytes) const {
+    bool const is_little = bytes <= most_staged;
+    check(cudaMemcpyAsync(is_little ? staged_ : to, from, bytes, cudaMemcpyDeviceToHost, stream_),
+          "cudaMemcpyAsync");
+    synchronize();
+    if (is_little) std::memcpy(to, staged_, bytes);
+  }
 
   /// Memory of the device, which is the current one, for work that is queued from now on.
   template <class U>
@@ -62,6 +78,9 @@ class DeviceStream {
   }
 
  private:
+  static constexpr int above_side_streams = -1;  // which have the least priority, 0
+  static constexpr std::size_t most_staged = 64 << 10;
+
   /// Takes memory from the pool of the device, where it has one: that takes a fraction of the time, and waits for nothing. The
   /// pool keeps what is free of it, a sixteenth of the device's memory at most, unless the program said how much.
   void use_pool() {
@@ -102,6 +121,7 @@ class DeviceStream {
   int device_;
   cudaStream_t stream_;
   bool owns_stream_ = false, uses_pool_ = false;
+  void* staged_ = nullptr;  // (most_staged), the host's
 };
 
 using SharedStream = std::shared_ptr<DeviceStream const>;
