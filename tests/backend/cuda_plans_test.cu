@@ -55,8 +55,9 @@ detail::PatchPlan<Planner> planned(TableOf<Planner> const& table, detail::PatchC
   std::vector<Index> flat;
   for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
   auto const connectivity = upload(backend, flat), first = upload(backend, cuts.first());
-  return detail::plan_patches<Planner>(backend, connectivity, Planner::nodes, cuts, first.data(),
-                                       known, [](auto const&) { return true; });
+  return detail::plan_patches<Planner>(
+      backend, {connectivity.data(), Planner::nodes, cuts.size(), first.data()}, cuts, known,
+      [](auto const&) { return true; });
 }
 
 /// The plan of a table on the device against that of one host thread, whatever capacity it was thought to need.

@@ -75,6 +75,7 @@ class Cuda {
 
   int device() const { return context_->stream()->device(); }
   cudaStream_t stream() const { return context_->stream()->get(); }
+  std::shared_ptr<detail::SideStream> const& side_stream() const { return context_->side_stream(); }
   void synchronize() const { context_->stream()->synchronize(); }
   Timer timer() const { return Timer(context_->stream()); }
   Recording record(std::function<void()> const& f) const { return {context_, f}; }

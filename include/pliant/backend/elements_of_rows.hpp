@@ -84,7 +84,7 @@ using ElementListOn = typename detail::ElementListOf<B, Nodes>::type;
 
 /// A table of elements whose rows of nodes, (elements, row_width<Elements>), and tags, (elements) or none, are in the backend's
 /// memory: taken over where Elements is one that TakesRows, else copied. `nodes`: how many rows fields have. `before`: null, or
-/// the table before a change in which blocks stay; all rows are given then, too.
+/// the table before a change in which blocks stay, which has to stay until the new one is settled; all rows are given then, too.
 template <class Elements, Backend B>
 Elements elements_of_rows(B const& backend, typename B::template Array<Index> rows, int groups,
                           typename B::template Array<Tag> tags, Index nodes,
@@ -111,7 +111,15 @@ Elements elements_of_rows(B const& backend, typename B::template Array<Index> ro
   }
 }
 
-/// The same for sum_elements and visit alone, of all elements that have rows of row_width<ElementListOn> entries.
+/// Waits for what a backend still does for a table that was made from one before a change, where it does; before loops over its
+/// patches.
+template <class Elements, Backend B>
+void settle(B const& backend, Elements& elements) {
+  if constexpr (requires { elements.settle(backend); }) elements.settle(backend);
+}
+
+/// A table as of elements_of_rows, for sum_elements and visit alone, of all elements that have rows of row_width<ElementListOn>
+/// entries.
 template <int Nodes, Backend B>
 ElementListOn<B, Nodes> element_list(B const& backend, typename B::template Array<Index> rows,
                                      int groups, typename B::template Array<Tag> tags,

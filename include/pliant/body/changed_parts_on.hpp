@@ -278,6 +278,7 @@ class ChangedPartsOn {
   void read_energies(ChangedTopology<Parts>& changed) {
     energies_.add_kinetic(Energies::after, changed.parts);
     auto const sums = energies_.read();
+    settle(backend_, std::get<0>(changed.parts.layout.tables).elements);
     if (sums.not_finite > 0) check_fields();
     changed.strain_energy_before = sums.strain[Energies::before] + energy_of_added_terms(parts_);
     changed.strain_energy = sums.strain[Energies::after] + energy_of_added_terms(changed.parts);

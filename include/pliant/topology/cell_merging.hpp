@@ -42,11 +42,11 @@ PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) 
   TreeCell const child = tree.cells[at(cell.first_child + i)];
   with_cell(child.kind, [&]<class Cell>(Cell) {
     tree.count_leaf<Cell>(child, -1);
-    for (std::size_t s = 0; s < sides_of<Cell>; ++s) {
-      auto const& of_parent = p.child_side[at(i)][s];
+    for (int s = 0; s < sides_of<Cell>; ++s) {
+      auto const& of_parent = p.child_side[at(i)][at(s)];
       bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
                             of_parent.number != p.halved_side;
-      replace_at_side(tree, child.sides[s], cell.first_child + i, is_whole ? c : -1);
+      replace_at_side(tree, child.sides[at(s)], cell.first_child + i, is_whole ? c : -1);
     }
   });
 }

@@ -175,18 +175,19 @@ struct DivisionView {
       child.edges[e] = edge_of_child(parent, p, p.child[i][at(shape.edge[e][0])],
                                      p.child[i][at(shape.edge[e][1])], p.child_edge[i][e],
                                      first_inner_edge(own, p));
-    for (std::size_t s = 0; s < sides_of<Cell>; ++s) {
+    for (int k = 0; k < sides_of<Cell>; ++k) {
+      auto const s = at(k);
       auto side = TreeView::side_of<Cell>(child, s);
       auto const& of_parent = p.child_side[i][s];
-      auto const k = at(of_parent.number);
+      auto const there = at(of_parent.number);
       if (of_parent.home == RefinementPattern::Home::side) {
-        Index const whole = parent.sides[k];
-        child.sides[s] = is_divided(p, k) ? part_of_side(p, whole, side.nodes) : whole;
-        tree.sides[at(child.sides[s])].cells[has(own.second, k) ? 1 : 0] = number;
+        Index const whole = parent.sides[there];
+        child.sides[s] = is_divided(p, there) ? part_of_side(p, whole, side.nodes) : whole;
+        tree.sides[at(child.sides[s])].cells[has(own.second, there) ? 1 : 0] = number;
         continue;
       }
       child.sides[s] = own.side + own.sides - p.inner_sides + of_parent.number;
-      auto const& children = p.children_at_inner_side[k];
+      auto const& children = p.children_at_inner_side[there];
       if (at(children[0]) != i) continue;
       side.cells = {own.cell + children[0], own.cell + children[1]};
       tree.sides[at(child.sides[s])] = side;

@@ -56,7 +56,7 @@ PLIANT_HOST_DEVICE RefinementPattern const& pattern_of(CellKind kind,
 
 /// How many sides a cell has that are cells of the plane: none in the plane itself.
 template <class Cell>
-inline constexpr std::size_t sides_of = Cell::dim == 3 ? Cell::sides().size() : 0;
+inline constexpr int sides_of = Cell::dim == 3 ? static_cast<int>(Cell::sides().size()) : 0;
 
 /// Calls f with the cell of a kind: with how many corners, edges and sides it has, a device keeps it in registers.
 template <class F>

@@ -2,6 +2,7 @@
 
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/scratch.hpp>
+#include <pliant/cuda/side_stream.hpp>
 
 namespace pliant::detail {
 
@@ -24,6 +25,11 @@ class CudaContext {
   SharedStream const& stream() const { return stream_; }
   double* partials() { return partials_.data(); }
   DeviceScratch& scratch() { return scratch_; }
+  /// Made when it is asked for first.
+  std::shared_ptr<SideStream> const& side_stream() {
+    if (!side_stream_) side_stream_ = std::make_shared<SideStream>(stream_);
+    return side_stream_;
+  }
   /// In host memory that kernels can write to.
   double* result() const { return result_; }
 
@@ -31,6 +37,7 @@ class CudaContext {
   SharedStream stream_;
   DeviceArray<double> partials_;
   DeviceScratch scratch_;
+  std::shared_ptr<SideStream> side_stream_;
   double* result_ = nullptr;
 };
 

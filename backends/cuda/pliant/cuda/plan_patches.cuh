@@ -1,31 +1,18 @@
 #pragma once
 
-#include <algorithm>
-#include <iterator>
+#include <cstddef>
+#include <span>
 #include <utility>
-#include <vector>
 
 #include <pliant/backend/patch_cuts.hpp>
 #include <pliant/cuda/array.hpp>
-#include <pliant/cuda/fan_plan.hpp>
+#include <pliant/cuda/known_patches.hpp>
 #include <pliant/cuda/launch.hpp>
-#include <pliant/cuda/patch_plan.hpp>
+#include <pliant/cuda/side_stream.hpp>
 #include <pliant/cuda/tuning.hpp>
 
 // Patches are planned where they are used: a block plans one, in its shared memory.
 namespace pliant::detail {
-
-/// The patches of an element table.
-template <class Planner>
-struct PatchPlan {
-  PatchCounts capacity;                       // of a patch; multiples of 4
-  DeviceArray<typename Planner::Unit> units;  // (patches, Planner::units)
-  DeviceArray<PatchNode> nodes;               // (patches, node capacity)
-  DeviceArray<std::uint16_t> diagonals;       // (patches, diagonal capacity)
-  DeviceArray<PatchCounts> counts;            // (patches): what each has
-  PatchCounts
-      changed{};  // the most that any needed where many were planned again; zero: they never were
-};
 
 inline constexpr int plan_threads = 512;
 
@@ -51,12 +38,6 @@ struct PatchInput {
   int width, patch_size;
   Index const* first;  // (patches + 1), elements
 };
-
-/// Whether patches of such a capacity have room for so much.
-PLIANT_HOST_DEVICE bool holds(PatchCounts const& capacity, PatchCounts const& counts) {
-  return counts.nodes <= capacity.nodes && counts.diagonals <= capacity.diagonals &&
-         counts.fans <= capacity.fans && counts.slots <= capacity.slots;
-}
 
 /// A plan as kernels see it.
 template <class Planner>
@@ -147,118 +128,111 @@ __global__ void __launch_bounds__(plan_threads)
     plan_patch(input, patch, to, most);
 }
 
-/// What a table was planned to before a change, with its patches as PatchRanges::first has them, and by the patch now the patch
-/// there, or −1.
 template <class Planner>
-struct KnownPatches {
-  PatchPlan<Planner> const* plan = nullptr;
-  Index const* first = nullptr;
-  std::vector<Index> patches{};
+PlanView<Planner> view_of(PatchPlan<Planner> const& plan, Index const* first) {
+  return {plan.capacity,
+          first,
+          const_cast<typename Planner::Unit*>(plan.units.data()),
+          const_cast<PatchNode*>(plan.nodes.data()),
+          const_cast<std::uint16_t*>(plan.diagonals.data()),
+          const_cast<PatchCounts*>(plan.counts.data())};
+}
+
+/// A plan without values, which has room for patches of such a capacity.
+template <class Planner, class B>
+PatchPlan<Planner> room_for_plan(B const& backend, PatchCuts const& cuts,
+                                 PatchCounts const& capacity) {
+  Index const patches = cuts.count();
+  auto const for_each = [&](int n) {
+    return static_cast<std::size_t>(patches) * static_cast<std::size_t>(n);
+  };
+  PatchPlan<Planner> room;
+  room.capacity = capacity;
+  if (capacity.nodes > 0)
+    room.units = backend.template unset_array<typename Planner::Unit>(
+        static_cast<std::size_t>(Planner::first_unit(patches, cuts.first(patches), capacity)));
+  room.nodes = backend.template unset_array<PatchNode>(for_each(capacity.nodes));
+  room.diagonals = backend.template unset_array<std::uint16_t>(for_each(capacity.diagonals));
+  room.counts = backend.template unset_array<PatchCounts>(static_cast<std::size_t>(patches));
+  return room;
+}
+
+template <class Planner>
+LaunchShape plan_shape(PatchCuts const& cuts) {
+  return {cuts.count(), plan_threads, plan_bytes<Planner>(cuts.size())};
+}
+
+/// Patches that are being planned.
+template <class Planner>
+struct PlanInWork {
+  PatchInput input;
+  PatchPlan<Planner> plan;  // of a capacity that may be right
+  PatchCounts changed;      // what such a plan had before
+  bool changes_many;
+  DeviceArray<Index> patches_before;
+  DeviceArray<PatchCounts> most;  // that any patch needs
 };
 
-/// Whether many patches of a table are planned again.
-template <class Planner>
-bool many_change(KnownPatches<Planner> const& known) {
-  auto const planned = std::ranges::count(known.patches, Index{-1});
-  return known.plan != nullptr && 8 * planned >= std::ssize(known.patches);
-}
-/// The least multiples of four.
-inline PatchCounts in_fours(PatchCounts const& counts) {
-  auto const rounded = [](int n) { return (n + 3) / 4 * 4; };
-  return {rounded(counts.nodes), rounded(counts.diagonals), rounded(counts.fans),
-          rounded(counts.slots)};
-}
-inline PatchCounts larger(PatchCounts const& a, PatchCounts const& b) {
-  return {std::max(a.nodes, b.nodes), std::max(a.diagonals, b.diagonals), std::max(a.fans, b.fans),
-          std::max(a.slots, b.slots)};
-}
-/// What to give patches room for before it is known what they need: as much as before a change, where few are planned again;
-/// else a little more than such patches ever needed, and at first as much as any needs, but for diagonals, so that few have to be
-/// planned twice.
-template <class Planner>
-PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size) {
-  PatchCounts const usual = Planner::usual(patch_size);
-  if (known.plan == nullptr) return usual;
-  PatchCounts const& before = known.plan->capacity;
-  if (!many_change(known)) return before;
-  auto const& changed = known.plan->changed;
-  auto guess = Planner::most(patch_size);
-  if (changed.slots > 0) {
-    auto const more = [](int n, int most) { return std::min(n + n / 32, most); };
-    guess = in_fours({more(changed.nodes, guess.nodes), 0, more(changed.fans, guess.fans),
-                      more(changed.slots, guess.slots)});
-  }
-  guess.diagonals = 2 * std::max(before.diagonals, usual.diagonals);
-  return guess;
-}
-
-/// Waits for the device. There is no plan where `accepts` refuses the capacity that patches need. `known`: a plan of patches of
-/// the same size: patches are planned while they are counted, or taken from there, with a capacity that may be right. Where it
-/// is not, those that it has room for are taken from this first plan.
-template <class Planner, class B, class Accepts>
-PatchPlan<Planner> plan_patches(B const& backend, DeviceArray<Index> const& connectivity, int width,
-                                PatchCuts const& cuts, Index const* first,
-                                KnownPatches<Planner> const& known, Accepts const& accepts) {
-  using View = PlanView<Planner>;
-  PatchPlan<Planner> plan;
-  Index const patches = cuts.count();
-  if (patches == 0) return plan;
+/// Begins to plan patches, on a side stream if there is one; what any needs goes there to its mail. `known`: a plan of patches of
+/// the same size: patches are planned while they are counted, or taken from there, which has to stay until that is done.
+template <class Planner, class B>
+PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchCuts const& cuts,
+                               KnownPatches<Planner> const& known, SideStream* side = nullptr) {
   DeviceGuard const device(backend.device());
-  PatchInput const input{connectivity.data(), width, cuts.size(), first};
-  auto most = backend.template array<PatchCounts>(1);
-  auto const view = [](PatchPlan<Planner> const& of, Index const* first_of_patch) {
-    return View{of.capacity,
-                first_of_patch,
-                const_cast<typename Planner::Unit*>(of.units.data()),
-                const_cast<PatchNode*>(of.nodes.data()),
-                const_cast<std::uint16_t*>(of.diagonals.data()),
-                const_cast<PatchCounts*>(of.counts.data())};
-  };
-  auto const room_for = [&](PatchCounts const& capacity) {
-    auto const for_each = [&](int n) {
-      return static_cast<std::size_t>(patches) * static_cast<std::size_t>(n);
-    };
-    PatchPlan<Planner> room;
-    room.capacity = capacity;
-    if (capacity.nodes > 0)
-      room.units = backend.template array<typename Planner::Unit>(
-          static_cast<std::size_t>(Planner::first_unit(patches, cuts.first(patches), capacity)));
-    room.nodes = backend.template array<PatchNode>(for_each(capacity.nodes));
-    room.diagonals = backend.template array<std::uint16_t>(for_each(capacity.diagonals));
-    room.counts = backend.template array<PatchCounts>(static_cast<std::size_t>(patches));
-    return room;
-  };
-  LaunchShape const shape{patches, plan_threads, plan_bytes<Planner>(cuts.size())};
+  bool const is_known = !known.patches.empty();
+  PlanInWork<Planner> work{
+      input,
+      room_for_plan<Planner>(backend, cuts, guessed_capacity(known, cuts.size())),
+      known.plan == nullptr ? PatchCounts{} : known.plan->changed,
+      many_change(known),
+      is_known ? backend.array(std::span<Index const>(known.patches)) : DeviceArray<Index>{},
+      backend.template array<PatchCounts>(1)};
+  PlanView<Planner> const from = is_known ? view_of(*known.plan, known.first) : PlanView<Planner>{};
+  launch("plan patches", plan_shape<Planner>(cuts), side ? side->begin() : backend.stream(),
+         plan_patches_anew<Planner>, input, work.patches_before.data(), from,
+         view_of(work.plan, input.first), work.most.data());
+  if (side)
+    check(cudaMemcpyAsync(side->mail(), work.most.data(), sizeof(PatchCounts),
+                          cudaMemcpyDeviceToHost, side->get()),
+          "cudaMemcpyAsync");
+  return work;
+}
 
-  PatchCounts const guess = guessed_capacity(known, cuts.size());
-  plan = room_for(guess);
-  View from{};
-  DeviceArray<Index> patches_before;
-  if (!known.patches.empty()) {
-    from = view(*known.plan, known.first);
-    patches_before = backend.array(std::span<Index const>(known.patches));
-  }
-  launch("plan patches", shape, backend.stream(), plan_patches_anew<Planner>, input,
-         patches_before.data(), from, view(plan, first), most.data());
-  PatchCounts counts;
-  most.download({&counts, 1});
-  auto const changed = known.plan == nullptr ? PatchCounts{}
-                       : many_change(known)  ? larger(known.plan->changed, counts)
-                                             : known.plan->changed;
-  plan.changed = changed;
+/// Ends it; `counts`: what is in work.most when that is done. There is no plan where `accepts` refuses the capacity that patches
+/// need. Where that of the work is not right, those that it has room for are taken from it.
+template <class Planner, class B, class Accepts>
+PatchPlan<Planner> end_plan(B const& backend, PlanInWork<Planner> work, PatchCounts const& counts,
+                            PatchCuts const& cuts, Accepts const& accepts) {
+  DeviceGuard const device(backend.device());
+  auto const changed = work.changes_many ? larger(work.changed, counts) : work.changed;
+  PatchCounts const guess = work.plan.capacity;
   // What a patch stages shares the memory of a multiprocessor with others: there is little room to spare.
   bool const is_right = holds(guess, counts) && guess.slots <= counts.slots + counts.slots / 16 &&
                         guess.nodes <= counts.nodes + counts.nodes / 16;
-  if (is_right && accepts(guess)) return plan;
-  auto const capacity = in_fours(counts);
-  auto const guessed = std::exchange(plan, {});
-  plan.capacity = capacity;
-  if (!accepts(capacity)) return plan;
-  plan = room_for(capacity);
+  PatchPlan<Planner> plan;
+  if (is_right && accepts(guess)) {
+    plan = std::move(work.plan);
+  } else {
+    plan.capacity = in_fours(counts);
+    if (!accepts(plan.capacity)) return plan;
+    plan = room_for_plan<Planner>(backend, cuts, plan.capacity);
+    launch("plan patches", plan_shape<Planner>(cuts), backend.stream(), plan_patches_left<Planner>,
+           work.input, view_of(work.plan, work.input.first), view_of(plan, work.input.first),
+           work.most.data());
+  }
   plan.changed = changed;
-  launch("plan patches", shape, backend.stream(), plan_patches_left<Planner>, input,
-         view(guessed, first), view(plan, first), most.data());
   return plan;
+}
+
+/// Both; waits for the device.
+template <class Planner, class B, class Accepts>
+PatchPlan<Planner> plan_patches(B const& backend, PatchInput const& input, PatchCuts const& cuts,
+                                KnownPatches<Planner> const& known, Accepts const& accepts) {
+  if (cuts.count() == 0) return {};
+  auto work = begin_plan(backend, input, cuts, known);
+  PatchCounts counts;
+  work.most.download({&counts, 1});
+  return end_plan(backend, std::move(work), counts, cuts, accepts);
 }
 
 }  // namespace pliant::detail
