@@ -14,6 +14,9 @@
 // Changes of the mesh: new nodes, hanging nodes, state, layout and groups. The rate counts the elements before.
 namespace pliant::bench {
 
+/// Of elements, by the type.
+using Lists = std::vector<std::vector<Index>>;
+
 /// The first elements of a mesh.
 inline std::vector<Index> first_elements(std::size_t count) {
   std::vector<Index> marked;
@@ -32,10 +35,10 @@ inline std::vector<Index> each_of(std::size_t elements, Index distance) {
 template <class E, class B>
 void time_refinement(benchmark::State& state, B const& backend, int cells) {
   auto const fresh = [&] { return shaken_body<Usual<E, SaintVenantKirchhoff>>(backend, cells); };
-  auto const marked = first_elements(element_count<E>(cells) / 10);
+  Lists const marked{first_elements(element_count<E>(cells) / 10)};
   for (auto _ : state) {
     auto body = fresh();
-    state.SetIterationTime(seconds(backend, [&] { refine(body, {marked}); }));
+    state.SetIterationTime(seconds(backend, [&] { refine(body, marked); }));
   }
   auto body = fresh();
   report_elements(state, body);
@@ -92,28 +95,29 @@ void time_change(benchmark::State& state, B const& backend, int cells,
     });
   }
   CentralDifference step;
-  Adaptation adapt{sleep({.below = 1e6, .for_steps = 4})};
+  auto adapt = Adaptation{sleep({.below = 1e6, .for_steps = 2})}.every(1);
   auto const fall_asleep = [&] {
-    if (beside == Beside::sleep) step(body, 12, adapt);
+    if (beside == Beside::sleep) step(body, 4, adapt);
   };
   auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
+  Lists const marked_lists{marked};
   auto const children = [&] {
     std::vector<Index> found;
     auto const levels = refinement_levels<E>(body);
     for (std::size_t e = 0; e < levels.size(); ++e)
       if (levels[e] > 0) found.push_back(static_cast<Index>(e));
-    return found;
+    return Lists{found};
   };
   for (auto _ : state) {
     refine(body, {{last}});
     fall_asleep();
     double const there = seconds(backend, [&] {
-      refine(body, {marked});
+      refine(body, marked_lists);
       fall_asleep();
     });
     auto const made = children();
     double const again = seconds(backend, [&] {
-      coarsen(body, {made});
+      coarsen(body, made);
       fall_asleep();
     });
     state.SetIterationTime(back ? again : there);
