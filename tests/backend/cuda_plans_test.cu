@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <random>
 
@@ -126,6 +127,62 @@ TEST_CASE("patches that stay in a change keep their plans", "[cuda]") {
     }
   CHECK(of_fans > 0);
   CHECK(of_elements > 0);
+}
+
+/// Patches of blocks of 40 elements, of which each `distance`-th is planned again beside other work, against what a host thread
+/// plans. Whether they are fans.
+bool compare_plan_beside(std::vector<std::array<Index, 4>> const& table, NodeOrder order,
+                         std::size_t distance) {
+  Cuda<double> const backend;
+  auto const count = static_cast<Index>(table.size());
+  ElementBlocks blocks;
+  for (Index e = 0; e < count; e += 40) blocks.first.push_back(e);
+  blocks.first.push_back(count);
+  auto changed = blocks;
+  changed.first_before = blocks.first;
+  for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b)
+    changed.stays.push_back(b % distance != 0);
+  std::vector<Index> flat;
+  for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
+  auto const rows = upload(backend, flat);
+  using Patches = detail::ElementPatches<double, 4>;
+  Patches before(rows.data(), count), after(rows.data(), count), given_up(rows.data(), count);
+  before.plan(backend, order, blocks);
+
+  after.plan_beside(backend, order, changed, before);
+  after.settle(backend);
+  given_up.plan_beside(backend, order, changed, before);
+
+  detail::PatchCuts const cuts(count, after.size(), changed);
+  CHECK(std::ranges::equal(after.bounds(), cuts.first()));
+  auto const check_view = [&]<class Planner>(Planner*, auto const& view) {
+    auto const expected = plan_on_host<Planner>(table, cuts, view.capacity);
+    auto const same = [](auto const* memory, auto values) {
+      auto const there = values;
+      auto const bytes = values.size() * sizeof(values[0]);
+      REQUIRE(cudaMemcpy(values.data(), memory, bytes, cudaMemcpyDeviceToHost) == cudaSuccess);
+      return std::memcmp(values.data(), there.data(), bytes) == 0;
+    };
+    CHECK(view.capacity.nodes == expected.capacity.nodes);
+    CHECK(same(view.units, expected.units));
+    CHECK(same(view.nodes, expected.nodes));
+    CHECK(same(view.diagonals, expected.diagonals));
+  };
+  if (after.has_fans())
+    check_view(static_cast<detail::FanPlanner*>(nullptr), after.fan_view(nullptr, {}));
+  else
+    check_view(static_cast<detail::PatchPlanner<4>*>(nullptr), after.patch_view(nullptr, {}));
+  return after.has_fans();
+}
+
+TEST_CASE("patches are planned beside other work as they are at once", "[cuda]") {
+  auto const few = box(9), many = box(37);
+  for (std::size_t distance : {3, 100}) {
+    INFO("one of " << distance << " blocks is planned again");
+    CHECK_FALSE(compare_plan_beside(few, NodeOrder::any_even, distance));
+    CHECK_FALSE(compare_plan_beside(many, NodeOrder::as_given, distance));
+    CHECK(compare_plan_beside(many, NodeOrder::any_even, distance));
+  }
 }
 
 TEST_CASE("a GPU plans patches as one host thread does", "[cuda]") {
