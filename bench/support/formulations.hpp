@@ -29,7 +29,7 @@ constexpr int law_number() {
 template <class F>
 std::string law_name() {
   constexpr char const* names[] = {"Hooke", "SaintVenantKirchhoff", "NeoHookean"};
-  return names[law_number<F>()];
+  return internal_variables_of<F> > 0 ? "Prony" : names[law_number<F>()];
 }
 template <class T>
 std::string precision_name() {

@@ -177,7 +177,7 @@ struct DivisionView {
                                      first_inner_edge(own, p));
     for (int k = 0; k < sides_of<Cell>; ++k) {
       auto const s = at(k);
-      auto side = TreeView::side_of<Cell>(child, s);
+      auto side = TreeView::side_of(child, s, shape);
       auto const& of_parent = p.child_side[i][s];
       auto const there = at(of_parent.number);
       if (of_parent.home == RefinementPattern::Home::side) {

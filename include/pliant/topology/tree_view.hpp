@@ -69,13 +69,9 @@ struct TreeView {
 
   /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
   PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
-    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-      auto& edge = edges[at(cell.edges[e])];
-      add(edge.leaves, by);
-      if (cell.has != CellNodes::corners) add(edge.raised, by);
-    }
+    with_cell(cell.kind, [&]<class Cell>(Cell) { count_leaf<Cell>(cell, by); });
   }
-  /// The same of a leaf that is a `Cell`.
+  /// The same of a `Cell`.
   template <class Cell>
   PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
     constexpr std::size_t n = Cell::edges().size();
@@ -94,18 +90,11 @@ struct TreeView {
 
   /// Side s of a cell, as the cell sees it.
   static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) {
-    auto const& p = cell.pattern();
-    TreeSide side{.level = cell.level};
-    for (std::size_t k = 0; k < at(p.corners_of_side(static_cast<int>(s))); ++k) {
-      side.nodes[k] = cell.nodes[at(p.side[s][k])];
-      side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
-    }
-    return side;
+    return side_of(cell, s, cell.pattern());
   }
-  /// The same of a cell that is a `Cell`.
-  template <class Cell>
-  static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) {
-    auto const& p = pattern_of(kind_of<Cell>);
+  /// The same, where it is known as a program is compiled what the cell's pattern is.
+  static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s,
+                                             RefinementPattern const& p) {
     TreeSide side{.level = cell.level};
     for (std::size_t k = 0; k < 4; ++k) {
       if (p.side[s][k] < 0) break;
