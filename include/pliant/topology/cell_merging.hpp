@@ -40,7 +40,7 @@ PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) 
   auto const& cell = tree.cells[at(c)];
   auto const& p = cell.divided();
   TreeCell const child = tree.cells[at(cell.first_child + i)];
-  with_cell(child.kind, [&]<class Cell>(Cell) {
+  visit_cell(child.kind, [&]<class Cell>(Cell) {
     tree.count_leaf<Cell>(child, -1);
     for (int s = 0; s < sides_of<Cell>; ++s) {
       auto const& of_parent = p.child_side[at(i)][at(s)];

@@ -150,7 +150,7 @@ struct DivisionView {
   }
   /// Child i, which is a leaf, and the sides inside of which it is the first cell.
   PLIANT_HOST_DEVICE void make_child(Index r, std::size_t i) const {
-    with_cell(pattern_at(r).child_kind[i], [&]<class Cell>(Cell) { make_child_on<Cell>(r, i); });
+    visit_cell(pattern_at(r).child_kind[i], [&]<class Cell>(Cell) { make_child_on<Cell>(r, i); });
   }
 
  private:

@@ -11,9 +11,10 @@
 // Makes the patterns by which cells are divided, when a program is compiled.
 namespace pliant::detail {
 
-/// Calls visit(Cell{}) with the shape of a kind.
+/// Calls visit(Cell{}) with the shape of a kind. What goes over the corners, edges and sides that it has, a device keeps in
+/// registers.
 template <class Visit>
-constexpr void visit_cell(CellKind kind, Visit const& visit) {
+PLIANT_HOST_DEVICE constexpr void visit_cell(CellKind kind, Visit const& visit) {
   switch (kind) {
     case CellKind::triangle:
       return visit(Triangle{});

@@ -58,25 +58,6 @@ PLIANT_HOST_DEVICE RefinementPattern const& pattern_of(CellKind kind,
 template <class Cell>
 inline constexpr int sides_of = Cell::dim == 3 ? static_cast<int>(Cell::sides().size()) : 0;
 
-/// Calls f with the cell of a kind: with how many corners, edges and sides it has, a device keeps it in registers.
-template <class F>
-PLIANT_HOST_DEVICE void with_cell(CellKind kind, F const& f) {
-  switch (kind) {
-    case CellKind::triangle:
-      return f(Triangle{});
-    case CellKind::quadrilateral:
-      return f(Quadrilateral{});
-    case CellKind::tetrahedron:
-      return f(Tetrahedron{});
-    case CellKind::hexahedron:
-      return f(Hexahedron{});
-    case CellKind::wedge:
-      return f(Wedge{});
-    case CellKind::pyramid:
-      return f(Pyramid{});
-  }
-}
-
 /// Where a point of a child's element, on a `Child`, lies on its parent's. `mirrored`: whether the parent is.
 template <class Child>
 constexpr Vector<double, Child::dim> on_parent(Vector<double, Child::dim> const& xi,

@@ -69,7 +69,7 @@ struct TreeView {
 
   /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
   PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
-    with_cell(cell.kind, [&]<class Cell>(Cell) { count_leaf<Cell>(cell, by); });
+    detail::visit_cell(cell.kind, [&]<class Cell>(Cell) { count_leaf<Cell>(cell, by); });
   }
   /// The same of a `Cell`.
   template <class Cell>
