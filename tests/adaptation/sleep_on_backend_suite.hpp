@@ -22,11 +22,12 @@ auto bar_on(B const& backend, bool on_host) {
 template <class TheBody>
 void check_masters(TheBody& body) {
   auto const made = detail::make_patch_nodes(body.parts());
+  auto const first = download<Index>(made.first), pieces = download<Index>(made.pieces),
+             patch = download<Index>(made.patch);
   auto const patches_of = [&](Index node) {
     auto const row = at(body.parts().layout.internal_of(node));
     std::vector<Index> patches;
-    for (Index k = made.first_of_node[row]; k < made.first_of_node[row + 1]; ++k)
-      patches.push_back(made.patch_of_piece[at(made.pieces_of_node[at(k)])]);
+    for (Index k = first[row]; k < first[row + 1]; ++k) patches.push_back(patch[at(pieces[at(k)])]);
     std::ranges::sort(patches);
     return patches;
   };

@@ -150,7 +150,7 @@ template <class Parts>
 std::vector<std::uint8_t> marks_of(Parts& parts, int rings) {
   detail::mark_stirred(parts, {.below = slow, .for_steps = 16}, rings);
   auto const& rows = *parts.patch_nodes;
-  return rows.of_patches(download<std::uint8_t>(rows.stirred));
+  return rows.marks_of_patches(parts.backend, detail::MarkOfPiece{rows.stirred.data()});
 }
 
 TEST_CASE("patches are marked by how many others lie between them and what moves", "[adaptation]") {

@@ -99,7 +99,7 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
                                                  change, parts.rest(), std::as_const(parts).u());
   });
   parts.layout.interpolation.add_transpose(backend, change);
-  auto marked = zeros<std::uint8_t>(backend, rows.patch_of_piece.size());
+  auto marked = zeros<std::uint8_t>(backend, static_cast<std::size_t>(rows.pieces_count()));
   backend.for_each(parts.layout.rows,
                    MarkRelaxing<T, Parts::dim>{{changes.data()},
                                                parts.layout.mass.data(),
@@ -109,7 +109,7 @@ std::vector<std::uint8_t> find_relaxing(Parts& parts, SleepRule const& rule) {
                                                rows.first.data(),
                                                rows.pieces.data(),
                                                marked.data()});
-  return rows.of_patches(download<std::uint8_t>(marked));
+  return rows.marks_of_patches(backend, MarkOfPiece{marked.data()});
 }
 
 }  // namespace pliant::detail

@@ -56,16 +56,6 @@ struct MarkBeside {
   }
 };
 
-/// Marks the pieces of patches at listed nodes.
-struct MarkAtNodes {
-  Index const* nodes;
-  Index const *first, *pieces;
-  std::uint8_t* marks;
-
-  PLIANT_HOST_DEVICE void operator()(Index n) const {
-    for (Index k = first[nodes[n]]; k < first[nodes[n] + 1]; ++k) set_flag(marks[pieces[k]]);
-  }
-};
 struct ClearMarks {
   std::uint8_t* marks;
   PLIANT_HOST_DEVICE void operator()(Index piece) const { marks[piece] = 0; }

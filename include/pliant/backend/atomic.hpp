@@ -53,6 +53,16 @@ PLIANT_HOST_DEVICE std::uint64_t atomic_add(std::uint64_t& number, std::uint64_t
   return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
 #endif
 }
+PLIANT_HOST_DEVICE void atomic_min(Index& number, Index value) {
+#ifdef __CUDA_ARCH__
+  atomicMin(&number, value);
+#else
+  std::atomic_ref const own(number);
+  Index seen = own.load(std::memory_order_relaxed);
+  while (value < seen && !own.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
+#endif
+}
 /// number = value where it is `seen` still; otherwise seen = number, and false.
 PLIANT_HOST_DEVICE bool atomic_exchange(Index& number, Index& seen, Index value) {
 #ifdef __CUDA_ARCH__

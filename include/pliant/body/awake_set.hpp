@@ -1,10 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <memory>
-#include <span>
 #include <vector>
 
+#include <pliant/backend/atomic.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/constraint/condition.hpp>
 
@@ -17,6 +16,36 @@ inline constexpr NodeWatch beside_awake = 1, beside_asleep = 2;
 /// Nodes that lists take together, since they are numbered as patches first touch them; a multiple of a warp.
 inline constexpr Index nodes_of_run = 64;
 
+namespace detail {
+/// f(piece) of patches: the largest of those of their pieces.
+template <class F>
+struct LargestOfPieces {
+  F f;
+  Index const* first_other;
+  std::uint8_t* marks;
+  PLIANT_HOST_DEVICE void operator()(Index p) const {
+    std::uint8_t most = f(p);
+    for (Index piece = first_other[p]; piece < first_other[p + 1]; ++piece)
+      if (auto const other = f(piece); other > most) most = other;
+    marks[p] = most;
+  }
+};
+/// Marks the pieces of patches at listed nodes.
+struct MarkAtNodes {
+  Index const* nodes;
+  Index const *first, *pieces;
+  std::uint8_t* marks;
+
+  PLIANT_HOST_DEVICE void operator()(Index n) const {
+    for (Index k = first[nodes[n]]; k < first[nodes[n] + 1]; ++k) atomic_store(marks[pieces[k]], 1);
+  }
+};
+struct MarkOfPiece {
+  std::uint8_t const* marks;
+  PLIANT_HOST_DEVICE std::uint8_t operator()(Index piece) const { return marks[piece]; }
+};
+}  // namespace detail
+
 /// Which nodes belong to which patches. Patches of all element types are numbered through, in the order of the
 /// types; the masters of a slave belong to its patches too. A patch falls into pieces that share no node with each other, most
 /// into one, where bodies lie in one mesh into more: what moves in one does not reach the others. Numbers are internal.
@@ -25,15 +54,12 @@ struct PatchNodes {
   template <class U>
   using Array = typename B::template Array<U>;
 
-  std::vector<Index> first_of_type;  // (types + 1): patches
+  std::vector<Index> first_of_type;   // (types + 1): patches
+  Array<Index> first, pieces;         // compressed rows of nodes: their pieces, ascending
+  Array<Index> first_beside, beside;  // the same of pieces: those that share a node with each
   /// (pieces): each patch's own number, then those of other pieces, of one patch after the other.
-  std::vector<Index> patch_of_piece;
-  std::vector<Index> first_of_node, pieces_of_node;  // compressed rows
-  std::vector<Index> first_neighbour, neighbours;    // the same of patches, that share a node
-  std::vector<Index> first_run, runs;  // (patches): the same of the runs in which their nodes are
-  Array<Index> first, pieces, patch;   // rows of nodes, and patches, in the backend's memory
-  Array<Index> first_beside, beside;   // rows of the pieces that share a node
-  Array<Index> first_other;            // (patches + 1): where the other pieces of each begin
+  Array<Index> patch;
+  Array<Index> first_other;  // (patches + 1): where the other pieces of each begin
   /// (pieces): the marks with which a look begins, at driven nodes, and those of the look.
   Array<std::uint8_t> driven, stirred;
   std::shared_ptr<void const> driven_by;  // the conditions that `driven` is of
@@ -42,22 +68,13 @@ struct PatchNodes {
   Array<Index> awake_runs;
 
   Index count() const { return first_of_type.back(); }
-  Index pieces_count() const { return static_cast<Index>(patch_of_piece.size()); }
-  /// The patches that share a node with this one.
-  std::span<Index const> beside_of(std::size_t own) const {
-    auto const from = static_cast<std::size_t>(first_neighbour[own]),
-               to = static_cast<std::size_t>(first_neighbour[own + 1]);
-    return std::span(neighbours).subspan(from, to - from);
-  }
-  /// From marks of pieces to marks of patches: the largest.
-  std::vector<std::uint8_t> of_patches(std::vector<std::uint8_t> marks) const {
-    auto const patches = static_cast<std::size_t>(count());
-    for (std::size_t piece = patches; piece < marks.size(); ++piece) {
-      auto& own = marks[static_cast<std::size_t>(patch_of_piece[piece])];
-      own = std::max(own, marks[piece]);
-    }
-    marks.resize(patches);
-    return marks;
+  Index pieces_count() const { return static_cast<Index>(patch.size()); }
+  /// f(piece), a mark, of patches on the host: the largest of those of their pieces.
+  template <class F>
+  std::vector<std::uint8_t> marks_of_patches(B const& backend, F const& f) const {
+    auto marks = unset<std::uint8_t>(backend, static_cast<std::size_t>(count()));
+    backend.for_each(count(), detail::LargestOfPieces<F>{f, first_other.data(), marks.data()});
+    return download<std::uint8_t>(marks);
   }
 };
 

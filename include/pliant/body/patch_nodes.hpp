@@ -1,75 +1,20 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <numeric>
-#include <span>
-#include <utility>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
 #include <vector>
 
-#include <pliant/backend/copy_values.hpp>
-#include <pliant/backend/host_threads.hpp>
+#include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/body/awake_set.hpp>
-#include <pliant/math/group_by_key.hpp>
+#include <pliant/body/patch_node_passes.hpp>
+#include <pliant/constraint/rows_on.hpp>
 
 // Which nodes belong to which patches, and into which pieces these fall.
 namespace pliant::detail {
-
-/// The pieces that some nodes, sorted, fall into, of which elements join some to one.
-class Pieces {
- public:
-  explicit Pieces(std::vector<Index> nodes) : nodes_(std::move(nodes)), joined_(nodes_.size()) {
-    std::iota(joined_.begin(), joined_.end(), std::size_t{0});
-  }
-  void join(Index node, Index other) { joined_[root(place(node))] = root(place(other)); }
-  /// f(node, piece), pieces numbered in the order of their first nodes; returns how many there are.
-  template <class F>
-  Index for_each_node(F const& f) {
-    Index count = 0;
-    std::vector<Index> numbers(nodes_.size(), -1);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      auto& number = numbers[root(i)];
-      if (number < 0) number = count++;
-      f(nodes_[i], number);
-    }
-    return count;
-  }
-
- private:
-  std::size_t place(Index node) const {
-    return static_cast<std::size_t>(std::ranges::lower_bound(nodes_, node) - nodes_.begin());
-  }
-  std::size_t root(std::size_t i) {
-    while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
-    return i;
-  }
-  std::vector<Index> nodes_;
-  std::vector<std::size_t> joined_;
-};
-
-struct PairedRows {
-  std::vector<Index> first{0}, others;
-};
-/// Which of `count` things share a row with each, itself left out, each once. Row i: things[first[i]] on.
-inline PairedRows rows_beside(std::span<Index const> first, std::span<Index const> things,
-                              std::size_t count) {
-  std::vector<std::vector<Index>> beside(count);
-  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
-    auto const row = things.subspan(static_cast<std::size_t>(first[i]),
-                                    static_cast<std::size_t>(first[i + 1] - first[i]));
-    for (Index a : row)
-      for (Index b : row)
-        if (a != b) beside[static_cast<std::size_t>(a)].push_back(b);
-  }
-  PairedRows rows;
-  for (auto& list : beside) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    rows.others.insert(rows.others.end(), list.begin(), list.end());
-    rows.first.push_back(static_cast<Index>(rows.others.size()));
-  }
-  return rows;
-}
 
 template <class Parts>
 std::size_t patch_count(Parts& parts) {
@@ -79,137 +24,172 @@ std::size_t patch_count(Parts& parts) {
   return count;
 }
 
-/// The nodes of a patch, ascending, and the piece of the patch that each lies in.
-struct PiecesOfPatch {
-  std::vector<Index> nodes, pieces;
-  Index count = 0;  // of pieces
-};
-
-/// Elements by the rows of their nodes, and rows of slaves with their masters, copied from a backend's memory.
-struct PatchSources {
-  std::vector<Index> rows;  // (elements, width)
-  std::size_t width = 0;
-  std::vector<Index> slave_at, first, masters;  // slave_at: by row, which slave is there; −1: none
-  std::size_t in_all = 0;                       // nodes of elements of all types
-
-  [[nodiscard]] std::size_t connectivity_size() const { return in_all; }
-  /// The nodes of the elements of a patch, `nodes` of each.
-  [[nodiscard]] PiecesOfPatch patch(Index first_element, Index last_element, int nodes) const {
-    // f(first node of an element, node)
-    auto const for_each_node = [&](auto const& f) {
-      for (Index e = first_element; e < last_element; ++e) {
-        Index const* const own = rows.data() + width * static_cast<std::size_t>(e);
-        for (int a = 0; a < nodes; ++a) {
-          f(own[0], own[a]);
-          Index const slave = slave_at[static_cast<std::size_t>(own[a])];
-          for (Index k = slave < 0 ? 0 : first[static_cast<std::size_t>(slave)];
-               slave >= 0 && k < first[static_cast<std::size_t>(slave) + 1]; ++k)
-            f(own[0], masters[static_cast<std::size_t>(k)]);
-        }
-      }
-    };
-    PiecesOfPatch of_patch;
-    for_each_node([&](Index, Index node) { of_patch.nodes.push_back(node); });
-    std::ranges::sort(of_patch.nodes);
-    of_patch.nodes.erase(std::unique(of_patch.nodes.begin(), of_patch.nodes.end()),
-                         of_patch.nodes.end());
-    Pieces pieces(of_patch.nodes);
-    for_each_node([&](Index joined, Index node) { pieces.join(joined, node); });
-    of_patch.count =
-        pieces.for_each_node([&](Index, Index piece) { of_patch.pieces.push_back(piece); });
-    return of_patch;
-  }
-};
-
-/// Of all elements of a body; rows of elements are left out.
+/// Finds the patches of nodes from the elements in a backend's memory, and there.
 template <class Parts>
-PatchSources patch_sources(Parts const& parts) {
-  PatchSources sources;
-  sources.slave_at.resize(static_cast<std::size_t>(parts.layout.rows), -1);
-  parts.for_each_type([&](auto const& table, auto const&) {
-    sources.in_all +=
-        static_cast<std::size_t>(std::remove_cvref_t<decltype(table)>::element::nodes) *
-        static_cast<std::size_t>(table.count());
-  });
-  auto const& slaves = parts.layout.interpolation.slaves();
-  if (slaves.count == 0) return sources;
-  auto const node = download<Index>(slaves.node);
-  for (Index k = 0; k < slaves.count; ++k)
-    sources.slave_at[static_cast<std::size_t>(node[static_cast<std::size_t>(k)])] = k;
-  sources.first = download<Index>(slaves.first);
-  sources.masters = download<Index>(slaves.other);
-  return sources;
-}
+class PatchNodesMaker {
+  using B = typename Parts::backend_type;
+  template <class U>
+  using Array = typename B::template Array<U>;
 
-/// The patches of a body's elements, by internal numbers; from what is in the backend's memory.
+ public:
+  explicit PatchNodesMaker(Parts& parts) : parts_(parts), backend_(parts.backend) {}
+
+  PatchNodes<B> operator()() {
+    made_.first = zeros<Index>(backend_, at(parts_.layout.rows) + 1);
+    list_visits();
+    put_members();
+    join_members();
+    number_pieces();
+    list_neighbours();
+    auto const pieces = at(made_.pieces_count());
+    made_.driven = zeros<std::uint8_t>(backend_, pieces);
+    made_.stirred = zeros<std::uint8_t>(backend_, pieces);
+    made_.turns = zeros<std::uint8_t>(backend_, at(made_.count()));
+    return std::move(made_);
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  template <class U = Index>
+  auto room(Index count) {
+    return unset<U>(backend_, at(count));
+  }
+  /// An entry of an array of numbers.
+  Index entry(Array<Index> const& numbers, Index i) {
+    auto one = room(1);
+    backend_.for_each(1, CopyValue<Index>{numbers.data() + i, one.data()});
+    return download<Index>(one)[0];
+  }
+  [[nodiscard]] VisitArrays visits() {
+    return {nodes_.data(), order_.data(), patch_of_visit_.data(), leader_.data()};
+  }
+
+  void list_visits() {
+    auto const& slaves = parts_.layout.interpolation.slaves();
+    auto slave_at = zeros<Index>(backend_, slaves.count > 0 ? at(parts_.layout.rows) : 0);
+    MastersOfNodes masters;
+    if (slaves.count > 0) {
+      backend_.for_each(slaves.count, NumberSlavesByRow{slaves.node.data(), slave_at.data()});
+      masters = {slave_at.data(), slaves.first.data(), slaves.other.data()};
+    }
+    std::vector<Array<Index>> starts;  // by type
+    auto const of = [&]<class Table>(Table const& table) {
+      return CountVisits{table.elements.rows_of_nodes(), Table::element::nodes, masters};
+    };
+    made_.first_of_type = {0};
+    std::vector<Index> first_visit{0};
+    parts_.for_each_type([&](auto& table, auto&) {
+      auto& start = starts.emplace_back(room(table.count() + 1));
+      backend_.scan(table.count(), of(table), start.data());
+      first_visit.push_back(first_visit.back() + entry(start, table.count()));
+      made_.first_of_type.push_back(made_.first_of_type.back() + table.elements.patch_count());
+    });
+    count_ = first_visit.back();
+    nodes_ = room<std::uint64_t>(count_);
+    order_ = room(count_);
+    patch_of_visit_ = room(count_);
+    leader_ = room(count_);
+    std::size_t type = 0;
+    parts_.for_each_type([&](auto& table, auto&) {
+      backend_.for_each(table.count(),
+                        ListVisits{of(table), table.elements.patches(), made_.first_of_type[type],
+                                   first_visit[type], starts[type].data(), visits()});
+      ++type;
+    });
+    backend_.synchronize();  // before starts and masters go
+  }
+  void put_members() {
+    auto before = room(count_ + 1);
+    member_ = room(count_);
+    patch_of_member_ = room(count_);
+    in_turn(backend_, SortStep{count_, nodes_.data(), order_.data(), key_bits(parts_.layout.rows)},
+            ScanStep{count_, IsFirstOfMember{visits()}, before.data()},
+            LoopStep{count_,
+                     PutMembers{visits(),
+                                before.data(),
+                                {nodes_.data(), 0, count_, parts_.layout.rows, made_.first.data()},
+                                member_.data(),
+                                patch_of_member_.data()}});
+    members_ = entry(before, count_);
+  }
+  void join_members() {
+    piece_ = room(members_);
+    backend_.for_each(members_, BeginPieces{piece_.data()});
+    auto changed = zeros<Index>(backend_, 1);
+    Index const none[]{0};
+    do {
+      changed.upload(none);
+      in_turn(backend_,
+              LoopStep{count_,
+                       JoinMembers{member_.data(), leader_.data(), piece_.data(), changed.data()}},
+              LoopStep{members_, FollowPieces{piece_.data()}});
+    } while (download<Index>(changed)[0] != 0);
+  }
+  void number_pieces() {
+    Index const patches = made_.count();
+    auto own = room(patches), before = room(members_ + 1), number = room(members_);
+    auto* const of = patch_of_member_.data();
+    BeginsOther const begins{piece_.data(), of, own.data()};
+    in_turn(backend_,
+            LoopStep{patches, FillValue<Index>{own.data(), std::numeric_limits<Index>::max()}},
+            LoopStep{members_, FindOwnPieces{piece_.data(), of, own.data()}},
+            ScanStep{members_, begins, before.data()});
+    Index const others = entry(before, members_);
+    made_.patch = room(patches + others);
+    auto keys = room<std::uint64_t>(others);
+    auto members = room(others);
+    made_.first_other = room(patches + 1);
+    made_.pieces = room(members_);
+    in_turn(
+        backend_,
+        LoopStep{members_, ListOthers{begins, before.data(), keys.data(), members.data()}},
+        SortStep{others, keys.data(), members.data(), key_bits(patches)},
+        LoopStep{patches + 1, FillValue<Index>{made_.first_other.data(), patches}},
+        LoopStep{patches, NumberOwnPieces{own.data(), number.data(), made_.patch.data()}},
+        LoopStep{others, NumberOtherPieces{keys.data(), members.data(), patches, number.data(),
+                                           made_.patch.data()}},
+        LoopStep{others, BoundsOfOthers{{keys.data(), 0, others, patches, made_.first_other.data()},
+                                        patches}},
+        LoopStep{members_, PutPieces{piece_.data(), number.data(), made_.pieces.data()}});
+    backend_.synchronize();  // before these lists go
+  }
+  void list_neighbours() {
+    Index const rows = parts_.layout.rows, pieces = made_.pieces_count();
+    auto start = room(rows + 1);
+    backend_.scan(rows, CountMeetings{made_.first.data()}, start.data());
+    Index const count = entry(start, rows);
+    auto keys = room<std::uint64_t>(count);
+    auto order = room(count), before = room(count + 1);
+    int const bits = key_bits(pieces);
+    in_turn(backend_,
+            LoopStep{rows, ListMeetings{made_.first.data(), made_.pieces.data(), start.data(), bits,
+                                        keys.data(), order.data()}},
+            SortStep{count, keys.data(), order.data(), 2 * bits},
+            ScanStep{count, IsFirstOfKey{keys.data()}, before.data()});
+    made_.beside = room(entry(before, count));
+    made_.first_beside = zeros<Index>(backend_, at(pieces) + 1);
+    backend_.for_each(count,
+                      PutBeside{keys.data(),
+                                bits,
+                                before.data(),
+                                {keys.data(), bits, count, pieces, made_.first_beside.data()},
+                                made_.beside.data()});
+    backend_.synchronize();  // before the keys go
+  }
+
+  Parts& parts_;
+  B const& backend_;
+  PatchNodes<B> made_;
+  Index count_ = 0, members_ = 0;
+  Array<std::uint64_t> nodes_;  // see VisitArrays
+  Array<Index> order_, patch_of_visit_, leader_;
+  Array<Index> member_, patch_of_member_, piece_;
+};
+
+/// The patches of a body's elements, by internal numbers.
 template <class Parts>
 PatchNodes<typename Parts::backend_type> make_patch_nodes(Parts& parts) {
-  using B = typename Parts::backend_type;
-  PatchNodes<B> made;
-  auto const& layout = parts.layout;
-  std::vector<Index> nodes_of_pairs, pieces_of_pairs, first_other;
-  made.patch_of_piece.resize(patch_count(parts));
-  std::iota(made.patch_of_piece.begin(), made.patch_of_piece.end(), Index{0});
-  made.first_of_type = made.first_run = {0};
-  auto sources = patch_sources(std::as_const(parts));
-  HostThreads const threads(parts.backend, sources);
-  parts.for_each_type([&](auto& table, auto&) {
-    using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto const rows = table.elements.rows_of_nodes();
-    sources.width = static_cast<std::size_t>(rows.width);
-    auto copy =
-        zeros<Index>(parts.backend, sources.width * static_cast<std::size_t>(table.count()));
-    copy_values<B, Index>(parts.backend, rows.nodes, copy.data(), copy.size());
-    sources.rows = download<Index>(copy);
-    Index const before = made.first_of_type.back(), count = table.elements.patch_count();
-    auto const bounds = table.elements.patch_bounds();
-    std::vector<PiecesOfPatch> of_patches(static_cast<std::size_t>(count));
-    for_each_on_host(count, 16, [&](Index p) {
-      auto const own = static_cast<std::size_t>(p);
-      of_patches[own] = sources.patch(bounds[own], bounds[own + 1], E::nodes);
-    });
-    for (Index p = 0; p < count; ++p) {
-      auto const& own = of_patches[static_cast<std::size_t>(p)];
-      std::vector<Index> runs;
-      for (Index const node : own.nodes) runs.push_back(node / nodes_of_run);
-      made.runs.insert(made.runs.end(), runs.begin(), std::unique(runs.begin(), runs.end()));
-      made.first_run.push_back(static_cast<Index>(made.runs.size()));
-      Index const patch = before + p, others = made.pieces_count() - 1;
-      first_other.push_back(made.pieces_count());
-      nodes_of_pairs.insert(nodes_of_pairs.end(), own.nodes.begin(), own.nodes.end());
-      for (Index const piece : own.pieces)
-        pieces_of_pairs.push_back(piece == 0 ? patch : others + piece);
-      made.patch_of_piece.insert(made.patch_of_piece.end(), static_cast<std::size_t>(own.count - 1),
-                                 patch);
-    }
-    made.first_of_type.push_back(before + count);
-  });
-  first_other.push_back(made.pieces_count());
-  auto const by_node = group_by_key(nodes_of_pairs, layout.rows);
-  made.first_of_node = by_node.first;
-  for (Index pair : by_node.order)
-    made.pieces_of_node.push_back(pieces_of_pairs[static_cast<std::size_t>(pair)]);
-
-  auto const beside =
-      rows_beside(made.first_of_node, made.pieces_of_node, made.patch_of_piece.size());
-  auto of_patches = made.pieces_of_node;
-  for (Index& piece : of_patches) piece = made.patch_of_piece[static_cast<std::size_t>(piece)];
-  auto rows =
-      made.pieces_count() == made.count()
-          ? beside
-          : rows_beside(made.first_of_node, of_patches, static_cast<std::size_t>(made.count()));
-  made.first_neighbour = std::move(rows.first);
-  made.neighbours = std::move(rows.others);
-  made.first = upload(parts.backend, made.first_of_node);
-  made.pieces = upload(parts.backend, made.pieces_of_node);
-  made.patch = upload(parts.backend, made.patch_of_piece);
-  made.first_beside = upload(parts.backend, beside.first);
-  made.beside = upload(parts.backend, beside.others);
-  made.first_other = upload(parts.backend, first_other);
-  made.driven = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
-  made.stirred = zeros<std::uint8_t>(parts.backend, made.patch_of_piece.size());
-  made.turns = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(made.count()));
-  return made;
+  return PatchNodesMaker<Parts>(parts)();
 }
 
 }  // namespace pliant::detail

@@ -77,20 +77,44 @@ bool fill_lists(Parts& parts, std::vector<typename Parts::template Array<Index>>
   return moved;
 }
 
-/// Brings the list of runs of nodes up to the patches that are awake. Returns whether it lies elsewhere now.
+/// Whether a run of nodes has one beside what is awake.
+struct HasAwakeNode {
+  NodeWatch const* nodes;
+  Index count;
+  PLIANT_HOST_DEVICE bool operator()(Index run) const {
+    Index const first = run * nodes_of_run, left = count - first;
+    NodeWatch all = 0;  // of the run's, without a branch for each
+    for (Index k = 0; k < (left < nodes_of_run ? left : nodes_of_run); ++k) all |= nodes[first + k];
+    return (all & beside_awake) != 0;
+  }
+};
+/// Brings the list of runs of nodes up to what nodes watch. Returns whether it lies elsewhere now.
 template <class Parts>
-bool list_runs(Parts& parts, std::vector<std::uint8_t> const& asleep) {
-  auto& rows = *parts.patch_nodes;
-  Index const most = (parts.layout.rows + nodes_of_run - 1) / nodes_of_run;
-  std::vector<bool> awake(static_cast<std::size_t>(most));
-  for (std::size_t p = 0; p < asleep.size(); ++p)
-    if (!asleep[p])
-      for (Index k = rows.first_run[p]; k < rows.first_run[p + 1]; ++k)
-        awake[static_cast<std::size_t>(rows.runs[static_cast<std::size_t>(k)])] = true;
-  std::vector<Index> runs;
-  for (Index run = 0; run < most; ++run)
-    if (awake[static_cast<std::size_t>(run)]) runs.push_back(run);
-  return fill_list(parts.backend, rows.awake_runs, std::move(runs), most);
+bool list_runs(Parts& parts) {
+  Index const rows = parts.layout.rows, most = (rows + nodes_of_run - 1) / nodes_of_run;
+  return fill_list(parts.backend, parts.patch_nodes->awake_runs,
+                   parts.backend.select(most, HasAwakeNode{parts.awake->nodes.data(), rows}), most);
+}
+
+/// Whether a piece lies beside a patch that is awake.
+struct IsBesideAwake {
+  Index const *first, *beside, *patch;
+  std::uint8_t const* asleep;
+  PLIANT_HOST_DEVICE std::uint8_t operator()(Index piece) const {
+    for (Index k = first[piece]; k < first[piece + 1]; ++k)
+      if (asleep[patch[beside[k]]] == 0) return 1;
+    return 0;
+  }
+};
+/// Which patches lie beside others that are awake; all, where terms may pull anywhere.
+template <class Parts>
+std::vector<std::uint8_t> find_beside_awake(Parts& parts) {
+  auto const& rows = *parts.patch_nodes;
+  if (has_added_terms(parts))
+    return std::vector<std::uint8_t>(static_cast<std::size_t>(rows.count()), 1);
+  return rows.marks_of_patches(
+      parts.backend, IsBesideAwake{rows.first_beside.data(), rows.beside.data(), rows.patch.data(),
+                                   parts.awake->asleep.data()});
 }
 
 /// Brings parts.awake up to state.rest, which is also on the host.
@@ -129,16 +153,12 @@ void bring_up_to_rest(Parts& parts, std::span<std::int32_t const> rest) {
                  awake.still.data(), all_directions<Parts::dim>});
   bool const patches_moved =
       fill_lists(parts, awake.patches, [&](std::size_t p) { return !asleep[p]; });
-  if (list_runs(parts, asleep) || patches_moved) ++parts.revision;
+  if (list_runs(parts) || patches_moved) ++parts.revision;
 
   // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
   std::vector<typename Parts::template Array<Index>> beside;
-  (void)fill_lists(parts, beside, [&](std::size_t p) {
-    return asleep[p] && (has_added_terms(parts) ||
-                         std::ranges::any_of(patch_nodes.beside_of(p), [&](Index other) {
-                           return !asleep[static_cast<std::size_t>(other)];
-                         }));
-  });
+  auto const beside_awake = find_beside_awake(parts);
+  (void)fill_lists(parts, beside, [&](std::size_t p) { return asleep[p] && beside_awake[p]; });
   typename Parts::Field const kept{awake.kept.data()};
   clear_rows(parts, kept);
   ElementGroups<typename Parts::layout_type>(parts.layout, &beside)
@@ -215,17 +235,18 @@ template <class Parts>
 void wake_around(Parts& parts, std::span<Index const> nodes) {
   if (!parts.awake) return;
   auto const& rows = *parts.patch_nodes;
+  auto pieces = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(rows.pieces_count()));
+  auto const listed = upload(parts.backend, nodes);
+  parts.backend.for_each(
+      static_cast<Index>(nodes.size()),
+      MarkAtNodes{listed.data(), rows.first.data(), rows.pieces.data(), pieces.data()});
+  auto const marked = rows.marks_of_patches(parts.backend, MarkOfPiece{pieces.data()});
   auto rest = download<std::int32_t>(parts.state.rest);
   bool wakes = false;
-  for (Index node : nodes) {
-    auto const i = static_cast<std::size_t>(node);
-    for (Index k = rows.first_of_node[i]; k < rows.first_of_node[i + 1]; ++k) {
-      auto const piece = static_cast<std::size_t>(rows.pieces_of_node[static_cast<std::size_t>(k)]);
-      auto& steps = rest[static_cast<std::size_t>(rows.patch_of_piece[piece])];
-      if (steps >= 0) continue;
-      steps = 0;
-      wakes = true;
-    }
+  for (std::size_t p = 0; p < rest.size(); ++p) {
+    if (!marked[p] || rest[p] >= 0) continue;
+    rest[p] = 0;
+    wakes = true;
   }
   if (wakes) change_rest(parts, rest);
 }
