@@ -18,8 +18,8 @@ share(formulation/all
 share(shared/refinement
       adaptation/hanging_nodes adaptation/recovered_stress adaptation/refined_boundary
       adaptation/refinement_errors adaptation/refinement_inheritance adaptation/refinement_rules
-      adaptation/refinement_transfer body/booked_energy constraint/conditions constraint/interpolation
-      constraint/reactions solver/integrators solver/newton_refined topology/on_change)
+      adaptation/refinement_transfer body/booked_energy body/patch_nodes constraint/conditions
+      constraint/interpolation constraint/reactions solver/integrators solver/newton_refined topology/on_change)
 share(shared/criteria
       adaptation/calculated_criteria adaptation/combined_criteria adaptation/deformation_criteria
       adaptation/evaluate adaptation/force_intensity adaptation/rotation_criterion

@@ -49,7 +49,8 @@ enum class Beside {
   nothing,
   boundary,  // a pressure at the top, and a right end that is driven
   memory,    // what quadrature points keep
-  sleep      // all patches sleep; steps until they do so again are counted
+  steps,  // nothing, and sixteen steps are counted, with what the first needs to know of the mesh
+  sleep   // all patches sleep; steps until they do so again are counted
 };
 inline std::string in_words(Beside beside) {
   switch (beside) {
@@ -57,6 +58,8 @@ inline std::string in_words(Beside beside) {
       return ", pressed and driven";
     case Beside::memory:
       return ", viscous";
+    case Beside::steps:
+      return ", and 16 steps";
     case Beside::sleep:
       return ", asleep, and steps until it sleeps again";
     default:
@@ -96,8 +99,9 @@ void time_change(benchmark::State& state, B const& backend, int cells,
   }
   CentralDifference step;
   auto adapt = Adaptation{sleep({.below = 1e6, .for_steps = 2})}.every(1);
-  auto const fall_asleep = [&] {
+  auto const go_on = [&] {
     if (beside == Beside::sleep) step(body, 4, adapt);
+    if (beside == Beside::steps) step(body, 16);
   };
   auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
   Lists const marked_lists{marked};
@@ -110,15 +114,15 @@ void time_change(benchmark::State& state, B const& backend, int cells,
   };
   for (auto _ : state) {
     refine(body, {{last}});
-    fall_asleep();
+    go_on();
     double const there = seconds(backend, [&] {
       refine(body, marked_lists);
-      fall_asleep();
+      go_on();
     });
     auto const made = children();
     double const again = seconds(backend, [&] {
       coarsen(body, made);
-      fall_asleep();
+      go_on();
     });
     state.SetIterationTime(back ? again : there);
   }
@@ -161,6 +165,7 @@ inline void add_refinements() {
         };
         change_beside.template operator()<Beside::boundary>();
         change_beside.template operator()<Beside::memory>();
+        change_beside.template operator()<Beside::steps>();
         change_beside.template operator()<Beside::sleep>();
       }
     };

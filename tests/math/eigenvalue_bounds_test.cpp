@@ -63,6 +63,7 @@ TEST_CASE("bounds of eigenvalues are above them and near", "[math]") {
   check<60>([](auto const& a) { return by_products<double, 60>(a); }, 1.26);
   check<81>([](auto const& a) { return by_products<double, 81>(a); }, 1.26);
   check<81>([](auto const& a) { return by_products<float, 81>(a); }, 1.26);
+  check<9>([](auto const& a) { return by_powers<double, 9>(a); }, std::pow(9, 0.125));
   check<24>([](auto const& a) { return by_powers<double, 24>(a); }, std::pow(24, 0.125));
   check<24>([](auto const& a) { return by_powers<float, 24>(a); }, std::pow(24, 0.125));
 }

@@ -2,6 +2,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/group_laws.hpp>
+#include <pliant/formulation/one_gradient.hpp>
 #include <pliant/formulation/point_kernel.hpp>
 
 // The adapters between the element loops of a backend, which speak of group numbers and gathered
@@ -110,7 +111,9 @@ struct RowSumKernel {
           auto const add = [&](int row, auto const& entry) PLIANT_INLINE {
             rows(row / dim, row % dim) = rows(row / dim, row % dim) + abs(entry);
           };
-          if constexpr (has_large_stiffness<F>) {
+          if constexpr (has_one_gradient<F>) {
+            rows = one_gradient<F>(law, rest, u).row_sums();
+          } else if constexpr (has_large_stiffness<F>) {
             for (int column = 0; column < size; ++column) {
               auto du = std::remove_cvref_t<decltype(u)>::zero();
               du(column / dim, column % dim) = du(column / dim, column % dim) + 1;

@@ -22,4 +22,16 @@ PLIANT_HOST_DEVICE int unknown(int n) {
   return n;
 }
 
+/// Calls f with 0, 1, ... N − 1 where the indexed arrays of a device are to stay in registers, and a loop on the host is to
+/// stay one: large bodies that are unrolled do not fit the caches of instructions.
+template <int N, class F>
+PLIANT_HOST_DEVICE void repeat(F const& f) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+  for (int i = 0; i < N; ++i) f(i);
+#else
+  for (int i = 0, n = unknown(N); i < n; ++i) f(i);
+#endif
+}
+
 }  // namespace pliant

@@ -5,6 +5,7 @@
 
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/velocities.hpp>
+#include <pliant/formulation/one_gradient.hpp>
 #include <pliant/math/eigenvalue_bounds.hpp>
 
 namespace pliant {
@@ -48,7 +49,9 @@ struct ElementSpectra {
   PLIANT_HOST_DEVICE static S bound_of_scaled(Law const& law, Values const& rest, Values const& u,
                                               Vector<S, F::nodes> const& scale) {
     constexpr int dim = F::dim, size = F::nodes * dim;
-    if constexpr (has_large_stiffness<F>) {
+    if constexpr (has_one_gradient<F>) {  // and all nodes the same mass
+      return bound_by_powers(one_gradient<F>(law, rest, u).of_gradients(square(scale[0])));
+    } else if constexpr (has_large_stiffness<F>) {
       return bound_by_products<S, size>([&](Vector<S, size> const& x) PLIANT_INLINE {
         Values du;
         for (int i = 0; i < size; ++i) du(i / dim, i % dim) = scale[i / dim] * x[i];
