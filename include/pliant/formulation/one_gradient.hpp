@@ -55,7 +55,7 @@ class OneGradient {
     return rows;
   }
 
-  /// A symmetric matrix, its upper half, with the eigenvalues of `factor` K but for zeros: ℓᵀ A ℓ with ℓ ℓᵀ = factor g gᵀ.
+  /// A symmetric matrix with the eigenvalues of `factor` K but for zeros: ℓᵀ A ℓ with ℓ ℓᵀ = factor g gᵀ.
   /// Since Σ_a g_a = 0, ℓ is g in an orthonormal basis of what has no sum over nodes (Helmert's).
   [[nodiscard]] PLIANT_HOST_DEVICE Tensor<S, dim * dim> of_gradients(S const& factor) const {
     using T = builtin_scalar<S>;
@@ -77,7 +77,7 @@ class OneGradient {
       for (int row = 0; row <= column; ++row) {
         S sum = pull(row / dim, 0) * lengths(0, row % dim);
         for (int j = 1; j < dim; ++j) sum = sum + pull(row / dim, j) * lengths(j, row % dim);
-        k(row, column) = sum;
+        k(row, column) = k(column, row) = sum;
       }
     });
     return k;

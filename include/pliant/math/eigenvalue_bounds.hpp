@@ -10,67 +10,45 @@
 // Upper bounds of the largest |eigenvalue| of the symmetric matrix of an element.
 namespace pliant::detail {
 
-/// A symmetric matrix by its upper half. Small ones stay in a GPU's registers: loops over them are unrolled there.
-template <class S, int N>
-struct UpperHalf {
-  static constexpr int together = N <= 9 ? N : 1;
-  Tensor<S, N> entries;
-
-  PLIANT_HOST_DEVICE S const& operator()(int i, int j) const {
-    return i < j ? entries(i, j) : entries(j, i);
-  }
-  /// f(i, j) for the places of the upper half.
-  template <class F>
-  PLIANT_HOST_DEVICE static void for_each_place(F const& f) {
+/// f(i, j) for the places of the upper half of a matrix. Small matrices stay in a GPU's registers: loops are unrolled there.
+template <int N, class F>
+PLIANT_HOST_DEVICE void for_each_upper_place(F const& f) {
 #if defined(__CUDA_ARCH__)
-    // Each loop as often: those inside are unrolled first.
+  // Each loop as often: those inside are unrolled first.
+  constexpr int together = N <= 9 ? N : 1;
 #pragma unroll(together)
-    for (int i = 0; i < N; ++i)
+  for (int i = 0; i < N; ++i)
 #pragma unroll(together)
-      for (int j = 0; j < N; ++j)
-        if (i <= j) f(i, j);
+    for (int j = 0; j < N; ++j)
+      if (i <= j) f(i, j);
 #else
-    for (int i = 0; i < N; ++i)
-      for (int j = i; j < N; ++j) f(i, j);
+  for (int i = 0; i < N; ++i)
+    for (int j = i; j < N; ++j) f(i, j);
 #endif
-  }
-  /// An entry of the square.
-  PLIANT_HOST_DEVICE S of_square(int i, int j) const {
-    S sum = (*this)(i, 0) * (*this)(j, 0);
-#if defined(__CUDA_ARCH__)
-#pragma unroll(together)
-#endif
-    for (int k = 1; k < N; ++k) sum = sum + (*this)(i, k) * (*this)(j, k);
-    return sum;
-  }
-  /// The largest sum of the |entries| of a row.
-  PLIANT_HOST_DEVICE S largest_row() const {
-    auto rows = Vector<S, N>::zero();
-    for_each_place([&](int i, int j) PLIANT_INLINE {
-      rows[i] = rows[i] + abs(entries(i, j));
-      if (i != j) rows[j] = rows[j] + abs(entries(i, j));
-    });
-    S largest = rows[0];
-    for (int i = 1; i < N; ++i) largest = max(largest, rows[i]);
-    return largest;
-  }
-};
+}
 
-/// The Frobenius norm ‖A⁴‖^(1/4) of a symmetric matrix, of which the upper half is read, computed from A scaled to norm one:
-/// within a factor N^(1/8).
+/// The Frobenius norm ‖A⁴‖^(1/4) of a symmetric matrix, computed from A scaled to norm one: within a factor N^(1/8).
 template <class S, int N>
-PLIANT_HOST_DEVICE S bound_by_powers(Tensor<S, N> const& matrix) {
+PLIANT_HOST_DEVICE S bound_by_powers(Tensor<S, N> a) {
   using T = builtin_scalar<S>;
-  using Half = UpperHalf<S, N>;
-  Half a{matrix}, square;
-  S const largest = a.largest_row(), scale = S(1) / max(largest, S(std::numeric_limits<T>::min()));
-  Half::for_each_place([&](int i, int j)
-                           PLIANT_INLINE { a.entries(i, j) = scale * a.entries(i, j); });
-  Half::for_each_place([&](int i, int j)
-                           PLIANT_INLINE { square.entries(i, j) = a.of_square(i, j); });
+  S largest = S(0);
+  for (int i = 0; i < N; ++i) {
+    S row = S(0);
+    for (int j = 0; j < N; ++j) row = row + abs(a(i, j));
+    largest = max(largest, row);
+  }
+  a = (S(1) / max(largest, S(std::numeric_limits<T>::min()))) * a;
+  auto const of_square = [](Tensor<S, N> const& matrix, int i, int j) PLIANT_INLINE {
+    S sum = matrix(i, 0) * matrix(j, 0);
+    for (int k = 1; k < N; ++k) sum = sum + matrix(i, k) * matrix(j, k);
+    return sum;
+  };
+  Tensor<S, N> square;
+  for_each_upper_place<N>([&](int i, int j)
+                              PLIANT_INLINE { square(i, j) = square(j, i) = of_square(a, i, j); });
   S fourth = S(0);  // ‖A⁴‖²
-  Half::for_each_place([&](int i, int j) PLIANT_INLINE {
-    S const entry = square.of_square(i, j);
+  for_each_upper_place<N>([&](int i, int j) PLIANT_INLINE {
+    S const entry = of_square(square, i, j);
     fourth = fourth + T(i == j ? 1 : 2) * entry * entry;
   });
   return largest * sqrt(sqrt(sqrt(fourth)));
