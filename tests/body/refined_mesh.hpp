@@ -65,8 +65,8 @@ struct RefinedMesh {
     auto const parents = host->families(marked);
     for (Index const c : parents) {
       auto const& cell = host->cell(c);
-      auto const first = std::ranges::find(leaves_before, cell.first_child);
-      families.push_back({.first_before = static_cast<Index>(first - leaves_before.begin()),
+      auto const child = std::ranges::find(leaves_before, cell.first_child);
+      families.push_back({.first_before = static_cast<Index>(child - leaves_before.begin()),
                           .children = cell.divided().children});
     }
     auto const wanted = host->merge(parents);

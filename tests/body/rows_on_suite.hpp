@@ -40,9 +40,9 @@ void check_order(RefinedMesh<B, Es...> const& mesh) {
   REQUIRE(mesh.order.merged_count() == merged);
   auto const families = taken(mesh.backend, mesh.order.merged_families(), merged);
   for (std::size_t r = 0; r < families.size(); ++r) {
-    auto const &own = families[r], &wanted = mesh.families[r];
-    wrong += own.cell != wanted.cell || own.place != wanted.place ||
-             own.first_before != wanted.first_before || own.children != wanted.children ||
+    auto const &own = families[r], &host = mesh.families[r];
+    wrong += own.cell != host.cell || own.place != host.place ||
+             own.first_before != host.first_before || own.children != host.children ||
              from[at(own.place)] != own.first_before;
   }
   CHECK(wrong == 0);

@@ -37,7 +37,7 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
         break;
       case 3: {
         std::size_t const first = any(model.size() + 1), one_in = 50 + any(50);
-        auto const stays = [&](std::size_t i) { return i % one_in != 0; };
+        auto const stays = [&](std::size_t place) { return place % one_in != 0; };
         list.keep(first, stays);
         std::vector<int> left;
         for (std::size_t k = 0; k < model.size(); ++k)
