@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -55,7 +57,7 @@ struct PatchNodes {
   using Array = typename B::template Array<U>;
 
   std::vector<Index> first_of_type;   // (types + 1): patches
-  Array<Index> first, pieces;         // compressed rows of nodes: their pieces, ascending
+  Array<Index> first, pieces;         // compressed rows of nodes: their pieces, by patches
   Array<Index> first_beside, beside;  // the same of pieces: those that share a node with each
   /// (pieces): each patch's own number, then those of other pieces, of one patch after the other.
   Array<Index> patch;

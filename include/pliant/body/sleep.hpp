@@ -157,8 +157,8 @@ void bring_up_to_rest(Parts& parts, std::span<std::int32_t const> rest) {
 
   // What sleeping patches pull at, where something is awake; everywhere, where terms may pull too.
   std::vector<typename Parts::template Array<Index>> beside;
-  auto const beside_awake = find_beside_awake(parts);
-  (void)fill_lists(parts, beside, [&](std::size_t p) { return asleep[p] && beside_awake[p]; });
+  auto const is_beside = find_beside_awake(parts);
+  (void)fill_lists(parts, beside, [&](std::size_t p) { return asleep[p] && is_beside[p]; });
   typename Parts::Field const kept{awake.kept.data()};
   clear_rows(parts, kept);
   ElementGroups<typename Parts::layout_type>(parts.layout, &beside)
