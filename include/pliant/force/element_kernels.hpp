@@ -106,28 +106,35 @@ struct RowSumKernel {
     using F = typename Laws::template formulation<G>;
     return groups.template apply<G>(
         [](auto const& law, auto const& rest, auto const& u) PLIANT_INLINE {
-          constexpr int dim = F::dim, size = F::nodes * dim;
-          auto rows = std::remove_cvref_t<decltype(u)>::zero();
-          auto const add = [&](int row, auto const& entry) PLIANT_INLINE {
-            rows(row / dim, row % dim) = rows(row / dim, row % dim) + abs(entry);
-          };
-          if constexpr (has_one_gradient<F>) {
-            rows = one_gradient<F>(law, rest, u).row_sums();
-          } else if constexpr (has_large_stiffness<F>) {
-            for (int column = 0; column < size; ++column) {
-              auto du = std::remove_cvref_t<decltype(u)>::zero();
-              du(column / dim, column % dim) = du(column / dim, column % dim) + 1;
-              auto const df = tangent_product<F>(law, rest, u, du);
-              for (int row = 0; row < size; ++row) add(row, df(row / dim, row % dim));
-            }
-          } else {
-            auto const k = stiffness<F>(law, rest, u);
-            for (int row = 0; row < size; ++row)
-              for (int column = 0; column < size; ++column) add(row, k(row, column));
-          }
-          return rows;
+          if constexpr (has_one_gradient<F>)
+            return one_gradient<F>(law, rest, u).row_sums();
+          else
+            return by_columns<F>(law, rest, u);
         },
         v...);
+  }
+
+ private:
+  template <class F, class Law, class Values>
+  PLIANT_HOST_DEVICE static Values by_columns(Law const& law, Values const& rest, Values const& u) {
+    constexpr int dim = F::dim, size = F::nodes * dim;
+    auto rows = Values::zero();
+    auto const add = [&](int row, auto const& entry) PLIANT_INLINE {
+      rows(row / dim, row % dim) = rows(row / dim, row % dim) + abs(entry);
+    };
+    if constexpr (has_large_stiffness<F>) {
+      for (int column = 0; column < size; ++column) {
+        auto du = Values::zero();
+        du(column / dim, column % dim) = du(column / dim, column % dim) + 1;
+        auto const df = tangent_product<F>(law, rest, u, du);
+        for (int row = 0; row < size; ++row) add(row, df(row / dim, row % dim));
+      }
+    } else {
+      auto const k = stiffness<F>(law, rest, u);
+      for (int row = 0; row < size; ++row)
+        for (int column = 0; column < size; ++column) add(row, k(row, column));
+    }
+    return rows;
   }
 };
 

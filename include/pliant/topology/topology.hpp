@@ -87,7 +87,8 @@ class Topology {
     if constexpr (nodes_on_cell<E> == CellNodes::corners) {
       auto const& cell = tree->cell(c);
       std::copy_n(cell.nodes.begin(), E::nodes, nodes.begin());
-      if (cell.mirrored) std::swap(nodes[2], nodes[3]);
+      if constexpr (E::nodes == 4)  // of tetrahedra alone
+        if (cell.mirrored) std::swap(nodes[2], nodes[3]);
     } else {
       std::ranges::copy(tree->tree().element_nodes(c), nodes.begin());
     }
