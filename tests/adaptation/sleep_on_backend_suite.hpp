@@ -18,29 +18,6 @@ auto bar_on(B const& backend, bool on_host) {
   return body;
 }
 
-/// Expects the masters of each hanging node in all patches that it is in, and some in others too.
-template <class TheBody>
-void check_masters(TheBody& body) {
-  auto const made = detail::make_patch_nodes(body.parts());
-  auto const first = download<Index>(made.first), pieces = download<Index>(made.pieces),
-             patch = download<Index>(made.patch);
-  auto const patches_of = [&](Index node) {
-    auto const row = at(body.parts().layout.internal_of(node));
-    std::vector<Index> patches;
-    for (Index k = first[row]; k < first[row + 1]; ++k) patches.push_back(patch[at(pieces[at(k)])]);
-    std::ranges::sort(patches);
-    return patches;
-  };
-  std::size_t in_several = 0;
-  for (auto const& slave : body.mesh().slaves)
-    for (auto const& [master, weight] : slave.masters) {
-      auto const of_slave = patches_of(slave.node), of_master = patches_of(master);
-      CHECK(std::ranges::includes(of_master, of_slave));
-      in_several += of_slave != of_master;
-    }
-  CHECK(in_several > 0);
-}
-
 /// Two bars that take the same steps and looks. set_up(bar).
 template <Backend B>
 struct TwoBars {
@@ -127,19 +104,6 @@ TEST_CASE("what is driven stays awake where a body's backend changes its mesh", 
     both.body.drive(both.body.mesh().boundary("right"), [](double) { return Point<2>{}; });
     both.host.drive(both.host.mesh().boundary("right"), [](double) { return Point<2>{}; });
     CHECK(both.go_on() < before);
-  });
-}
-
-TEST_CASE("masters of hanging nodes belong to the patches that these are in", "[adaptation]") {
-  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
-    for (bool const on_host : {false, true}) {
-      auto bar = bar_on(backend, on_host);
-      std::vector<Index> marked;
-      for (Index e = 0; e < count(bar); e += 3) marked.push_back(e);
-      refine(bar, {marked});
-      REQUIRE(is_on_backend(bar) == !on_host);
-      check_masters(bar);
-    }
   });
 }
 

@@ -187,7 +187,7 @@ TEST_CASE("pieces of small patches", "[body]") {
   CHECK(found.nodes_in_several > 0);
 }
 
-TEST_CASE("a patch of one long piece is one, however its elements are numbered", "[body]") {
+TEST_CASE("a long patch is one piece", "[body]") {
   on_each_backend<FewBackends>([](auto const& backend) {
     Body body{backend, bars(1, 1200), soft, Group<Tri>{}};
     CHECK(check_patches(body).other_pieces == 0);
