@@ -4,6 +4,7 @@
 
 #include <pliant/body/carried_nodes.hpp>
 #include <pliant/body/carried_points.hpp>
+#include <pliant/body/changed_rows.hpp>
 #include <pliant/body/checkpoint.hpp>
 #include <pliant/body/converted_elements.hpp>
 #include <pliant/body/ledger.hpp>
@@ -130,6 +131,7 @@ struct ChangedTopology {
   Point<Parts::dim> taken;                                          // N s
   double strain_energy_before, strain_energy = 0;                   // J
   std::optional<double> kinetic_energy_before{}, kinetic_energy{};  // J, where it tells
+  ChangedRows<typename Parts::backend_type> changed_rows{};
 };
 
 /// Takes all fields over to another topology, for put_in_force. give_back(touched elements, layout, held, v before, v) may
@@ -209,6 +211,9 @@ ChangedTopology<Parts> change_topology(
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
   state.implicit = {};
+  if (detail::has_bounds_of_rows(parts))
+    changed.changed_rows = detail::changed_rows(next.backend, next.layout, touched.nodes(),
+                                                transfer.staying_nodes() < transfer.old_nodes());
   changed.strain_energy = detail::energy_of_some(
       std::as_const(next),
       [&]<Element E>(auto const& visit) { touched.template visit_after<E>(visit); }, tags);

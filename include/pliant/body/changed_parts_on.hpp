@@ -79,6 +79,8 @@ class ChangedPartsOn {
     auto changed = with_fields(std::move(layout), std::move(u), std::move(v), {});
     changed.parts.state.load = std::move(load);
     finish(changed.parts);
+    find_changed_rows(changed, refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest()),
+                      false);
     add_strain(Energies::after, changed.parts, places.come, places.come_count);
     read_energies(changed);
     return changed;
@@ -130,6 +132,7 @@ class ChangedPartsOn {
     auto changed = with_fields(std::move(layout), std::move(u), std::move(v), taken);
     changed.parts.state.load = std::move(load);
     finish(changed.parts);
+    find_changed_rows(changed, families, true);
     add_strain(Energies::after, changed.parts);
     read_energies(changed);
     return changed;
@@ -253,6 +256,13 @@ class ChangedPartsOn {
     make_room_for_forces(next);
     state.integrator.next_check = state.integrator.next_refresh = state.steps;
     state.implicit = {};
+  }
+
+  template <class Families>
+  void find_changed_rows(ChangedTopology<Parts>& changed, Families const& families,
+                         bool nodes_went) {
+    if (has_bounds_of_rows(parts_))
+      changed.changed_rows = changed_rows<E>(backend_, families, rows_, nodes_went);
   }
 
   using Time = typename Energies::Time;

@@ -72,6 +72,7 @@ struct IntegratorState {
   std::int64_t next_check = 0;    // steps
   std::int64_t next_refresh = 0;  // steps
   std::int64_t next_watch = 0;    // steps
+  bool bounds_raised = false;     // by changes of the mesh since the step was chosen
   /// Less what was booked, J: what leapfrog keeps, at the start; the total, at the last check.
   double first_energy = std::numeric_limits<double>::quiet_NaN();
   double last_energy = std::numeric_limits<double>::quiet_NaN();
@@ -93,6 +94,7 @@ struct IntegratorState {
     visit("next check", r.next_check...);
     visit("next refresh", r.next_refresh...);
     visit("next watch", r.next_watch...);
+    visit("whether bounds are raised", r.bounds_raised...);
     visit("first energy", r.first_energy...);
     visit("last energy", r.last_energy...);
     visit("last energy that is kept", r.last_kept...);

@@ -36,6 +36,8 @@ struct WatchedEnergy {
 
 template <class M, Backend B>
 struct TopologyOn;
+template <Backend B>
+struct ChangedRows;
 
 /// What it takes where patches sleep: see body/wake.hpp.
 template <class Parts>
@@ -98,6 +100,8 @@ struct Parts {
   bool has_checkpoint = false;  // of the present mesh, with no change by hand since
   /// The energies that an integrator watches; set by it.
   WatchedEnergy (*watched_energy)(Parts&, Energies const& present) = nullptr;
+  /// Raises the bounds of frequencies of the parts behind a change of the mesh; set by an integrator that steps by them.
+  void (*raise_bounds)(Parts const& before, Parts& next, ChangedRows<B>&) = nullptr;
   /// Of the integrator that stepped last; null: any. It lives on here: another integrator where
   /// that one was in memory is not taken for it.
   std::shared_ptr<void const> integrator{};

@@ -9,6 +9,7 @@
 #include <pliant/solver/distortion.hpp>
 #include <pliant/solver/energy_check.hpp>
 #include <pliant/solver/leapfrog.hpp>
+#include <pliant/solver/raise_bounds.hpp>
 #include <pliant/solver/stable_step.hpp>
 #include <pliant/solver/stiffening.hpp>
 
@@ -124,7 +125,7 @@ class CentralDifference {
     std::int64_t checked = -1;  // at which step
     while (state.steps < goal) {
       if (parts.awake && state.steps >= state.rest_until) wake_all(parts);  // nobody looks any more
-      if (state.steps >= own.next_watch) watch(parts);
+      if (state.steps >= own.next_watch && state.steps < own.next_refresh) watch(parts);
       bool const due =
           !parts.has_checkpoint || state.steps >= std::min(own.next_check, own.next_refresh);
       if (due && checked != state.steps) {
@@ -133,7 +134,10 @@ class CentralDifference {
         if (state.steps < begun) return detail::advanced(parts, begun, own.step, true);
         if (checked != state.steps) continue;
       }
-      if (state.steps >= own.next_refresh) refresh(parts);
+      if (state.steps >= own.next_refresh)
+        refresh(parts);
+      else if (own.bounds_raised)
+        choose(parts, 2 / std::sqrt(detail::squared_frequency(parts, state.bounds)));
       step_ = own.step;
       take(parts, own.step,
            static_cast<int>(std::min({goal, own.next_check, own.next_refresh, own.next_watch,
@@ -147,6 +151,8 @@ class CentralDifference {
   template <class Parts>
   void begin(Parts& parts) {
     parts.watched_energy = leapfrog_energy<Parts>;
+    if constexpr (!Parts::has_internal_variables)  // bounds of whose laws depend on the step
+      parts.raise_bounds = detail::raise_bounds<Parts>;
     auto& own = parts.state.integrator;
     std::int64_t const now = parts.state.steps;
     bool const resumed = own.active && own.macro_step == 0 && parts.integrator == nullptr;
@@ -181,18 +187,26 @@ class CentralDifference {
   void refresh(Parts& parts) {
     auto& own = parts.state.integrator;
     double const distortion = largest_distortion(parts);
-    double step =
-        (options_.step > 0 ? options_.step : options_.safety * awake_stable_step_of(parts)) /
-        own.slower;
+    double const stable = options_.step > 0 ? 0 : awake_stable_step_of(parts);
+    // Nothing throws from here on: a step that could not be chosen is asked for again.
+    own.next_refresh = parts.state.steps + options_.refresh_interval;
+    own.next_watch = parts.state.steps + options_.watch_interval;
+    own.distortion = distortion;
+    forget_stiffened(parts);
+    choose(parts, stable);
+  }
+
+  /// Chooses the step by one that is stable, s, unless a user asked for his.
+  template <class Parts>
+  void choose(Parts& parts, double stable) {
+    auto& own = parts.state.integrator;
+    double step = (options_.step > 0 ? options_.step : options_.safety * stable) / own.slower;
     bool const like_before = own.asked_step == options_.step && own.safety == options_.safety;
     if (like_before && step > own.step && step <= (1 + options_.hysteresis) * own.step)
       step = own.step;
-    // Nothing throws from here on: a step that could not be chosen is asked for again.
-    own.next_refresh = parts.state.steps + options_.refresh_interval;
-    own.distortion = distortion;
-    forget_stiffened(parts);
     own.asked_step = options_.step;
     own.safety = options_.safety;
+    own.bounds_raised = false;
     if (step == own.step) return;
     // The energy that leapfrog keeps depends on the step.
     double const change = (own.step * own.step - step * step) * acceleration_term(parts);

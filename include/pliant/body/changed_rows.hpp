@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <pliant/backend/atomic.hpp>
+#include <pliant/backend/backend.hpp>
+#include <pliant/body/touched_elements.hpp>
+#include <pliant/topology/changed_elements.hpp>
+
+// Where a change of the mesh changes elements, for the bounds of frequencies that an integrator's step was chosen by.
+namespace pliant {
+
+/// Rows of nodes at which elements came or went, or which hang otherwise now.
+template <Backend B>
+struct ChangedRows {
+  typename B::template Array<std::uint8_t> marks{};  // (rows); empty where nobody asks
+  bool nodes_went = false;                           // so that the mesh may be coarser than it was
+};
+
+namespace detail {
+
+/// Whether the step of a body was chosen by bounds that hold in its present state, those of rows no worse than a tenth of the
+/// step: a change of the mesh raises these, in place of having all elements looked at again. Local time steps have other bounds.
+template <class Parts>
+bool has_bounds_of_rows(Parts const& parts) {
+  constexpr double no_worse = 1.21;
+  auto const& own = parts.state.integrator;
+  auto const& bounds = parts.state.bounds;
+  return parts.raise_bounds != nullptr && own.active && own.macro_step == 0 &&
+         own.asked_step == 0 && parts.state.steps < own.next_refresh && bounds.rows > 0 &&
+         bounds.rows <= no_worse * bounds.elements;
+}
+
+/// Marks the nodes of elements that come in a change.
+template <class Members>
+struct MarkMembers {
+  Members members;
+  std::uint8_t* marks;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (!members.is_one(i)) return;
+    for (Index const row : members.rows(i)) atomic_store(marks[row], 1);
+  }
+};
+template <Element E, Backend B, ChangedFamilies<E> Families>
+ChangedRows<B> changed_rows(B const& backend, Families const& families, Index rows,
+                            bool nodes_went) {
+  auto marks = zeros<std::uint8_t>(backend, static_cast<std::size_t>(rows));
+  MembersOf<Families, true> const members{families};
+  backend.for_each(members.places(), MarkMembers<MembersOf<Families, true>>{members, marks.data()});
+  return {std::move(marks), nodes_went};
+}
+/// Of nodes by the user's numbers.
+template <class Layout, Backend B>
+ChangedRows<B> changed_rows(B const& backend, Layout const& layout, std::vector<Index> const& nodes,
+                            bool nodes_went) {
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(layout.rows), 0);
+  for (Index const node : nodes) marks[static_cast<std::size_t>(layout.internal_of(node))] = 1;
+  return {upload(backend, marks), nodes_went};
+}
+
+}  // namespace detail
+
+}  // namespace pliant

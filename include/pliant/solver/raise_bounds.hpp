@@ -1,0 +1,134 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/is_marked.hpp>
+#include <pliant/backend/patch_list.hpp>
+#include <pliant/body/changed_rows.hpp>
+#include <pliant/solver/stable_step.hpp>
+
+// Bounds of frequencies behind a change of the mesh, at a cost in proportion to what it changes.
+namespace pliant::detail {
+
+/// Marks a node where another one of its row in an interpolation is marked.
+struct MarkBesideMarked {
+  Index const *node, *first, *other;
+  std::uint8_t* marks;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    std::uint8_t any = marks[node[k]];
+    for (Index j = first[k]; j < first[k + 1]; ++j) any |= marks[other[j]];
+    marks[node[k]] = any;
+  }
+};
+/// Marks the masters of marked slaves, then the slaves of marked masters.
+template <Backend B>
+void mark_over_interpolation(B const& backend, InterpolationOn<B> const& interpolation,
+                             std::uint8_t* marks) {
+  for (auto const* rows : {&interpolation.masters(), &interpolation.slaves()})
+    if (rows->count > 0)
+      backend.for_each(rows->count, MarkBesideMarked{rows->node.data(), rows->first.data(),
+                                                     rows->other.data(), marks});
+}
+
+/// Marks all nodes of elements that have a marked one.
+template <int Nodes>
+struct MarkNodesOfMarked {
+  HasMarkedNode<Nodes> has;
+  std::uint8_t* to;
+  PLIANT_HOST_DEVICE void operator()(Index e) const {
+    if (!has(e)) return;
+    for (int a = 0; a < Nodes; ++a) atomic_set(to[has.rows[e][a]], 1);
+  }
+};
+/// Marks the patches of elements that have a marked node.
+template <int Nodes>
+struct MarkPatchesOfMarked {
+  HasMarkedNode<Nodes> has;
+  PatchRanges patches;
+  std::uint8_t* to;
+  PLIANT_HOST_DEVICE void operator()(Index e) const {
+    if (has(e)) atomic_set(to[patches.patch_of(e)], 1);
+  }
+};
+/// f(i) where i is marked, else 0.
+template <class F>
+struct AtMarked {
+  IsMarked<std::uint8_t> is_marked;
+  F f;
+  PLIANT_HOST_DEVICE double operator()(Index i) const { return is_marked(i) ? f(i) : 0; }
+};
+
+/// The bound by rows, 1/s², of what a change of the mesh changed: of nodes at which it changed elements and of all others of
+/// elements there, since nodes that begin to hang are displaced; of their masters; and of what hands rows on to these. Elements
+/// are those of all patches that have a part in it.
+template <class Parts>
+double bound_of_changed_rows(Parts& parts, ChangedRows<typename Parts::backend_type>& changed) {
+  using B = typename Parts::backend_type;
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& backend = parts.backend;
+  auto const& layout = parts.layout;
+  auto const at = std::as_const(parts).here();
+  std::uint8_t* const seeds = changed.marks.data();
+  mark_over_interpolation(backend, layout.interpolation, seeds);
+  auto marks = unset<std::uint8_t>(backend, changed.marks.size());
+  copy_values<B, std::uint8_t>(backend, seeds, marks.data(), marks.size());
+  parts.for_each_type([&](auto const& table, auto const&) {
+    constexpr int nodes = std::remove_cvref_t<decltype(table)>::element::nodes;
+    backend.for_each(table.count(), MarkNodesOfMarked<nodes>{
+                                        {table.elements.rows_of_nodes(), seeds}, marks.data()});
+  });
+  mark_over_interpolation(backend, layout.interpolation, marks.data());
+
+  auto sums = zeros<T>(backend, layout.f.size());
+  NodeField<T, dim> const rows{sums.data()};
+  for_each_added_term(parts, [&](auto const& term) { term.add_row_sums(backend, at, rows); });
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    if (table.count() == 0) return;
+    auto const count = table.elements.patch_count();
+    auto patches = zeros<std::uint8_t>(backend, static_cast<std::size_t>(count));
+    auto list = unset<Index>(backend, static_cast<std::size_t>(count) + 1);
+    backend.for_each(table.count(), MarkPatchesOfMarked<Table::element::nodes>{
+                                        {table.elements.rows_of_nodes(), marks.data()},
+                                        table.elements.patches(),
+                                        patches.data()});
+    backend.select(count, IsMarked<std::uint8_t>{patches.data()}, list.data() + 1, list.data());
+    backend.template accumulate<Table::groups>(over(table.elements, list),
+                                               RowSumKernel<typename Table::Laws>{table.laws}, rows,
+                                               at.rest, at.u);
+  });
+  layout.interpolation.hand_on_magnitudes(backend, rows);
+  return layout.interpolation.magnitude() *
+         backend.maximum(layout.rows, AtMarked<RowOverMass<T, dim>>{
+                                          {marks.data()},
+                                          {{sums.data()}, layout.mass.data(), layout.held.data()}});
+}
+
+/// Raises the bounds by which the step of a body was chosen by those of what a change of its mesh changed, for the parts behind
+/// it, in place of a step that all elements are looked at for. Where nodes went, a longer step may be possible: that is
+/// asked for within some steps, which take less time than to look at all elements behind each change.
+template <class Parts>
+void raise_bounds(Parts const& before, Parts& next,
+                  ChangedRows<typename Parts::backend_type>& changed) {
+  constexpr std::int64_t steps_until_longer = 128;
+  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude()) return;
+  double const bound = bound_of_changed_rows(next, changed);
+  if (!std::isfinite(bound)) return;  // whoever asks for a step says why there is none
+  auto& state = next.state;
+  state.bounds = {std::numeric_limits<double>::infinity(),
+                  std::max(before.state.bounds.rows, bound)};
+  auto& own = state.integrator;
+  own.bounds_raised = true;
+  own.next_refresh = before.state.integrator.next_refresh;
+  if (changed.nodes_went)
+    own.next_refresh = std::min(own.next_refresh, state.steps + steps_until_longer);
+}
+
+}  // namespace pliant::detail
