@@ -20,6 +20,8 @@ share(shared/refinement
       adaptation/refinement_errors adaptation/refinement_inheritance adaptation/refinement_rules
       adaptation/refinement_transfer body/booked_energy body/patch_nodes constraint/conditions
       constraint/interpolation constraint/reactions solver/integrators solver/newton_refined topology/on_change)
+share(shared/refinement_on_backend
+      adaptation/refinement_on_backend solver/raised_bounds)
 share(shared/criteria
       adaptation/calculated_criteria adaptation/combined_criteria adaptation/deformation_criteria
       adaptation/evaluate adaptation/force_intensity adaptation/rotation_criterion

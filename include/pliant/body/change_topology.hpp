@@ -211,9 +211,8 @@ ChangedTopology<Parts> change_topology(
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
   state.implicit = {};
-  if (detail::has_bounds_of_rows(parts))
-    changed.changed_rows = detail::changed_rows(next.backend, next.layout, touched.nodes(),
-                                                transfer.staying_nodes() < transfer.old_nodes());
+  changed.changed_rows = detail::changed_rows(parts, next.layout, touched.nodes(),
+                                              transfer.staying_nodes() < transfer.old_nodes());
   changed.strain_energy = detail::energy_of_some(
       std::as_const(next),
       [&]<Element E>(auto const& visit) { touched.template visit_after<E>(visit); }, tags);

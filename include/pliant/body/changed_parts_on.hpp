@@ -72,15 +72,13 @@ class ChangedPartsOn {
                                                          node_field<dim>(layout.rest)}});
     on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, layout.held.data());
     on_->masses.extend(rows_);
-    on_->masses.exchange(refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest()));
+    auto const come = refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest());
+    on_->masses.exchange(come);
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
     RefinedPlaces<B> const places(backend_, on_->order, done);
     add_strain(Energies::before, parts_, places.go, places.go_count);
-    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), {});
-    changed.parts.state.load = std::move(load);
-    finish(changed.parts);
-    find_changed_rows(changed, refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest()),
-                      false);
+    auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load), {});
+    changed.changed_rows = changed_rows<E>(parts_, come, rows_, false);
     add_strain(Energies::after, changed.parts, places.come, places.come_count);
     read_energies(changed);
     return changed;
@@ -129,10 +127,9 @@ class ChangedPartsOn {
       InterpolationOn<B>(
           backend_, on_->gone.rows(families, on_->rows.freed(), on_->rows.freed_count(), rows_))
           .apply_transpose(backend_, node_field<dim>(load));
-    auto changed = with_fields(std::move(layout), std::move(u), std::move(v), taken);
-    changed.parts.state.load = std::move(load);
-    finish(changed.parts);
-    find_changed_rows(changed, families, true);
+    auto changed =
+        parts_with(std::move(layout), std::move(u), std::move(v), std::move(load), taken);
+    changed.changed_rows = changed_rows<E>(parts_, families, rows_, true);
     add_strain(Energies::after, changed.parts);
     read_energies(changed);
     return changed;
@@ -231,15 +228,17 @@ class ChangedPartsOn {
     *own_masses_ = copies.copy_of(on_->masses.own(), at(rows_), at(rows_));
     copies.make();
   }
-  ChangedTopology<Parts> with_fields(Layout layout, Array<T> u, Array<T> v,
-                                     Point<dim> const& taken) {
+  ChangedTopology<Parts> parts_with(Layout layout, Array<T> u, Array<T> v, Array<T> load,
+                                    Point<dim> const& taken) {
     ChangedTopology<Parts> changed{parts_on(parts_, std::move(layout), topology_, prescribed_),
                                    taken, 0};
     auto& next = changed.parts;
     next.state.u = std::move(u);
     next.state.v = std::move(v);
+    next.state.load = std::move(load);
     carry_points(backend_, on_->tree.view(), on_->order, std::as_const(parts_), next);
     next.layout.interpolation.apply(next.backend, next.u(), next.v());
+    finish(next);
     return changed;
   }
   void finish(Parts& next) {
@@ -256,13 +255,6 @@ class ChangedPartsOn {
     make_room_for_forces(next);
     state.integrator.next_check = state.integrator.next_refresh = state.steps;
     state.implicit = {};
-  }
-
-  template <class Families>
-  void find_changed_rows(ChangedTopology<Parts>& changed, Families const& families,
-                         bool nodes_went) {
-    if (has_bounds_of_rows(parts_))
-      changed.changed_rows = changed_rows<E>(backend_, families, rows_, nodes_went);
   }
 
   using Time = typename Energies::Time;

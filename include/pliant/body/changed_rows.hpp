@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/atomic.hpp>
@@ -44,21 +45,27 @@ struct MarkMembers {
     for (Index const row : members.rows(i)) atomic_store(marks[row], 1);
   }
 };
-template <Element E, Backend B, ChangedFamilies<E> Families>
-ChangedRows<B> changed_rows(B const& backend, Families const& families, Index rows,
-                            bool nodes_went) {
-  auto marks = zeros<std::uint8_t>(backend, static_cast<std::size_t>(rows));
+/// Of a body before a change; empty where its step does not stand on bounds of rows. `rows`: how many fields have behind it.
+template <Element E, class Parts, ChangedFamilies<E> Families>
+ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Families const& families,
+                                                       Index rows, bool nodes_went) {
+  if (!has_bounds_of_rows(parts)) return {};
+  auto marks = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(rows));
   MembersOf<Families, true> const members{families};
-  backend.for_each(members.places(), MarkMembers<MembersOf<Families, true>>{members, marks.data()});
+  parts.backend.for_each(members.places(),
+                         MarkMembers<MembersOf<Families, true>>{members, marks.data()});
   return {std::move(marks), nodes_went};
 }
-/// Of nodes by the user's numbers.
-template <class Layout, Backend B>
-ChangedRows<B> changed_rows(B const& backend, Layout const& layout, std::vector<Index> const& nodes,
-                            bool nodes_went) {
+/// The same of nodes, by the user's numbers behind a change.
+template <class Parts>
+ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts,
+                                                       typename Parts::layout_type const& layout,
+                                                       std::vector<Index> const& nodes,
+                                                       bool nodes_went) {
+  if (!has_bounds_of_rows(parts)) return {};
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(layout.rows), 0);
   for (Index const node : nodes) marks[static_cast<std::size_t>(layout.internal_of(node))] = 1;
-  return {upload(backend, marks), nodes_went};
+  return {upload(parts.backend, marks), nodes_went};
 }
 
 }  // namespace detail

@@ -73,6 +73,7 @@ struct IntegratorState {
   std::int64_t next_refresh = 0;  // steps
   std::int64_t next_watch = 0;    // steps
   bool bounds_raised = false;     // by changes of the mesh since the step was chosen
+  std::int64_t saw_both_at = 0;   // the step at which both bounds of all elements were looked at
   /// Less what was booked, J: what leapfrog keeps, at the start; the total, at the last check.
   double first_energy = std::numeric_limits<double>::quiet_NaN();
   double last_energy = std::numeric_limits<double>::quiet_NaN();
@@ -95,6 +96,7 @@ struct IntegratorState {
     visit("next refresh", r.next_refresh...);
     visit("next watch", r.next_watch...);
     visit("whether bounds are raised", r.bounds_raised...);
+    visit("step at which both bounds were seen", r.saw_both_at...);
     visit("first energy", r.first_energy...);
     visit("last energy", r.last_energy...);
     visit("last energy that is kept", r.last_kept...);

@@ -91,7 +91,7 @@ struct State<B, Mesh<Es...>, Fs...> {
   std::int64_t rest_seen = 0;   // at which step that was looked at
   std::int64_t rest_until = 0;  // the step by which it has to be looked at again
   double relaxed_until = 0;     // s: to which internal variables of sleeping patches have relaxed
-  FrequencyBounds bounds;       // of all that was awake when the step was chosen last, or mesh changed
+  FrequencyBounds bounds;  // of all that was awake when the step was chosen last, or mesh changed
   AdaptationRecord<dim> record;
   IntegratorState integrator;
   ImplicitState<B> implicit;

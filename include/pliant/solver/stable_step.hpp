@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <pliant/backend/value_at.hpp>
@@ -89,9 +90,12 @@ struct RowOverMass {
 /// Which elements a bound is asked of.
 enum class Among { all, awake };
 
-/// Two upper bounds of ω², 1/s².
+/// Which bounds are asked for: both, or that of rows alone, which takes half the time or less.
+enum class Bounds { both, of_rows };
+
+/// Two upper bounds of ω², 1/s²; infinite where one is not asked for.
 template <class Parts>
-FrequencyBounds frequency_bounds(Parts& parts, Among among) {
+FrequencyBounds frequency_bounds(Parts& parts, Among among, Bounds wanted = Bounds::both) {
   using T = typename Parts::T;
   constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
@@ -117,10 +121,10 @@ FrequencyBounds frequency_bounds(Parts& parts, Among among) {
   }
   (among == Among::awake ? parts.awake_elements() : parts.elements())
       .add_row_sums(backend, at, rows);
-  double by_elements = 0;
+  double by_elements = wanted == Bounds::both ? 0 : std::numeric_limits<double>::infinity();
   parts.for_each_type([&](auto& table, auto&) {
     using Table = std::remove_cvref_t<decltype(table)>;
-    if (table.count() == 0) return;
+    if (table.count() == 0 || wanted == Bounds::of_rows) return;
     using Laws = typename Table::Laws;
     if (table.scratch.size() == 0)
       table.scratch = zeros<T>(backend, static_cast<std::size_t>(table.count()));
@@ -189,16 +193,30 @@ double stable_step_of(Parts& parts) {
 }
 
 /// The same for an integrator, which looks at sleeping patches no more: of them it knows the bounds from before, and so
-/// takes no longer a step while something sleeps. These bounds are part of the state.
+/// takes no longer a step while something sleeps. These bounds are part of the state. Where rows gave a step that was clearly
+/// the longer, elements are not looked at again within `interval` steps, unless rows fall by half.
 template <class Parts>
-double awake_stable_step_of(Parts& parts) {
+double awake_stable_step_of(Parts& parts, std::int64_t interval) {
   if constexpr (Parts::has_internal_variables) {
     return stable_step_of(parts);
   } else {
-    auto bounds = detail::frequency_bounds(parts, detail::Among::awake);
+    constexpr double clearly = 1.21;
+    auto const before = parts.state.bounds;
+    auto& own = parts.state.integrator;
+    auto bounds = FrequencyBounds{};
+    auto const look = [&](detail::Bounds wanted) {
+      bounds = detail::frequency_bounds(parts, detail::Among::awake, wanted);
+    };
+    bool const by_rows = before.rows > 0 && clearly * before.rows <= before.elements &&
+                         parts.state.steps < own.saw_both_at + interval;
+    if (by_rows) look(detail::Bounds::of_rows);
+    if (!by_rows || 2 * bounds.rows < before.rows) {
+      look(detail::Bounds::both);
+      own.saw_both_at = parts.state.steps;
+    }
     if (parts.awake) {
-      bounds.elements = std::max(bounds.elements, parts.state.bounds.elements);
-      bounds.rows = std::max(bounds.rows, parts.state.bounds.rows);
+      bounds.elements = std::max(bounds.elements, before.elements);
+      bounds.rows = std::max(bounds.rows, before.rows);
     }
     parts.state.bounds = bounds;
     return 2 / std::sqrt(detail::squared_frequency(parts, bounds));
