@@ -104,8 +104,7 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   double const added = next.watched_energy ? watched_change(next, before, after) : 0;
   if (next.watched_energy && next.state.integrator.active)
     next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
-  if (changed.changed_rows.marks.size() > 0)
-    parts.raise_bounds(parts, next, changed.changed_rows);
+  if (changed.changed_rows.marks.size() > 0) parts.raise_bounds(parts, next, changed.changed_rows);
   put_in_force(parts, std::move(next));
 }
 

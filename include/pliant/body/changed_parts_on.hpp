@@ -88,7 +88,7 @@ class ChangedPartsOn {
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
     synchronize_velocities(parts_);
     check_fields();
-    double const speed = largest_speed();
+    double const speed = backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v));  // m/s
     energies_.add_kinetic(Energies::before, parts_);
     add_strain(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
@@ -151,8 +151,6 @@ class ChangedPartsOn {
                 layout.nodes());
     check_field("change of the mesh (velocities)", layout.in_user_order(state.v), layout.nodes());
   }
-  /// The largest component of a velocity, m/s.
-  double largest_speed() { return backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v)); }
   void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
     auto const changed = changed_when_asked(parts_, std::move(cells), merged);
     topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });

@@ -187,7 +187,8 @@ class CentralDifference {
   void refresh(Parts& parts) {
     auto& own = parts.state.integrator;
     double const distortion = largest_distortion(parts);
-    double const stable = options_.step > 0 ? 0 : awake_stable_step_of(parts, options_.refresh_interval);
+    double const stable =
+        options_.step > 0 ? 0 : awake_stable_step_of(parts, options_.refresh_interval);
     // Nothing throws from here on: a step that could not be chosen is asked for again.
     own.next_refresh = parts.state.steps + options_.refresh_interval;
     own.next_watch = parts.state.steps + options_.watch_interval;
