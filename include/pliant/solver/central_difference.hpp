@@ -177,10 +177,7 @@ class CentralDifference {
   void watch(Parts& parts) {
     auto& own = parts.state.integrator;
     own.next_watch = parts.state.steps + options_.watch_interval;
-    double const distortion = largest_distortion(parts);
-    if (!(std::abs(distortion - own.distortion) <= 0.1 * (1 + own.distortion)) ||
-        is_stiffened(parts))
-      own.next_refresh = parts.state.steps;
+    if (asks_for_step(parts)) own.next_refresh = parts.state.steps;
   }
 
   template <class Parts>

@@ -12,6 +12,7 @@
 #include <pliant/backend/patch_list.hpp>
 #include <pliant/body/changed_rows.hpp>
 #include <pliant/solver/stable_step.hpp>
+#include <pliant/solver/stiffening.hpp>
 
 // Bounds of frequencies behind a change of the mesh, at a cost in proportion to what it changes.
 namespace pliant::detail {
@@ -64,30 +65,35 @@ struct AtMarked {
   PLIANT_HOST_DEVICE double operator()(Index i) const { return is_marked(i) ? f(i) : 0; }
 };
 
-/// The bound by rows, 1/s², of what a change of the mesh changed: of nodes at which it changed elements and of all others of
-/// elements there, since nodes that begin to hang are displaced; of their masters; and of what hands rows on to these. Elements
-/// are those of all patches that have a part in it.
+/// Marks all rows that a change of the mesh changes, of marks of those at which it changes elements: of all nodes of elements
+/// there, since nodes that begin to hang are displaced; of their masters; and of what hands rows on to these.
 template <class Parts>
-double bound_of_changed_rows(Parts& parts, ChangedRows<typename Parts::backend_type>& changed) {
+void spread_marks(Parts const& parts, ChangedRows<typename Parts::backend_type>& changed) {
   using B = typename Parts::backend_type;
-  using T = typename Parts::T;
-  constexpr int dim = Parts::dim;
   auto const& backend = parts.backend;
-  auto const& layout = parts.layout;
-  auto const at = std::as_const(parts).here();
-  std::uint8_t* const seeds = changed.marks.data();
-  mark_over_interpolation(backend, layout.interpolation, seeds);
-  auto marks = unset<std::uint8_t>(backend, changed.marks.size());
-  copy_values<B, std::uint8_t>(backend, seeds, marks.data(), marks.size());
+  auto const& interpolation = parts.layout.interpolation;
+  mark_over_interpolation(backend, interpolation, changed.marks.data());
+  auto seeds = unset<std::uint8_t>(backend, changed.marks.size());
+  copy_values<B, std::uint8_t>(backend, std::as_const(changed.marks).data(), seeds.data(),
+                               seeds.size());
   parts.for_each_type([&](auto const& table, auto const&) {
     constexpr int nodes = std::remove_cvref_t<decltype(table)>::element::nodes;
-    backend.for_each(table.count(), MarkNodesOfMarked<nodes>{
-                                        {table.elements.rows_of_nodes(), seeds}, marks.data()});
+    backend.for_each(table.count(),
+                     MarkNodesOfMarked<nodes>{{table.elements.rows_of_nodes(), seeds.data()},
+                                              changed.marks.data()});
   });
-  mark_over_interpolation(backend, layout.interpolation, marks.data());
+  mark_over_interpolation(backend, interpolation, changed.marks.data());
+}
 
-  auto sums = zeros<T>(backend, layout.f.size());
-  NodeField<T, dim> const rows{sums.data()};
+/// Sums of marked rows, those of slaves handed on, by the elements of all patches that have a part in one; of other rows a
+/// part. (nodes, 4) and scratch rows.
+template <class Parts>
+auto sums_of_marked_rows(Parts const& parts, std::uint8_t const* marks) {
+  using T = typename Parts::T;
+  auto const& backend = parts.backend;
+  auto const at = parts.here();
+  auto sums = zeros<T>(backend, parts.layout.f.size());
+  NodeField<T, Parts::dim> const rows{sums.data()};
   for_each_added_term(parts, [&](auto const& term) { term.add_row_sums(backend, at, rows); });
   parts.for_each_type([&](auto const& table, auto const&) {
     using Table = std::remove_cvref_t<decltype(table)>;
@@ -95,36 +101,52 @@ double bound_of_changed_rows(Parts& parts, ChangedRows<typename Parts::backend_t
     auto const count = table.elements.patch_count();
     auto patches = zeros<std::uint8_t>(backend, static_cast<std::size_t>(count));
     auto list = unset<Index>(backend, static_cast<std::size_t>(count) + 1);
-    backend.for_each(table.count(), MarkPatchesOfMarked<Table::element::nodes>{
-                                        {table.elements.rows_of_nodes(), marks.data()},
-                                        table.elements.patches(),
-                                        patches.data()});
+    backend.for_each(
+        table.count(),
+        MarkPatchesOfMarked<Table::element::nodes>{
+            {table.elements.rows_of_nodes(), marks}, table.elements.patches(), patches.data()});
     backend.select(count, IsMarked<std::uint8_t>{patches.data()}, list.data() + 1, list.data());
     backend.template accumulate<Table::groups>(over(table.elements, list),
                                                RowSumKernel<typename Table::Laws>{table.laws}, rows,
                                                at.rest, at.u);
   });
-  layout.interpolation.hand_on_magnitudes(backend, rows);
+  parts.layout.interpolation.hand_on_magnitudes(backend, rows);
+  return sums;
+}
+
+/// The bound by rows, 1/s², of what a change of the mesh changed.
+template <class Parts>
+double bound_of_changed_rows(Parts const& parts,
+                             ChangedRows<typename Parts::backend_type>& changed) {
+  using T = typename Parts::T;
+  constexpr int dim = Parts::dim;
+  auto const& layout = parts.layout;
+  spread_marks(parts, changed);
+  auto const sums = sums_of_marked_rows(parts, changed.marks.data());
   return layout.interpolation.magnitude() *
-         backend.maximum(layout.rows, AtMarked<RowOverMass<T, dim>>{
-                                          {marks.data()},
-                                          {{sums.data()}, layout.mass.data(), layout.held.data()}});
+         parts.backend.maximum(
+             layout.rows,
+             AtMarked<RowOverMass<T, dim>>{
+                 {changed.marks.data()}, {{sums.data()}, layout.mass.data(), layout.held.data()}});
 }
 
 /// Raises the bounds by which the step of a body was chosen by those of what a change of its mesh changed, for the parts behind
 /// it, in place of a step that all elements are looked at for. Where nodes went, a longer step may be possible: that is
-/// asked for within some steps, which take less time than to look at all elements behind each change.
+/// asked for within some steps, which take less time than to look at all elements behind each change. Nothing is raised where
+/// all elements have to be looked at for a step in any case.
 template <class Parts>
 void raise_bounds(Parts const& before, Parts& next,
                   ChangedRows<typename Parts::backend_type>& changed) {
   constexpr std::int64_t steps_until_longer = 128;
-  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude()) return;
+  auto& state = next.state;
+  auto& own = state.integrator;
+  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude() ||
+      (state.steps >= own.next_watch && asks_for_step(next)))
+    return;
   double const bound = bound_of_changed_rows(next, changed);
   if (!std::isfinite(bound)) return;  // whoever asks for a step says why there is none
-  auto& state = next.state;
   state.bounds = {std::numeric_limits<double>::infinity(),
                   std::max(before.state.bounds.rows, bound)};
-  auto& own = state.integrator;
   own.bounds_raised = true;
   own.next_refresh = before.state.integrator.next_refresh;
   if (changed.nodes_went)

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include <pliant/solver/distortion.hpp>
 #include <pliant/solver/stable_step.hpp>
 
 // Elements that a switch makes stiffer: the step that was chosen for the others may be too long for them.
@@ -100,6 +102,12 @@ bool is_stiffened(Parts const& parts) {
   return detail::can_switch(parts) &&
          parts.backend.sum(1, detail::ValueAt<double>{parts.state.work.data() +
                                                       static_cast<int>(Work::stiffened)}) > 0;
+}
+/// Whether elements are distorted more or less than when the step was chosen, by a tenth, or stiffer.
+template <class Parts>
+bool asks_for_step(Parts& parts) {
+  double const then = parts.state.integrator.distortion;
+  return !(std::abs(largest_distortion(parts) - then) <= 0.1 * (1 + then)) || is_stiffened(parts);
 }
 /// Begins to count anew: the step is chosen for the present elements.
 template <class Parts>
