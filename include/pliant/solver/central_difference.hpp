@@ -60,7 +60,8 @@ Advanced advanced(Parts const& parts, std::int64_t begun, double step, bool roll
 /// stays for four check intervals, twice as long after each further roll-back; one that was given in options
 /// stays halved until another CentralDifference takes the body over. What a user set is not rolled back: gravity,
 /// damping and loads act as they were set last. A call that is rolled back behind its own begin returns
-/// there, so that its caller can set what depends on time.
+/// there, so that its caller can set what depends on time. A change of the mesh has the step chosen anew: by the rows of the
+/// stiffness that it changed where rows told what is stable, else by all elements (see detail::raise_bounds).
 class CentralDifference {
  public:
   explicit CentralDifference(CentralDifferenceOptions options = {}) : options_(options) {
