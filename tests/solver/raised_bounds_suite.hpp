@@ -254,16 +254,16 @@ TEST_CASE("all elements are looked at where bounds do not tell", "[solver]") {
     CHECK(!is_raised(by_elements, CentralDifference{}));  // whose rows give a shorter step by 11 %
     Body quadratic{backend, mesh::rectangle<Tri6>({.size = {2, 1}, .cells = {6, 3}}), soft,
                    Group<Formulation<Tri6, Gauss<2>, NeoHookean>>{}};
-    CHECK(!is_raised(quadratic, [](auto& body, int steps) {  // whose hanging nodes weigh more
-      CentralDifference{}(body, steps);
-      body.parts().state.bounds = {1, 1};
+    CHECK(!is_raised(quadratic, [](auto& own, int steps) {  // whose hanging nodes weigh more
+      CentralDifference{}(own, steps);
+      own.parts().state.bounds = {1, 1};
     }));
     Body moving{backend, mesh, soft, Group<Quads>{}};
-    CHECK(!is_raised(moving, [&](auto& body, int) {
-      CentralDifference{}(body, 1);
+    CHECK(!is_raised(moving, [&](auto& own, int) {
+      CentralDifference{}(own, 1);
       auto u = mesh.nodes;  // twice as large, behind the integrator's back
-      body.parts().state.u.upload(body.parts().layout.padded(u));
-      body.parts().state.integrator.next_watch = body.steps();
+      own.parts().state.u.upload(own.parts().layout.padded(u));
+      own.parts().state.integrator.next_watch = own.steps();
     }));
     Body in_levels{backend, mesh, soft, Group<Quads>{}};
     CentralDifference{}(in_levels, 1);  // which leaves bounds
