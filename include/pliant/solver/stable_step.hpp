@@ -90,7 +90,7 @@ struct RowOverMass {
 /// Which elements a bound is asked of.
 enum class Among { all, awake };
 
-/// Which bounds are asked for: both, or that of rows alone, which takes half the time or less.
+/// Which bounds are asked for: both, or that of rows alone, which takes less time.
 enum class Bounds { both, of_rows };
 
 /// Two upper bounds of ω², 1/s²; infinite where one is not asked for.
