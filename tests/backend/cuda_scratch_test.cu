@@ -1,3 +1,6 @@
+#include <cstdlib>
+#include <memory>
+#include <numeric>
 #include <vector>
 
 #include <pliant/cuda.hpp>
@@ -53,6 +56,47 @@ TEST_CASE("scratch memory that a recording uses is there when it is replayed", "
     other.download(values);
     CHECK(values == std::vector<unsigned char>(other.size(), 0));
   }
+}
+
+TEST_CASE("small memory that is given back is had again, in the order of the stream", "[cuda]") {
+  if (std::getenv("PLIANT_EXACT_MEMORY") != nullptr) return;
+  auto const context = std::make_shared<CudaContext>(CudaOptions{});
+  auto const numbers = [&](int from) {
+    std::vector<int> values(1000);
+    std::iota(values.begin(), values.end(), from);
+    return values;
+  };
+  std::vector<int> kept(1000);
+  int const* before = nullptr;
+  {
+    DeviceArray<int> const first(context->stream(), numbers(0));
+    before = first.data();
+  }
+  DeviceArray<int> const second(context->stream(), numbers(7)), third(context->stream(), 1000);
+  CHECK(second.data() == before);
+  CHECK(third.data() != before);
+  second.download(kept);
+  CHECK(kept == numbers(7));
+  third.download(kept);
+  CHECK(kept == std::vector<int>(1000, 0));
+}
+
+TEST_CASE("what is given back while work is recorded is not had by others", "[cuda]") {
+  auto const context = std::make_shared<CudaContext>(CudaOptions{});
+  DeviceArray<int> kept(context->stream(), 1000);
+  CudaRecording const sets(context, [&] {
+    DeviceArray<int> const passing(context->stream(), 1000);
+    REQUIRE(cudaMemcpyAsync(kept.data(), passing.data(), 1000 * sizeof(int),
+                            cudaMemcpyDeviceToDevice, context->stream()->get()) == cudaSuccess);
+  });
+  std::vector<int> const values(1000, 3);
+  DeviceArray<int> const other(context->stream(), values);
+  std::vector<int> read(1000, 1);
+  for (int i = 0; i < 3; ++i) sets.replay(1);
+  other.download(read);
+  CHECK(read == values);
+  kept.download(read);
+  CHECK(read == std::vector<int>(1000, 0));
 }
 
 }  // namespace pliant::test

@@ -23,7 +23,7 @@ class DeviceArray {
     auto const device = stream_->enter();
     allocate();
     cudaError_t const status = cudaMemsetAsync(data_, 0, count * sizeof(U), stream_->get());
-    if (status != cudaSuccess) stream_->release(data_);
+    if (status != cudaSuccess) release();
     detail::check(status, "cudaMemsetAsync");
   }
   /// Not set: all values are written before any is read. Throws Error when the device has not enough memory.
@@ -47,13 +47,13 @@ class DeviceArray {
     // Pageable memory is read before cudaMemcpyAsync returns; what the program has pinned is read later.
     if (status == cudaSuccess && is_pinned(values.data()))
       status = cudaStreamSynchronize(stream_->get());
-    if (status != cudaSuccess) stream_->release(data_);
+    if (status != cudaSuccess) release();
     detail::check(status, "cudaMemcpyAsync");
   }
   ~DeviceArray() {
     if (data_ == nullptr) return;
     detail::DeviceGuard const device(stream_->device(), std::nothrow);
-    stream_->release(data_);
+    release();
   }
   DeviceArray(DeviceArray&& other) noexcept
       : stream_(std::move(other.stream_)),
@@ -100,6 +100,7 @@ class DeviceArray {
     if (status != cudaSuccess) data_ = nullptr;
     detail::check_memory(status, bytes);
   }
+  void release() noexcept { stream_->release(data_, size_ * sizeof(U)); }
   /// Whether there is anything to copy. Throws Error where there is no room for it.
   bool has_room(std::size_t count) const {
     if (count > size_)

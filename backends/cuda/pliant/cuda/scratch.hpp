@@ -30,11 +30,11 @@ class DeviceScratch {
  private:
   struct Release {
     SharedStream stream;
-    bool of_pool;
+    std::size_t bytes;  // 0: not of the stream
     void operator()(std::byte* memory) const noexcept {
       DeviceGuard const device(stream->device(), std::nothrow);
-      if (of_pool)
-        stream->release(memory);
+      if (bytes > 0)
+        stream->release(memory, bytes);
       else
         cudaFree(memory);
     }
@@ -54,7 +54,7 @@ class DeviceScratch {
   Memory allocate(std::size_t bytes) const {
     std::byte* memory = nullptr;
     check_memory(stream_->allocate(&memory, bytes), bytes);
-    return {memory, Release{stream_, true}};
+    return {memory, Release{stream_, bytes}};
   }
   /// Now, in place of each time that the recording is replayed.
   Memory allocate_while_recording(std::size_t bytes) const {
@@ -64,7 +64,7 @@ class DeviceScratch {
     cudaError_t const status = cudaMalloc(&memory, bytes);
     cudaThreadExchangeStreamCaptureMode(&mode);
     check_memory(status, bytes);
-    return {memory, Release{stream_, false}};
+    return {memory, Release{stream_, 0}};
   }
 
   SharedStream stream_;

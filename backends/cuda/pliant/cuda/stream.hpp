@@ -2,11 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include <pliant/cuda/device_guard.hpp>
+#include <pliant/cuda/small_blocks.hpp>
 
 namespace pliant {
 
@@ -26,7 +29,8 @@ struct CudaOptions {
 
 namespace detail {
 
-/// A device and a stream of it. All that a backend makes shares it and keeps it alive.
+/// A device and a stream of it. All that a backend makes shares it and keeps it alive. With PLIANT_EXACT_MEMORY in the
+/// environment no memory is kept and all has the size that was asked for, for tools that look at its bounds.
 class DeviceStream {
  public:
   explicit DeviceStream(CudaOptions const& options)
@@ -43,6 +47,8 @@ class DeviceStream {
     check(status, "cudaMallocHost");
   }
   ~DeviceStream() {
+    DeviceGuard const device(device_, std::nothrow);
+    blocks_.clear([&](void* block) { give_back(block); });
     cudaFreeHost(staged_);
     if (owns_stream_) cudaStreamDestroy(stream_);
   }
@@ -67,19 +73,36 @@ class DeviceStream {
   /// Memory of the device, which is the current one, for work that is queued from now on.
   template <class U>
   [[nodiscard]] cudaError_t allocate(U** memory, std::size_t bytes) const {
-    return uses_pool_ ? cudaMallocAsync(memory, bytes, stream_) : cudaMalloc(memory, bytes);
+    *memory = keeps(bytes) ? static_cast<U*>(blocks_.take(bytes)) : nullptr;
+    if (*memory != nullptr) return cudaSuccess;
+    // Whole blocks while work is recorded, too, since they may be given back behind that.
+    std::size_t const whole =
+        exact_ || !SmallBlocks::is_small(bytes) ? bytes : SmallBlocks::size_for(bytes);
+    return uses_pool_ ? cudaMallocAsync(memory, whole, stream_) : cudaMalloc(memory, whole);
   }
-  /// Gives it back once the work that was queued has used it.
-  void release(void* memory) const noexcept {
-    if (uses_pool_)
-      cudaFreeAsync(memory, stream_);
-    else
-      cudaFree(memory);
+  /// Gives it back, with the bytes that it was asked for, once the work that was queued has used it.
+  void release(void* memory, std::size_t bytes) const noexcept {
+    if (!keeps(bytes) || !blocks_.keep(memory, bytes)) give_back(memory);
   }
 
  private:
   static constexpr int above_side_streams = -1;  // which have the least priority, 0
   static constexpr std::size_t most_staged = 64 << 10;
+
+  /// Whether memory of this size is kept for work to come. While work is recorded it is not, since that
+  /// may be replayed.
+  bool keeps(std::size_t bytes) const noexcept {
+    if (!SmallBlocks::is_small(bytes) || exact_) return false;
+    cudaStreamCaptureStatus status{};
+    return cudaStreamIsCapturing(stream_, &status) == cudaSuccess &&
+           status == cudaStreamCaptureStatusNone;
+  }
+  void give_back(void* memory) const noexcept {
+    if (uses_pool_)
+      cudaFreeAsync(memory, stream_);
+    else
+      cudaFree(memory);
+  }
 
   /// Takes memory from the pool of the device, where it has one: that takes a fraction of the time, and waits for nothing. The
   /// pool keeps what is free of it, a sixteenth of the device's memory at most, unless the program said how much.
@@ -121,6 +144,8 @@ class DeviceStream {
   int device_;
   cudaStream_t stream_;
   bool owns_stream_ = false, uses_pool_ = false;
+  bool exact_ = std::getenv("PLIANT_EXACT_MEMORY") != nullptr;
+  mutable SmallBlocks blocks_;
   void* staged_ = nullptr;  // (most_staged), the host's
 };
 
