@@ -138,6 +138,8 @@ class Reference {
     constexpr int nodes = detail::table_nodes<Table>;
     require_kernel<Kernel, Matrix<T, nodes, C>, Groups, OneElement, Values<nodes, Fields>...>();
     loop<Groups>(table, [&](auto group, Index e, Index const* row) {
+      if constexpr (Selects<Kernel>)
+        if (!kernel.selects(e, static_cast<Tag>(group.value))) return;
       auto const values = call(kernel, group, OneElement{e}, gather<nodes>(fields, row)...);
       for (int a = 0; a < nodes; ++a)
         for (int k = 0; k < C; ++k) out(row[a], k) += values(a, k);

@@ -76,7 +76,8 @@
 //   .patch_size()              how many elements a patch has at most
 //   .scratch_nodes()           rows that a field to accumulate into needs behind its nodes
 //   accumulate<Groups>(elements, kernel, out, fields...)
-//                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`
+//                              adds kernel's Matrix<S, Nodes, Components> to the rows of `out`; see Selects in
+//                              backend/kernel.hpp
 //   sum_elements<Groups>(elements, kernel, fields...)
 //                              double; the sum of kernel's S
 //   add_sum_elements<Groups>(elements, kernel, to, fields...)
@@ -106,8 +107,8 @@ inline constexpr Tag no_group = 255;
 
 /// The nodes of elements, side by side; `width` entries for each, of which the first are its nodes.
 struct ElementRows {
-  Index const* nodes;
-  int width;
+  Index const* nodes = nullptr;
+  int width = 0;
   PLIANT_HOST_DEVICE Index const* operator[](Index e) const {
     return nodes + static_cast<std::ptrdiff_t>(width) * e;
   }

@@ -73,8 +73,8 @@ concept Visitor = requires {
 template <class F>
 concept SymmetricKernel = requires { requires F::symmetric; };
 
-/// A visitor that tells which elements it has nothing to do with: bool selects(Index element, Tag group) const. A
-/// backend may pass those over.
+/// A visitor, or a kernel to accumulate, that tells which elements it has nothing to do with: bool selects(Index element, Tag
+/// group) const. A backend may pass those over.
 template <class F>
 concept Selects = requires(F const& f, Index element, Tag group) {
   { f.selects(element, group) } -> std::same_as<bool>;

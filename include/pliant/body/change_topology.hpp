@@ -211,8 +211,9 @@ ChangedTopology<Parts> change_topology(
   follow_state(next);
   state.integrator.next_check = state.integrator.next_refresh = state.steps;
   state.implicit = {};
-  changed.changed_rows = detail::changed_rows(parts, next.layout, touched.nodes(),
-                                              transfer.staying_nodes() < transfer.old_nodes());
+  changed.changed_rows =
+      detail::changed_rows(parts, next.layout, touched.nodes(),
+                           transfer.staying_nodes() < transfer.old_nodes(), touched.displaces());
   changed.strain_energy = detail::energy_of_some(
       std::as_const(next),
       [&]<Element E>(auto const& visit) { touched.template visit_after<E>(visit); }, tags);

@@ -18,6 +18,7 @@ template <Backend B>
 struct ChangedRows {
   typename B::template Array<std::uint8_t> marks{};  // (rows); empty where nobody asks
   bool nodes_went = false;                           // so that the mesh may be coarser than it was
+  bool displaces = false;                            // nodes that stay, as they begin to hang
 };
 
 namespace detail {
@@ -44,27 +45,28 @@ struct MarkMembers {
     for (Index const row : members.rows(i)) atomic_store(marks[row], 1);
   }
 };
-/// Of a body before a change; empty where its step does not stand on bounds of rows. `rows`: how many fields have behind it.
+/// Of a body before a change; empty where its step does not stand on bounds of rows. `rows`: how many fields have behind it;
+/// `merges`: whether elements are merged.
 template <Element E, class Parts, ChangedFamilies<E> Families>
 ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Families const& families,
-                                                       Index rows, bool nodes_went) {
+                                                       Index rows, bool merges) {
   if (!has_bounds_of_rows(parts)) return {};
   auto marks = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(rows));
   MembersOf<Families, true> const members{families};
   parts.backend.for_each(members.places(),
                          MarkMembers<MembersOf<Families, true>>{members, marks.data()});
-  return {std::move(marks), nodes_went};
+  return {std::move(marks), merges, merges};
 }
 /// The same of nodes, by the user's numbers behind a change.
 template <class Parts>
 ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts,
                                                        typename Parts::layout_type const& layout,
                                                        std::vector<Index> const& nodes,
-                                                       bool nodes_went) {
+                                                       bool nodes_went, bool displaces) {
   if (!has_bounds_of_rows(parts)) return {};
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(layout.rows), 0);
   for (Index const node : nodes) marks[static_cast<std::size_t>(layout.internal_of(node))] = 1;
-  return {upload(parts.backend, marks), nodes_went};
+  return {upload(parts.backend, marks), nodes_went, displaces};
 }
 
 }  // namespace detail

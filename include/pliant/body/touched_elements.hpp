@@ -11,6 +11,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/host_threads.hpp>
+#include <pliant/backend/is_marked.hpp>
 #include <pliant/constraint/slave_rows.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
@@ -19,19 +20,6 @@
 
 namespace pliant::detail {
 
-/// Whether an element has a marked node.
-template <int Nodes>
-struct HasMarkedNode {
-  ElementRows rows;
-  std::uint8_t const* marks;  // by node
-
-  PLIANT_HOST_DEVICE bool operator()(Index e) const {
-    Index const* const nodes = rows[e];
-    std::uint8_t any = 0;  // of all nodes, without a branch for each
-    for (int a = 0; a < Nodes; ++a) any |= marks[nodes[a]];
-    return any != 0;
-  }
-};
 /// Marks the nodes of a list.
 struct MarkListed {
   Index const* nodes;
@@ -189,6 +177,7 @@ class TouchedElements {
     auto const displaced =
         touch_slaves(before.interpolation.slaves(), after.interpolation.slaves(), transfer);
     if (displaced.empty()) return;
+    displaces_ = true;
     auto const at_nodes = find(displaced);
     for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
       list_staying<E>(before, after, at_nodes.template of<E>(), transfer.origins(type));
@@ -203,6 +192,8 @@ class TouchedElements {
   bool changes_elements(Index node) const { return (flags(node) & of_elements) != 0; }
   /// Whether a node hangs otherwise than before.
   bool hangs_otherwise(Index node) const { return (flags(node) & of_slaves) != 0; }
+  /// Whether nodes that stay are displaced.
+  bool displaces() const { return displaces_; }
   /// All such nodes, by their new numbers.
   std::vector<Index> const& nodes() const { return touched_; }
   FamilyNodes<M> const& families_before() const { return families_before_; }
@@ -223,6 +214,7 @@ class TouchedElements {
  private:
   static constexpr char of_elements = 1, of_slaves = 2;
 
+  bool displaces_ = false;
   char flags(Index node) const { return nodes_[static_cast<std::size_t>(node)]; }
   void touch(Index node, char by) {
     char& own = nodes_[static_cast<std::size_t>(node)];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/is_marked.hpp>
 #include <pliant/body/group_laws.hpp>
 #include <pliant/formulation/one_gradient.hpp>
 #include <pliant/formulation/point_kernel.hpp>
@@ -101,6 +102,12 @@ template <class Laws>
 struct RowSumKernel {
   static constexpr bool reads_elements = Laws::reads_elements;
   Laws groups;
+  detail::HasMarkedNode<Laws::template formulation<0>::nodes>
+      has_marked{};  // where not all are asked for
+
+  PLIANT_HOST_DEVICE bool selects(Index e, Tag) const {
+    return has_marked.marks == nullptr || has_marked(e);
+  }
   template <int G, class... V>
   PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const&... v) const {
     using F = typename Laws::template formulation<G>;

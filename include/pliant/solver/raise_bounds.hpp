@@ -12,7 +12,6 @@
 #include <pliant/backend/patch_list.hpp>
 #include <pliant/body/changed_rows.hpp>
 #include <pliant/solver/stable_step.hpp>
-#include <pliant/solver/stiffening.hpp>
 
 // Bounds of frequencies behind a change of the mesh, at a cost in proportion to what it changes.
 namespace pliant::detail {
@@ -66,13 +65,14 @@ struct AtMarked {
 };
 
 /// Marks all rows that a change of the mesh changes, of marks of those at which it changes elements: of all nodes of elements
-/// there, since nodes that begin to hang are displaced; of their masters; and of what hands rows on to these.
+/// there, where nodes that begin to hang are displaced; of their masters; and of what hands rows on to these.
 template <class Parts>
 void spread_marks(Parts const& parts, ChangedRows<typename Parts::backend_type>& changed) {
   using B = typename Parts::backend_type;
   auto const& backend = parts.backend;
   auto const& interpolation = parts.layout.interpolation;
   mark_over_interpolation(backend, interpolation, changed.marks.data());
+  if (!changed.displaces) return;
   auto seeds = unset<std::uint8_t>(backend, changed.marks.size());
   copy_values<B, std::uint8_t>(backend, std::as_const(changed.marks).data(), seeds.data(),
                                seeds.size());
@@ -85,8 +85,8 @@ void spread_marks(Parts const& parts, ChangedRows<typename Parts::backend_type>&
   mark_over_interpolation(backend, interpolation, changed.marks.data());
 }
 
-/// Sums of marked rows, those of slaves handed on, by the elements of all patches that have a part in one; of other rows a
-/// part. (nodes, 4) and scratch rows.
+/// Sums of marked rows, those of slaves handed on, by the elements that have a part in one, of which patches are listed; of
+/// other rows a part. (nodes, 4) and scratch rows.
 template <class Parts>
 auto sums_of_marked_rows(Parts const& parts, std::uint8_t const* marks) {
   using T = typename Parts::T;
@@ -101,14 +101,13 @@ auto sums_of_marked_rows(Parts const& parts, std::uint8_t const* marks) {
     auto const count = table.elements.patch_count();
     auto patches = zeros<std::uint8_t>(backend, static_cast<std::size_t>(count));
     auto list = unset<Index>(backend, static_cast<std::size_t>(count) + 1);
-    backend.for_each(
-        table.count(),
-        MarkPatchesOfMarked<Table::element::nodes>{
-            {table.elements.rows_of_nodes(), marks}, table.elements.patches(), patches.data()});
+    HasMarkedNode<Table::element::nodes> const has_marked{table.elements.rows_of_nodes(), marks};
+    backend.for_each(table.count(), MarkPatchesOfMarked<Table::element::nodes>{
+                                        has_marked, table.elements.patches(), patches.data()});
     backend.select(count, IsMarked<std::uint8_t>{patches.data()}, list.data() + 1, list.data());
-    backend.template accumulate<Table::groups>(over(table.elements, list),
-                                               RowSumKernel<typename Table::Laws>{table.laws}, rows,
-                                               at.rest, at.u);
+    backend.template accumulate<Table::groups>(
+        over(table.elements, list), RowSumKernel<typename Table::Laws>{table.laws, has_marked},
+        rows, at.rest, at.u);
   });
   parts.layout.interpolation.hand_on_magnitudes(backend, rows);
   return sums;
@@ -132,17 +131,15 @@ double bound_of_changed_rows(Parts const& parts,
 
 /// Raises the bounds by which the step of a body was chosen by those of what a change of its mesh changed, for the parts behind
 /// it, in place of a step that all elements are looked at for. Where nodes went, a longer step may be possible: that is
-/// asked for within some steps, which take less time than to look at all elements behind each change. Nothing is raised where
-/// all elements have to be looked at for a step in any case.
+/// asked for within some steps, which take less time than to look at all elements behind each change. Distortion is looked at
+/// by the next step.
 template <class Parts>
 void raise_bounds(Parts const& before, Parts& next,
                   ChangedRows<typename Parts::backend_type>& changed) {
   constexpr std::int64_t steps_until_longer = 128;
   auto& state = next.state;
   auto& own = state.integrator;
-  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude() ||
-      (state.steps >= own.next_watch && asks_for_step(next)))
-    return;
+  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude()) return;
   double const bound = bound_of_changed_rows(next, changed);
   if (!std::isfinite(bound)) return;  // whoever asks for a step says why there is none
   state.bounds = {std::numeric_limits<double>::infinity(),
