@@ -526,7 +526,8 @@ TEST_CASE("a node that does not exist is refused, with its element", "[backend]"
 TEST_CASE("a table without elements does nothing", "[backend]") {
   on_each_backend<AllPairs>([]<class B>(B const& backend) {
     using T = typename B::scalar;
-    typename B::template Elements<3> elements{backend, {}, 2, {}, 4};
+    typename B::template Elements<3> elements{backend, std::vector<std::array<Index, 3>>{}, 2,
+                                              std::vector<Tag>{}, 4};
     auto const x = upload(backend, std::vector<T>(16, T(1)));
     auto out = upload(
         backend, std::vector<T>(static_cast<std::size_t>(16 + 4 * elements.scratch_nodes()), T(3)));
