@@ -5,13 +5,12 @@
 #include <limits>
 #include <optional>
 
+#include "support/at.hpp"
 #include "support/formulations.hpp"
 #include "support/keeps_trees.hpp"
 
 // A body whose mesh is changed in its backend's memory, beside one that the host changes.
 namespace pliant::test::two_bodies {
-
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 template <class F>
 using Stiffer = Formulation<typename F::element, typename F::quadrature, Hooke>;

@@ -8,10 +8,11 @@
 #include <pliant/body/lumped_masses.hpp>
 #include <pliant/topology/topology.hpp>
 
+#include "support/at.hpp"
+
 // What the host makes of the nodes of a mesh that changes: their masses and momentum.
 namespace pliant::test::changed_nodes {
 
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 inline constexpr double density = 1.3;
 
 /// What give_momentum_back looks at of a body's layout.

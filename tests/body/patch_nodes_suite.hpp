@@ -5,6 +5,7 @@
 
 #include <pliant/body/sleep.hpp>
 
+#include "support/at.hpp"
 #include "support/formulations.hpp"
 #include "support/keeps_trees.hpp"
 #include "support/small_patches.hpp"
@@ -15,7 +16,6 @@ namespace pliant::test::patch_nodes_suite {
 using Tri = Formulation<Tri3, Gauss<1>, SaintVenantKirchhoff>;
 using Quad = Formulation<Quad4, Gauss<2>, SaintVenantKirchhoff>;
 
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 using Rows = std::vector<std::vector<Index>>;
 
 /// From compressed rows.

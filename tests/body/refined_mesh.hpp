@@ -9,9 +9,9 @@
 #include <pliant/body/node_rows_on.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
-namespace pliant::test {
+#include "support/at.hpp"
 
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+namespace pliant::test {
 
 /// Values in the memory of a backend, on the host.
 template <class B, class U>

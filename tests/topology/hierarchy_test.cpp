@@ -16,6 +16,8 @@
 #include <pliant/error.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
+#include "support/at.hpp"
+
 namespace {
 
 using pliant::Error;
@@ -24,6 +26,7 @@ using pliant::Quad4;
 using pliant::Slave;
 using pliant::TreeCell;
 using pliant::Tri3;
+using pliant::test::at;
 using Hierarchy = pliant::Hierarchy<2>;
 using Refinement = pliant::Refinement<2>;
 using Point = pliant::Point<2>;
@@ -34,8 +37,6 @@ using Nodes4 = std::array<Index, 4>;
 enum class Cells { triangles, quads, mixed };
 
 constexpr double width = 2.0, height = 1.0;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 Hierarchy hierarchy(std::vector<Point> points, std::vector<Nodes3> triangles,
                     std::vector<Nodes4> quads) {

@@ -5,14 +5,13 @@
 #include <pliant/formulation/mass.hpp>
 #include <pliant/topology/hierarchy.hpp>
 
+#include "support/at.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 #include "topology/cells_at_edges.hpp"
 #include "topology/level_jumps.hpp"
 
 namespace pliant::test::refined_cells_test {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Cells that are sheared boxes and their parts, so that each is an affine image of its reference cell; in
 /// no order.

@@ -73,7 +73,7 @@ std::vector<std::vector<Index>> all_parts(TheBody const& body) {
 
 /// Splits, refines, merges and coarsens at random.
 template <class P, class TheBody>
-void change(TheBody& body, Random& random) {
+void split_at_random(TheBody& body, Random& random) {
   bool const solid = TheBody::dim == 3;
   split(body, some(body, 3, random, P::whole));
   refine(body, some(body, solid ? 12 : 5, random, -1), 3);
@@ -285,7 +285,7 @@ TEST_CASE("a mesh of split elements passes the patch test", "[topology]") {
   on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     Random random(5);
-    change<P>(body, random);
+    split_at_random<P>(body, random);
     REQUIRE(elements<0>(body).size() > 0);
     REQUIRE(elements<1>(body).size() > 0);
     if constexpr (P::dim == 3) REQUIRE(elements<2>(body).size() > 0);
@@ -300,7 +300,7 @@ TEST_CASE("displacements of split elements are continuous", "[topology]") {
   on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     Random random(3);
-    change<P>(body, random);
+    split_at_random<P>(body, random);
     check_continuity(body, random);
   });
 }
@@ -310,7 +310,7 @@ TEST_CASE("fields, momentum and energy are kept when shapes change, and the mesh
   on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     auto body = P::body(backend);
     check_what_is_kept(
-        body, [](auto& own, Random& random) { change<P>(own, random); },
+        body, [](auto& own, Random& random) { split_at_random<P>(own, random); },
         [](auto& own) { undo<P>(own); });
   });
 }
@@ -371,7 +371,7 @@ TEST_CASE("conditions, pressures and loads go along with shapes", "[topology]") 
 TEST_CASE("a body of split elements steps, saves and resumes", "[topology]") {
   on_cases<MainAlone>([]<class B, class P>(B const& backend, P) {
     check_resuming([&] { return P::body(backend); },
-                   [](auto& own, Random& random) { change<P>(own, random); },
+                   [](auto& own, Random& random) { split_at_random<P>(own, random); },
                    [](auto& own) { undo<P>(own); });
   });
 }
@@ -381,7 +381,7 @@ TEST_CASE("forces on a mesh of split elements are the same on all backends", "[t
     auto const check = [&]<class P>(P) {
       check_agreement(
           backend, [](auto const& on) { return P::body(on); },
-          [](auto& own, Random& random) { change<P>(own, random); });
+          [](auto& own, Random& random) { split_at_random<P>(own, random); });
     };
     check(Plane{});
     check(Solid{});
