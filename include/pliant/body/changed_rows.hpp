@@ -19,6 +19,7 @@ struct ChangedRows {
   typename B::template Array<std::uint8_t> marks{};  // (rows); empty where nobody asks
   bool nodes_went = false;                           // so that the mesh may be coarser than it was
   bool displaces = false;                            // nodes that stay, as they begin to hang
+  Index most = 0;                                    // no more are marked
 };
 
 namespace detail {
@@ -55,7 +56,7 @@ ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Famil
   MembersOf<Families, true> const members{families};
   parts.backend.for_each(members.places(),
                          MarkMembers<MembersOf<Families, true>>{members, marks.data()});
-  return {std::move(marks), merges, merges};
+  return {std::move(marks), merges, merges, E::nodes * members.places()};
 }
 /// The same of nodes, by the user's numbers behind a change.
 template <class Parts>
@@ -66,7 +67,7 @@ ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts,
   if (!has_bounds_of_rows(parts)) return {};
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(layout.rows), 0);
   for (Index const node : nodes) marks[static_cast<std::size_t>(layout.internal_of(node))] = 1;
-  return {upload(parts.backend, marks), nodes_went, displaces};
+  return {upload(parts.backend, marks), nodes_went, displaces, static_cast<Index>(nodes.size())};
 }
 
 }  // namespace detail

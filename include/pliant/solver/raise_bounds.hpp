@@ -12,6 +12,7 @@
 #include <pliant/backend/patch_list.hpp>
 #include <pliant/body/changed_rows.hpp>
 #include <pliant/solver/stable_step.hpp>
+#include <pliant/solver/stiffening.hpp>
 
 // Bounds of frequencies behind a change of the mesh, at a cost in proportion to what it changes.
 namespace pliant::detail {
@@ -131,15 +132,19 @@ double bound_of_changed_rows(Parts const& parts,
 
 /// Raises the bounds by which the step of a body was chosen by those of what a change of its mesh changed, for the parts behind
 /// it, in place of a step that all elements are looked at for. Where nodes went, a longer step may be possible: that is
-/// asked for within some steps, which take less time than to look at all elements behind each change. Distortion is looked at
-/// by the next step.
+/// asked for within some steps, which take less time than to look at all elements behind each change. Whether elements are
+/// distorted so that all have to be looked at in any case is seen by the next step, if it is time to: before this only where
+/// that takes less time than to sum the rows.
 template <class Parts>
 void raise_bounds(Parts const& before, Parts& next,
                   ChangedRows<typename Parts::backend_type>& changed) {
-  constexpr std::int64_t steps_until_longer = 128;
+  constexpr std::int64_t steps_until_longer = 128, most_of_few = 16;
   auto& state = next.state;
   auto& own = state.integrator;
-  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude()) return;
+  bool const changes_many = most_of_few * std::int64_t{changed.most} > next.layout.rows;
+  if (next.layout.interpolation.magnitude() != before.layout.interpolation.magnitude() ||
+      (changes_many && state.steps >= own.next_watch && asks_for_step(next)))
+    return;
   double const bound = bound_of_changed_rows(next, changed);
   if (!std::isfinite(bound)) return;  // whoever asks for a step says why there is none
   state.bounds = {std::numeric_limits<double>::infinity(),
