@@ -28,7 +28,7 @@ inline void check(cudaError_t status, char const* call) {
     case cudaErrorMisalignedAddress:
       advice =
           "; an earlier kernel left its arrays and the GPU context is lost: start the program "
-          "anew, under compute-sanitizer to see which kernel";
+          "anew, under compute-sanitizer with PLIANT_EXACT_MEMORY=1 to see which kernel";
       break;
     default:
       advice = "; look the code up in the CUDA runtime's list of errors";
