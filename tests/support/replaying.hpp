@@ -134,9 +134,9 @@ class Replaying : private SmallPatches<T, Size> {
   template <class Visitor>
   struct Adding : Visitor {
     template <class Group, class Values, class Again, class Tally>
-    void finish(Group group, Index e, Values const& values, Again const& again,
+    void finish(Group group, Index e, Values const& found, Again const& again,
                 Tally const& tally) const {
-      Visitor::finish(group, e, values, AtNodes<Again>{again}, tally);
+      Visitor::finish(group, e, found, AtNodes<Again>{again}, tally);
     }
   };
   template <class Call>
