@@ -69,7 +69,9 @@ void check_change(TheBody& body, Seen& seen, Change const& change) {
   change();
   if (Marked<T>::marks.empty()) return;  // nothing changed
   int wrong_sums = 0, wrong_marks = 0;
-  for (auto const& [place, sums] : row_sums(body)) {
+  for (auto const& row_of_node : row_sums(body)) {
+    auto const& place = row_of_node.first;
+    auto const& sums = row_of_node.second;
     auto const node = std::ranges::find(body.mesh().nodes, place) - body.mesh().nodes.begin();
     auto const row = static_cast<std::size_t>(parts.layout.internal_of(static_cast<Index>(node)));
     auto const old = before.find(place);
