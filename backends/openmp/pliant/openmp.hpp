@@ -237,18 +237,6 @@ class OpenMP {
     });
   }
 
-  /// Whether a kernel or visitor has anything to do with one of a pack's elements.
-  template <class F, int G>
-  static bool selects_any(F const& f, GroupNumber<G>, PackMembers const& m) {
-    if constexpr (Selects<F>) {
-      for (int l = 0; l < m.count; ++l)
-        if (f.selects(m.element[l], static_cast<Tag>(G))) return true;
-      return false;
-    } else {
-      return true;
-    }
-  }
-
   template <int Groups, int Nodes, class Kernel, int C, class... Fields>
   static void accumulate_patch(Elements<Nodes> const& elements, Index patch, Kernel const& kernel,
                                NodeField<T, C> out, Fields const&... fields) {
@@ -260,7 +248,7 @@ class OpenMP {
         return detail::accumulate_fans<Groups>(elements, patch, kernel, out, fields...);
     detail::PatchTargets<Nodes> const targets(elements, patch);
     detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
-      if (!selects_any(kernel, group, m)) return;
+      if (!detail::selects_any(kernel, group, m)) return;
       detail::prefetch_next<Nodes>(elements, m, out, fields...);
       auto const values =
           call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
@@ -280,7 +268,7 @@ class OpenMP {
     std::array<double, Visitor::counters> counters{};
     auto const tally = [&](int k, double x) { counters[static_cast<std::size_t>(k)] += x; };
     detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
-      if (!selects_any(visitor, group, m)) return;
+      if (!detail::selects_any(visitor, group, m)) return;
       auto const values =
           evaluate_at(visitor, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
       for (int l = 0; l < m.count; ++l) {

@@ -13,7 +13,7 @@ namespace pliant::detail {
 /// Any thread may call any of these.
 class SmallBlocks {
  public:
-  static constexpr std::size_t smallest = 256, largest = 64 << 10;
+  static constexpr std::size_t smallest = 256, sizes = 9, largest = smallest << (sizes - 1);
   static constexpr std::size_t most_of_a_size = 64;
 
   static constexpr bool is_small(std::size_t bytes) { return bytes <= largest; }
@@ -45,16 +45,13 @@ class SmallBlocks {
   }
 
  private:
-  static constexpr std::size_t sizes =
-      std::size_t{std::bit_width(largest)} - std::bit_width(smallest) + 1;
-
   struct Kept {
     std::array<void*, most_of_a_size> blocks{};
     std::size_t count = 0;
   };
 
   Kept& kept_for(std::size_t bytes) {
-    return kept_[std::size_t{std::bit_width(size_for(bytes))} - std::bit_width(smallest)];
+    return kept_[static_cast<std::size_t>(std::countr_zero(size_for(bytes) / smallest))];
   }
 
   std::mutex mutex_;

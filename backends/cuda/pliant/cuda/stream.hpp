@@ -75,7 +75,7 @@ class DeviceStream {
   [[nodiscard]] cudaError_t allocate(U** memory, std::size_t bytes) const {
     *memory = keeps(bytes) ? static_cast<U*>(blocks_.take(bytes)) : nullptr;
     if (*memory != nullptr) return cudaSuccess;
-    // Whole blocks while work is recorded, too, since they may be given back behind that.
+    // Whole blocks while work is recorded, too: what is given back has the size of one.
     std::size_t const whole =
         exact_ || !SmallBlocks::is_small(bytes) ? bytes : SmallBlocks::size_for(bytes);
     return uses_pool_ ? cudaMallocAsync(memory, whole, stream_) : cudaMalloc(memory, whole);

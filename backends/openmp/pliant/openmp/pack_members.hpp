@@ -7,6 +7,7 @@
 
 #include <pliant/backend/dispatch.hpp>
 #include <pliant/backend/field.hpp>
+#include <pliant/backend/kernel.hpp>
 #include <pliant/openmp/patches.hpp>
 #include <pliant/openmp/transpose.hpp>
 
@@ -54,6 +55,18 @@ void for_each_pack(Patches<Nodes> const& elements, Index patch, F const& f) {
   [&]<int... G>(std::integer_sequence<int, G...>) {
     (for_each_pack_of<G, T>(elements, patch, f), ...);
   }(std::make_integer_sequence<int, Groups>());
+}
+
+/// Whether a kernel or visitor has anything to do with one of a pack's elements: see Selects.
+template <class F, int Group, class T>
+bool selects_any(F const& f, GroupNumber<Group>, PackMembers<T> const& m) {
+  if constexpr (Selects<F>) {
+    for (int l = 0; l < m.count; ++l)
+      if (f.selects(m.element[l], static_cast<Tag>(Group))) return true;
+    return false;
+  } else {
+    return true;
+  }
 }
 
 /// Asks for the rows of fields that the next pack works on, so that they are in the caches by then.
