@@ -34,7 +34,7 @@ class FamilyMomentumOn {
   void begin(Families const& families, MassWeightsOn<B> const& before, MassWeightsOn<B> const& now,
              NodalMassesOn<E, B> const& masses) {
     auto const rows = at(masses.rows());
-    detail::grow(backend_, place_, rows);
+    detail::grow_zeroed(backend_, place_, rows);
     detail::grow(backend_, list_, rows);
     counters_ = zeros<Index>(backend_, 2);
     detail::TouchOnce const touch{place_.data(), list_.data(), counters_.data()};

@@ -126,19 +126,19 @@ class GoneNodesOn {
   explicit GoneNodesOn(B const& backend) : backend_(backend) {}
 
   /// The nodes that went, by their rows in the order of the list `gone`, (count), in the backend's memory: these had all been
-  /// nodes of merged elements. `rows`: how many fields have. Waits for the backend.
+  /// nodes of merged elements. `rows`: how many fields have.
   RowsOn<B> rows(detail::MergedElements<E> const& merged, Index const* gone, Index count,
                  Index rows) {
     RowsOn<B> weights;
     if (count == 0) return weights;
     auto const n = at(count);
-    detail::grow(backend_, place_, at(rows));
+    detail::grow_zeroed(backend_, place_, at(rows));
     detail::grow(backend_, claims_, n);
     detail::grow(backend_, pair_, n);
     auto entries = zeros<Index>(backend_, n);
     weights.count = count;
-    weights.node = zeros<Index>(backend_, n);
-    weights.first = zeros<Index>(backend_, n + 1);
+    weights.node = unset<Index>(backend_, n);
+    weights.first = unset<Index>(backend_, n + 1);
     detail::copy_values<B, Index>(backend_, gone, weights.node.data(), n);
     backend_.for_each(count, detail::NotePlaces{gone, place_.data(), claims_.data()});
     detail::GoneBetween<E> const between{merged, place_.data(), claims_.data(), pair_.data(),
@@ -149,12 +149,11 @@ class GoneNodesOn {
     auto total = zeros<Index>(backend_, 1);
     backend_.for_each(1, detail::CopyValue<Index>{weights.first.data() + count, total.data()});
     auto const in_all = at(download<Index>(total)[0]);
-    weights.other = zeros<Index>(backend_, in_all);
-    weights.weight = zeros<T>(backend_, in_all);
+    weights.other = unset<Index>(backend_, in_all);
+    weights.weight = unset<T>(backend_, in_all);
     backend_.for_each(count, detail::PutWeights<E, T>{between, weights.first.data(),
                                                       weights.other.data(), weights.weight.data()});
     backend_.for_each(count, detail::ForgetRows{gone, place_.data()});
-    backend_.synchronize();  // before the counts go
     return weights;
   }
 
