@@ -153,6 +153,24 @@ TEST_CASE("a ring of more tetrahedra than a fan takes becomes several", "[cuda][
   }
 }
 
+TEST_CASE("rows of tetrahedra around one edge become a fan each", "[cuda][fan plan]") {
+  // Two rows, and a closed one; those of each in any order.
+  Table const rows{{0, 1, 6, 7}, {0, 1, 4, 5},  {0, 1, 3, 4},
+                   {0, 1, 8, 9}, {0, 1, 10, 8}, {0, 1, 9, 10}};
+  auto const plan = plan_on_host<detail::FanPlanner>(rows, 768);
+  auto const outcome = accumulate_by(plan, rows, 11);
+  CHECK(outcome.fans == 3);
+  CHECK(outcome.closed == 1);
+  check_sums(rows, 768);
+}
+
+TEST_CASE("tetrahedra that all follow the same one are in one fan each", "[cuda][fan plan]") {
+  check_sums({{0, 1, 2, 3}, {0, 1, 3, 4}, {0, 1, 3, 5}}, 768);
+  check_sums({{0, 1, 3, 4}, {0, 1, 3, 5}, {0, 1, 2, 3}, {0, 1, 5, 2}}, 768);
+  check_sums({{0, 1, 2, 3}, {0, 1, 5, 3}, {0, 1, 3, 4}}, 768);
+  check_sums({{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 1, 3, 2}, {0, 1, 2, 3}}, 768);
+}
+
 TEST_CASE("a patch with too many nodes for fans is counted, not planned", "[cuda][fan plan]") {
   std::vector<std::array<Index, 4>> apart;
   for (Index e = 0; e < 300; ++e) apart.push_back({4 * e, 4 * e + 1, 4 * e + 2, 4 * e + 3});

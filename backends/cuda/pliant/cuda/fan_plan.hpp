@@ -29,6 +29,8 @@ inline constexpr int most_fan_visits = most_fan_elements + 3;
 class FanPlanner {
  public:
   static constexpr int nodes = 4;
+  /// Of a block on a GPU. As many as patches have elements: one takes an element, and not two.
+  static constexpr int block_threads = 768;
   using Unit = FanVisit;  // of a plan
   /// Where the units of a patch begin, of which the first element is given.
   PLIANT_HOST_DEVICE static std::ptrdiff_t first_unit(Index patch, Index /* first_element */,
@@ -98,14 +100,16 @@ class FanPlanner {
   }
 
  private:
+  using Slots = SlotPlanner<block_threads>;
+
   /// Of the i-th visit of all, without that which closes a fan.
   PLIANT_HOST_DEVICE int node(int i) const {
     int const f = i / most_fan_visits, j = i % most_fan_visits, size = splitter_.size(f);
     if (j < 3) return splitter_.corner(splitter_.member(f, 0), j);
-    if (j - 3 >= size) return SlotPlanner::none;
+    if (j - 3 >= size) return Slots::none;
     int const end = splitter_.corner(splitter_.member(f, j - 3), 3);
     bool const closes = j - 2 == size && end == splitter_.corner(splitter_.member(f, 0), 2);
-    return closes ? SlotPlanner::none : end;
+    return closes ? Slots::none : end;
   }
   PLIANT_HOST_DEVICE FanVisit visit(int f, int j) const {
     int const size = splitter_.size(f), element = j == 0  ? size
@@ -113,7 +117,7 @@ class FanPlanner {
                                                           : splitter_.member(f, j - 3).element();
     if (j - 3 >= size) return {};
     int i = f * most_fan_visits + j;
-    if (visits_[i] == SlotPlanner::none) i = f * most_fan_visits + 2;  // closes the fan
+    if (visits_[i] == Slots::none) i = f * most_fan_visits + 2;  // closes the fan
     return FanVisit::of(slots_.rank(visits_[i]), slots_.slot(i), element);
   }
 
@@ -124,7 +128,7 @@ class FanPlanner {
   int begin_;              // of what the others work in
   PatchNumbering<nodes> numbering_;
   FanSplitter splitter_;
-  SlotPlanner slots_;
+  Slots slots_;
   PatchCounts counts_;
 };
 

@@ -30,6 +30,8 @@ class FanSplitter {
         places_(memory.take<int>(most_fan_elements * most_runs)),
         edge_(memory.take<std::uint16_t>(6 * patch_size)),
         next_(memory.take<std::uint16_t>(6 * patch_size)),
+        before_(memory.take<std::uint16_t>(patch_size)),
+        after_(memory.take<std::uint16_t>(patch_size)),
         choice_(memory.take<std::uint8_t>(patch_size)),
         taken_(memory.take<std::uint8_t>(patch_size)),
         claimed_(memory.take<std::uint8_t>(patch_size)) {}
@@ -57,7 +59,9 @@ class FanSplitter {
         add_shared(votes_[edge_[6 * t + q]], 1);
       });
       threads.meet();
-      for_each_left(threads, size, [&](int t) { make_fans(FanMember::of(t, choice_[t])); });
+      for_each_left(threads, size, [&](int t) { link(FanMember::of(t, choice_[t])); });
+      threads.meet();
+      for_each_left(threads, size, [&](int t) { make_fan(FanMember::of(t, choice_[t])); });
       threads.meet();
       for_each_left(threads, size, [&](int t) {
         if (claimed_[t] == 0) return;
@@ -165,47 +169,59 @@ class FanSplitter {
     threads.meet();
   }
 
-  /// Where all around the edge have voted for it, and this is the first of them. Of more than a fan takes, one fan is
-  /// made, and the others are left.
-  PLIANT_HOST_DEVICE void make_fans(FanMember own) const {
-    int const edge = edge_[6 * own.element() + own.edge()], all = members_left(edge);
-    if (votes_[edge] != all) return;
-    constexpr int most = 16;
-    FanMember around[most];  // by their elements
-    int count = 0;
-    for (int bits = first_[edge]; bits != none;) {
-      FanMember const m{static_cast<std::uint16_t>(bits)};
-      bits = next_[6 * m.element() + m.edge()];
-      if (taken_[m.element()] != 0) continue;
-      if (m.element() < own.element()) return;
-      int at = count < most ? count++ : most;
-      for (; at > 0 && around[at - 1].bits > m.bits; --at)
-        if (at < most) around[at] = around[at - 1];
-      if (at < most) around[at] = m;
-    }
-    unsigned left = (1u << count) - 1;
-    auto const find = [&](int which, int node) {
-      int j = 0;
-      while (j < count && !(left >> j & 1 && corner(around[j], which) == node)) ++j;
-      return j;
-    };
-    while (left != 0) {
-      int begin = count;  // the first that follows no other, or else the first
-      for (int j = count - 1; j >= 0; --j)
-        if (left >> j & 1 && find(3, corner(around[j], 2)) == count) begin = j;
-      for (int j = 0; begin == count; ++j)
-        if (left >> j & 1) begin = j;
-      FanMember fan[most_fan_elements];
-      int size = 0, home = most_elements;
-      for (int j = begin; j < count && size < most_fan_elements;
-           j = find(2, corner(around[j], 3))) {
-        fan[size++] = around[j];
-        left &= ~(1u << j);
-        if (around[j].element() < home) home = around[j].element();
+  /// Whether all around an edge have voted for it.
+  PLIANT_HOST_DEVICE bool is_agreed(FanMember m) const {
+    int const edge = edge_[6 * m.element() + m.edge()];
+    return votes_[edge] == members_left(edge);
+  }
+
+  /// Finds the members before and behind one around such an edge; of several the first.
+  PLIANT_HOST_DEVICE void link(FanMember own) const {
+    int before = none, after = none;
+    if (is_agreed(own)) {
+      int const begin = corner(own, 2), end = corner(own, 3);
+      for (int bits = first_[edge_[6 * own.element() + own.edge()]]; bits != none;) {
+        FanMember const m{static_cast<std::uint16_t>(bits)};
+        bits = next_[6 * m.element() + m.edge()];
+        if (taken_[m.element()] != 0) continue;
+        if (corner(m, 3) == begin && m.bits < before) before = m.bits;
+        if (corner(m, 2) == end && m.bits < after) after = m.bits;
       }
-      for (int k = 0; k < size; ++k) keep(fan[k], home, k, size);
-      if (all > most_fan_elements) break;
     }
+    before_[own.element()] = static_cast<std::uint16_t>(before);
+    after_[own.element()] = static_cast<std::uint16_t>(after);
+  }
+  /// The member behind one, which it is before; or none.
+  PLIANT_HOST_DEVICE int behind(FanMember m) const {
+    int const next = after_[m.element()];
+    return next != none && before_[next >> 3] == m.bits ? next : none;
+  }
+  /// Whether a fan begins with a member: the first of a row, or the one of a closed one that comes first in the patch.
+  PLIANT_HOST_DEVICE bool begins(FanMember own) const {
+    int const last = before_[own.element()];
+    if (last == none || after_[last >> 3] != own.bits) return true;
+    int next = behind(own);
+    while (next != none && next > own.bits) next = behind({static_cast<std::uint16_t>(next)});
+    return next == own.bits;
+  }
+  /// Of those that follow a member where all are linked, if a fan begins with it. Of more than a fan takes, the others are left.
+  PLIANT_HOST_DEVICE void make_fan(FanMember own) const {
+    if (!is_agreed(own) || !begins(own)) return;
+    int size = 0, home = most_elements;
+    auto const for_each_member = [&](auto const& f) {
+      int k = 0;
+      for (int next = own.bits; next != none && k < most_fan_elements; ++k) {
+        FanMember const m{static_cast<std::uint16_t>(next)};
+        f(m, k);
+        next = behind(m);
+        if (next == own.bits) next = none;
+      }
+    };
+    for_each_member([&](FanMember m, int) {
+      ++size;
+      if (m.element() < home) home = m.element();
+    });
+    for_each_member([&](FanMember m, int k) { keep(m, home, k, size); });
   }
 
   PLIANT_HOST_DEVICE void keep(FanMember m, int home, int k, int size) const {
@@ -259,6 +275,7 @@ class FanSplitter {
   int* totals_;
   int* places_;                  // (sizes, runs): of fans
   std::uint16_t *edge_, *next_;  // (elements, 6): where in the table; the next in the edge's list
+  std::uint16_t *before_, *after_;  // (elements): members around the chosen edge; or none
   std::uint8_t *choice_, *taken_,
       *claimed_;  // (elements): a fan has it since an earlier round, or this one
 };

@@ -21,7 +21,8 @@ template <int Nodes>
 class PatchPlanner {
  public:
   static constexpr int nodes = Nodes;
-  using Unit = PatchRow<Nodes>;  // of a plan
+  static constexpr int block_threads = 512;  // of a block on a GPU
+  using Unit = PatchRow<Nodes>;              // of a plan
   /// Where the units of a patch begin, of which the first element is given.
   PLIANT_HOST_DEVICE static std::ptrdiff_t first_unit(Index /* patch */, Index first_element,
                                                       PatchCounts const&) {
@@ -85,7 +86,7 @@ class PatchPlanner {
   Index* nodes_;          // (nodes)
   int begin_;             // of what the following two work in, one after the other
   PatchNumbering<Nodes> numbering_;
-  SlotPlanner slots_;
+  SlotPlanner<block_threads> slots_;
   PatchCounts counts_;
 };
 

@@ -14,12 +14,11 @@
 // Patches are planned where they are used: a block plans one, in its shared memory.
 namespace pliant::detail {
 
-inline constexpr int plan_threads = 512;
-
-/// A block's threads as planners see them.
+/// The threads of a block, as a planner sees them.
+template <class Planner>
 struct BlockThreads {
   __device__ int first() const { return static_cast<int>(threadIdx.x); }
-  __device__ static constexpr int stride() { return plan_threads; }
+  __device__ static constexpr int stride() { return Planner::block_threads; }
   __device__ void meet() const { __syncthreads(); }
   __device__ bool any(bool value) const { return __syncthreads_or(value) != 0; }
 };
@@ -28,7 +27,7 @@ struct BlockThreads {
 template <class Planner>
 int plan_bytes(int patch_size) {
   PlanMemory memory;
-  Planner const planner(memory, plan_threads, patch_size, 0);
+  Planner const planner(memory, Planner::block_threads, patch_size, 0);
   return memory.most();
 }
 
@@ -76,13 +75,14 @@ __device__ void plan_patch(PatchInput const& input, Index patch, PlanView<Planne
   extern __shared__ __align__(16) char planner_memory[];
   Index const first = input.first[patch];
   PlanMemory memory(planner_memory);
-  Planner planner(memory, plan_threads, input.patch_size,
+  BlockThreads<Planner> const threads;
+  Planner planner(memory, threads.stride(), input.patch_size,
                   static_cast<int>(input.first[patch + 1] - first));
-  auto const counts = planner.count(
-      BlockThreads{}, input.connectivity + std::int64_t{first} * input.width, input.width);
+  auto const counts =
+      planner.count(threads, input.connectivity + std::int64_t{first} * input.width, input.width);
   if (threadIdx.x == 0) to.set_counts(patch, counts, most);
   if (!holds(to.capacity, counts)) return;
-  planner.plan(BlockThreads{}, to.capacity, to.units_of(patch), to.nodes_of(patch),
+  planner.plan(threads, to.capacity, to.units_of(patch), to.nodes_of(patch),
                to.diagonals_of(patch));
 }
 
@@ -91,7 +91,7 @@ template <class Planner>
 __device__ void take_patch(PlanView<Planner> const& from, Index before, PlanView<Planner> const& to,
                            Index patch, PatchCounts* most) {
   PatchCounts const counts = from.counts[before];
-  BlockThreads const threads;
+  BlockThreads<Planner> const threads;
   Planner::take(threads, counts, static_cast<int>(to.first[patch + 1] - to.first[patch]),
                 from.capacity, from.units_of(before), to.capacity, to.units_of(patch));
   share_out(threads, to.capacity.nodes, [&](int n) {
@@ -106,7 +106,7 @@ __device__ void take_patch(PlanView<Planner> const& from, Index before, PlanView
 /// Plans patches, or takes them from a plan of no larger capacity. known: (patches), the patch there; −1: none; null: all of
 /// them are planned.
 template <class Planner>
-__global__ void __launch_bounds__(plan_threads)
+__global__ void __launch_bounds__(Planner::block_threads)
     plan_patches_anew(PatchInput input, Index const* known, PlanView<Planner> from,
                       PlanView<Planner> to, PatchCounts* most) {
   auto const patch = static_cast<Index>(blockIdx.x);
@@ -118,7 +118,7 @@ __global__ void __launch_bounds__(plan_threads)
 
 /// Takes patches from a plan of theirs that had room for some of them, and plans the others.
 template <class Planner>
-__global__ void __launch_bounds__(plan_threads)
+__global__ void __launch_bounds__(Planner::block_threads)
     plan_patches_left(PatchInput input, PlanView<Planner> from, PlanView<Planner> to,
                       PatchCounts* most) {
   auto const patch = static_cast<Index>(blockIdx.x);
@@ -159,7 +159,7 @@ PatchPlan<Planner> room_for_plan(B const& backend, PatchCuts const& cuts,
 
 template <class Planner>
 LaunchShape plan_shape(PatchCuts const& cuts) {
-  return {cuts.count(), plan_threads, plan_bytes<Planner>(cuts.size())};
+  return {cuts.count(), Planner::block_threads, plan_bytes<Planner>(cuts.size())};
 }
 
 /// Patches that are being planned.

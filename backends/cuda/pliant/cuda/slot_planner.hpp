@@ -23,11 +23,13 @@ struct PatchCounts {
 /// Gives slots to the visits of a patch: each time that a thread has something for a node is a visit, and gets a slot
 /// of its own. A patch's nodes are sorted by valence (the number of their slots), largest first, so that the k-th
 /// slots of all nodes that have one lie side by side: node r's are diagonals[0] + r, diagonals[1] + r, ... (jagged
-/// diagonals), which neighbouring threads read from neighbouring addresses without loading indices.
+/// diagonals), which neighbouring threads read from neighbouring addresses without loading indices. The visits of a
+/// batch choose together; threads of a block share it out.
+template <int Batch>
 class SlotPlanner {
  public:
-  static constexpr int lanes = 32;   // of a warp; also the banks of shared memory
-  static constexpr int batch = 512;  // visits that choose together
+  static constexpr int lanes = 32;  // of a warp; also the banks of shared memory
+  static constexpr int batch = Batch;
   static constexpr std::uint16_t none = 0xffff;
 
   /// Of at most `units` threads' worth of work with `width` visits each, to at most `nodes` nodes.
