@@ -14,7 +14,7 @@ void demand(bool holds, char const* what, T value, char const* must) {
 template <class T>
 void demand_lame(char const* law, T lambda, T mu) {
   if (!(mu > 0)) throw Error(law, "'s mu is ", mu, "; it must be positive (in Pa)");
-  if (!(3 * lambda + 2 * mu > 0))
+  if (!(lambda > -2 * mu / 3))
     throw Error(law, "'s lambda is ", lambda, "; it must be above -2/3 mu, here ", -2 * mu / 3,
                 " (in Pa)");
 }

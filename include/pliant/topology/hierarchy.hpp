@@ -10,6 +10,7 @@
 #include <pliant/config.hpp>
 #include <pliant/error.hpp>
 #include <pliant/math/each_once.hpp>
+#include <pliant/math/uncontracted.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/cell_tree.hpp>
 #include <pliant/topology/check_convex.hpp>
@@ -25,11 +26,10 @@
 
 namespace pliant {
 
-/// The refinement tree of a mesh, plane or solid, of elements of degree one or two, as RefinementPattern divides
-/// their cells, into smaller ones or between their corners. Levels differ by one at most across edges and sides; nodes that hang there are slaves of the
-/// coarser element's, so that fields are continuous. Refinement appends cells and nodes; coarsening takes
-/// away what nothing uses any more, and what stays keeps its order: nodes and cells of the initial mesh keep
-/// their numbers for good.
+/// The refinement tree of a mesh, plane or solid, of elements of degree one or two, as RefinementPattern divides their cells, into
+/// smaller ones or between their corners. Levels differ by one at most across edges and sides; nodes that hang there are slaves
+/// of the coarser element's, so that fields are continuous. Refinement appends cells and nodes; coarsening takes away what
+/// nothing uses any more, and what stays keeps its order: nodes and cells of the initial mesh keep their numbers for good.
 ///
 ///       2            3------+------2
 ///      /2\           |  3   |  2   |
@@ -279,14 +279,14 @@ class Hierarchy {
                                       node.place);
   }
   Point<Dim> mean_of(detail::ShapeWeights const& parents) const {
+    using S = Uncontracted;  // as devices do: see FillNewNodes
     // Equal weights as a sum and a division: the mean does not depend on how the sum is rounded.
     Point<Dim> sum{};
-    double const first = parents[0].second;
-    bool const equal =
-        std::ranges::all_of(parents, [&](auto const& parent) { return parent.second == first; });
+    auto const as_first = [&](auto const& parent) { return parent.second == parents[0].second; };
+    bool const equal = std::ranges::all_of(parents, as_first);
     for (auto const& [parent, weight] : parents)
       for (std::size_t d = 0; d < Dim; ++d)
-        sum[d] += (equal ? 1.0 : weight) * points_[at(parent)][d];
+        sum[d] = (S(sum[d]) + S(equal ? 1.0 : weight) * S(points_[at(parent)][d])).value;
     if (equal)
       for (double& x : sum) x /= static_cast<double>(parents.size());
     return sum;
