@@ -27,7 +27,7 @@ Eigen::MatrixXd positive_part(Eigen::MatrixXd a) {
 }
 
 TEST_CASE("the positive part of a matrix has its positive eigenvalues alone", "[solver]") {
-  for (unsigned seed : {1, 2, 3}) {
+  for (unsigned seed : {1u, 2u, 3u}) {
     Eigen::MatrixXd const a = random_symmetric(9, seed);
     REQUIRE(least_eigenvalue(a) < -0.5);
     Eigen::MatrixXd const part = positive_part(a);

@@ -100,8 +100,9 @@ void check_refinements(B const& backend, Index cells, bool on_host) {
   Seen seen;
   for (int round = 0; round < 6; ++round) {
     check_change(body, seen, [&] { refine(body, {two_bodies::some(body, 60, random)}, 3); });
-    check_change(body, seen,
-                 [&] { coarsen(body, {two_bodies::some(body, 1 + round % 2, random)}); });
+    check_change(body, seen, [&] {
+      coarsen(body, {two_bodies::some(body, static_cast<std::size_t>(1 + round % 2), random)});
+    });
   }
   CHECK(two_bodies::is_on_backend(body) != on_host);
   CHECK(seen.changes >= 9);

@@ -417,7 +417,7 @@ TEST_CASE("what a rule refines is not merged by another", "[topology]") {
     auto const count = body.mesh().template elements<Tet4>().size();
     Adaptation adapt{when<F>(StrainNorm{}).above(0.02).refine({.max_level = 2}),
                      when<F>(StrainNorm{}).above(0.01).coarsen()};
-    for (std::size_t const more : {8, 64}) {
+    for (std::size_t const more : {std::size_t{8}, std::size_t{64}}) {
       auto u = body.mesh().nodes;
       for (auto& x : u) x = {0.05 * x[0], 0, 0};
       body.set_displacements(u);

@@ -188,8 +188,8 @@ struct Cantilever {
     return [](auto const& mesh) { return body_loads(mesh, Point<2>{0, -1e4}); };
   }
   template <Element E>
-  static Mesh<E> mesh(E, int n, double power) {
-    auto mesh = graded<E>({n, n / 4}, towards_start(power), towards_ends(power));
+  static Mesh<E> mesh(E, int n, double exponent) {
+    auto mesh = graded<E>({n, n / 4}, towards_start(exponent), towards_ends(exponent));
     for (auto& p : mesh.nodes) p[1] = 0.1 * p[1] - 0.05;
     return mesh;
   }
@@ -219,8 +219,8 @@ struct Membrane {
     };
   }
   template <Element E>
-  static Mesh<E> mesh(E, int n, double power) {
-    auto mesh = graded<E>({n, n}, towards_ends(power), towards_ends(power));
+  static Mesh<E> mesh(E, int n, double exponent) {
+    auto mesh = graded<E>({n, n}, towards_ends(exponent), towards_ends(exponent));
     for (auto& p : mesh.nodes) p = {48 * p[0], 44 * (p[0] + p[1]) - 28 * p[0] * p[1]};
     return mesh;
   }
@@ -265,8 +265,8 @@ struct Slab {
     };
   }
   template <Element E>
-  static Mesh<E> mesh(E, int n, double power) {
-    auto mesh = graded<E>({n, n, 1}, towards_ends(power), towards_ends(power), evenly);
+  static Mesh<E> mesh(E, int n, double exponent) {
+    auto mesh = graded<E>({n, n, 1}, towards_ends(exponent), towards_ends(exponent), evenly);
     for (auto& p : mesh.nodes) p = {48 * p[0], 44 * (p[0] + p[1]) - 28 * p[0] * p[1], p[2]};
     return mesh;
   }

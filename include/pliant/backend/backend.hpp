@@ -202,7 +202,7 @@ namespace detail {
 
 /// How many bits a backend's sort looks at where keys are below `count`.
 constexpr int key_bits(Index count) {
-  return std::bit_width(static_cast<unsigned>(std::max<Index>(count - 1, 1)));
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(std::max<Index>(count - 1, 1))));
 }
 
 }  // namespace detail
