@@ -29,7 +29,7 @@ inline constexpr int most_fan_visits = most_fan_elements + 3;
 class FanPlanner {
  public:
   static constexpr int nodes = 4;
-  /// Of a block on a GPU. As many as patches have elements: one takes an element, and not two.
+  /// Of a block on a GPU: as many as most patches have elements, so that none takes two.
   static constexpr int block_threads = 768;
   using Unit = FanVisit;  // of a plan
   /// Where the units of a patch begin, of which the first element is given.
