@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <pliant/backend/atomic.hpp>
 #include <pliant/constraint/condition.hpp>
@@ -60,10 +62,22 @@ struct SidesView {
 struct DirectionsOf {
   std::array<DirectionMask, most_conditions> of_condition{};
 
-  [[nodiscard]] PLIANT_HOST_DEVICE bool holds(ConditionBits bits, DirectionMask direction) const {
+  /// Whether one of these conditions holds in all of some directions.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool hold(ConditionBits bits, DirectionMask directions) const {
     for (std::size_t c = 0; bits != 0 && c < most_conditions; ++c, bits >>= 1)
-      if ((bits & 1) != 0 && (of_condition[c] & direction) != 0) return true;
+      if ((bits & 1) != 0 && (of_condition[c] & directions) == directions) return true;
     return false;
+  }
+  /// Which directions loops may hold one after the other so that nothing is missing, no more than `dim`: what conditions hold
+  /// at once, or each by itself.
+  [[nodiscard]] std::vector<DirectionMask> in_turn(int dim) const {
+    std::vector<DirectionMask> masks;
+    for (auto const mask : of_condition)
+      if (mask != 0 && std::ranges::find(masks, mask) == masks.end()) masks.push_back(mask);
+    if (masks.size() <= static_cast<std::size_t>(dim)) return masks;
+    masks.clear();
+    for (int k = 0; k < dim; ++k) masks.push_back(static_cast<DirectionMask>(1 << k));
+    return masks;
   }
 };
 
@@ -82,24 +96,25 @@ struct InheritConditions {
     });
   }
 };
-/// Holds the corners of the parts of held sides of refined cells, in one direction: all that is written is the same.
+/// Holds the corners of the parts of held sides of refined cells in some directions, the same for all of them: then all
+/// that is written to a byte at once is the same.
 template <int Dim>
 struct HoldParts {
   SidesView<Dim> sides;
   CellSplit const* cells;
   ConditionBits const* bits;
-  DirectionsOf directions;
-  DirectionMask direction;
+  DirectionsOf conditions;
+  DirectionMask directions;
   Index const* of_node;
   DirectionMask* held;  // by row
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     sides.visit_sides(cells[r].cell, [&](Index side) {
-      if (bits[side] == differs || !directions.holds(bits[side], direction)) return;
+      if (bits[side] == differs || !conditions.hold(bits[side], directions)) return;
       for (Index k = 0; k < sides.parts; ++k)
         sides.visit_corners(sides.first_part(side) + k, [&](Index node) {
           auto& own = held[of_node[node]];
-          own = static_cast<DirectionMask>(own | direction);
+          own = static_cast<DirectionMask>(own | directions);
         });
     });
   }
@@ -109,17 +124,17 @@ template <int Dim>
 struct HoldSides {
   SidesView<Dim> sides;
   ConditionBits const* bits;
-  DirectionsOf directions;
-  DirectionMask direction;
+  DirectionsOf conditions;
+  DirectionMask directions;
   Index const* of_node;
   DirectionMask* held;  // by row
 
   PLIANT_HOST_DEVICE void operator()(Index side) const {
     if (bits[side] == 0 || sides.first_part(side) >= 0) return;
-    if (!directions.holds(bits[side], direction)) return;
+    if (!conditions.hold(bits[side], directions)) return;
     sides.visit_corners(side, [&](Index node) {
       auto& own = held[of_node[node]];
-      own = static_cast<DirectionMask>(own | direction);
+      own = static_cast<DirectionMask>(own | directions);
     });
   }
 };

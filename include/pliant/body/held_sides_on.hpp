@@ -61,6 +61,7 @@ class HeldSidesOn {
     }
     for (auto const& pressure : prescribed.pressures)
       if (!add(pressure.facets, 0)) return false;
+    in_turn_ = directions_.in_turn(Dim);
     held_ = upload(backend, held);
     named_ = upload(backend, named);
     rows_ = rows;
@@ -104,9 +105,11 @@ class HeldSidesOn {
     rows_ = rows;
     detail::SidesView<Dim> const sides{tree.view()};
     auto const hold = [&](std::size_t k) {
+      bool const is_there = k < in_turn_.size();
       return detail::LoopStep{
-          refined.leaves, detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
-                                                 direction(static_cast<int>(k)), of_node, held}};
+          is_there ? refined.leaves : 0,
+          detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
+                                 is_there ? in_turn_[k] : DirectionMask{0}, of_node, held}};
     };
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       detail::in_turn(
@@ -146,10 +149,10 @@ class HeldSidesOn {
   void hold(B const& backend, TreeOn<B> const& tree, Index const* of_node, Index rows,
             DirectionMask* held) const {
     detail::copy_values<B, DirectionMask>(backend, held_.data(), held, at(rows));
-    for (int k = 0; k < Dim; ++k)
+    for (auto const directions : in_turn_)
       backend.for_each(count_,
                        detail::HoldSides<Dim>{
-                           {tree.view()}, bits_.data(), directions_, direction(k), of_node, held});
+                           {tree.view()}, bits_.data(), directions_, directions, of_node, held});
   }
 
   /// The rows of the nodes at the facets of a set.
@@ -190,7 +193,6 @@ class HeldSidesOn {
     return detail::extended(backend, list, at(download<Index>(count)[0]));
   }
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  static DirectionMask direction(int k) { return static_cast<DirectionMask>(1 << k); }
   static Index count_in(TreeSizes const& sizes) { return Dim == 2 ? sizes.edges : sizes.sides; }
   template <class Nodes>
   static std::vector<Index> sorted(Nodes const& nodes) {
@@ -201,6 +203,7 @@ class HeldSidesOn {
   }
 
   detail::DirectionsOf directions_;
+  std::vector<DirectionMask> in_turn_;  // see DirectionsOf
   Array<detail::ConditionBits> bits_;   // by side
   Array<detail::ConditionBits> moved_;  // before a coarsening
   Array<DirectionMask> held_;           // by row: by conditions on nodes
