@@ -43,7 +43,7 @@ void check_changes(TreeBeside<B>& on, Hierarchy<Dim>& host, int rounds) {
     if (round < 2 || random.below(2) == 0)
       refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random));
     else
-      merged += coarsen_both(on, host, some_families(host, 2, random), random);
+      merged += coarsen_both(on, host, some_families(host, 2, random), random).merged;
     for (Index const c : host.leaves()) deepest = std::max(deepest, host.cell(c).level);
     auto const next = random.below(5);
     if (next == 0 && round > 2) {
@@ -65,7 +65,7 @@ void check_changes(TreeBeside<B>& on, Hierarchy<Dim>& host, int rounds) {
 template <class B, int Dim>
 void merge_all(TreeBeside<B>& on, Hierarchy<Dim>& host) {
   Random random(6);
-  while (coarsen_both(on, host, host.leaves(), random) > 0) {
+  while (coarsen_both(on, host, host.leaves(), random).merged > 0) {
   }
 }
 
@@ -105,6 +105,45 @@ TEST_CASE("trees of quadratic elements are coarsened in a backend's memory", "[t
     check_changes_of(backend, mesh::raised<Quad9>(regular_mesh<Quad4>(4)), 20);
     check_changes_of(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(2)), 14);
     check_changes_of(backend, mesh::raised<Hex27>(regular_mesh<Hex8>(3)), 14);
+  });
+}
+
+/// Finds the nodes that hang by what hung before a refinement or coarsening, several in turn, and some of them nowhere.
+template <class B, class M>
+void check_hanging_nodes(B const& backend, M const& mesh, int rounds) {
+  Hierarchy<M::dim> host(mesh);
+  TreeBeside<B> on(backend, host);
+  HangingNodesOn<M::dim, B> hanging(backend);
+  Random random(7);
+  auto const first = host.leaf_count();
+  std::size_t most = 0;
+  auto const check = [&](auto const& done) {
+    check_hanging(backend, host, [&](Index const* row_of_node) {
+      return hanging.rows_after(on.tree, done, row_of_node);
+    });
+    most = std::max(most, host.slaves().size());
+  };
+  for (int round = 0; round < rounds; ++round) {
+    if (round < 2 || random.below(3) == 0)
+      check(refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random)));
+    else
+      check(coarsen_both(on, host, some_families(host, 2, random), random));
+    on.tree.keep();
+  }
+  CHECK(most > 3);
+  while (host.leaf_count() > first)
+    check(coarsen_both(on, host, host.leaves(), random));
+  CHECK(host.slaves().empty());
+}
+
+TEST_CASE("nodes that hang after a coarsening are found where leaves came", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_hanging_nodes(backend, regular_mesh<Tri3>(6), 16);
+    check_hanging_nodes(backend, regular_mesh<Quad4>(6), 16);
+    check_hanging_nodes(backend, regular_mesh<Tet4>(3), 12);
+    check_hanging_nodes(backend, regular_mesh<Hex8>(4), 12);
+    check_hanging_nodes(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(2)), 10);
+    check_hanging_nodes(backend, mesh::raised<Hex27>(regular_mesh<Hex8>(3)), 10);
   });
 }
 
@@ -230,7 +269,7 @@ TEST_CASE("a coarsening far from other refined cells is taken back there too", "
     Index const child = host.cell(far).first_child;
     std::vector<Index> family(8);
     std::iota(family.begin(), family.end(), child);
-    CHECK(coarsen_both(on, host, family, random) == 1);
+    CHECK(coarsen_both(on, host, family, random).merged == 1);
     CHECK(host.cell(0).first_child == child);
     on.tree.take_back();
     check_same(on.tree, before);

@@ -1,44 +1,11 @@
 #pragma once
 
-#include <numeric>
-
-#include <pliant/topology/hanging_nodes_on.hpp>
-
 #include "support/formulations.hpp"
 #include "support/meshes.hpp"
 #include "topology/trees_on.hpp"
 
 // Trees in a backend's memory are refined as on the host.
 namespace pliant::test::tree_on_suite {
-
-/// The same hanging nodes with the same masters and weights; nodes have rows of their own numbers, backwards. find(row_of_node):
-/// the rows that are compared.
-template <class B, int Dim, class Find>
-void check_hanging(B const& backend, Hierarchy<Dim> const& host, Find const& find) {
-  std::vector<Index> backwards(host.points().size());
-  std::iota(backwards.rbegin(), backwards.rend(), Index{0});
-  auto const row_of_node = upload(backend, backwards);
-  RowsOn<B> const rows = find(row_of_node.data());
-  auto const node = download<Index>(rows.node), first = download<Index>(rows.first),
-             other = download<Index>(rows.other);
-  auto const weight = download<double>(rows.weight);
-  auto const wanted = host.slaves();
-  REQUIRE(rows.count == static_cast<Index>(wanted.size()));
-  int wrong = 0;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    auto const& slave = wanted[k];
-    auto const from = static_cast<std::size_t>(first[k]),
-               to = static_cast<std::size_t>(first[k + 1]);
-    REQUIRE(to - from == slave.masters.size());
-    wrong += node[k] != backwards[static_cast<std::size_t>(slave.node)];
-    for (std::size_t m = 0; m < slave.masters.size(); ++m) {
-      auto const& master = slave.masters[m];
-      wrong += other[from + m] != backwards[static_cast<std::size_t>(master.first)];
-      wrong += weight[from + m] != master.second;
-    }
-  }
-  CHECK(wrong == 0);
-}
 
 /// Refines leaves at random, several times, here and on the host.
 template <class B, class M>

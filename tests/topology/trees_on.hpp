@@ -1,5 +1,8 @@
 #pragma once
 
+#include <numeric>
+
+#include <pliant/topology/hanging_nodes_on.hpp>
 #include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/tree_on.hpp>
 
@@ -47,6 +50,35 @@ void check_same(TreeOn<B>& tree, Hierarchy<Dim> const& host) {
   CHECK(tree.leaves() == static_cast<Index>(host.leaf_count()));
 }
 
+/// The same hanging nodes with the same masters and weights; nodes have rows of their own numbers, backwards. find(row_of_node):
+/// the rows that are compared.
+template <class B, int Dim, class Find>
+void check_hanging(B const& backend, Hierarchy<Dim> const& host, Find const& find) {
+  std::vector<Index> backwards(host.points().size());
+  std::iota(backwards.rbegin(), backwards.rend(), Index{0});
+  auto const row_of_node = upload(backend, backwards);
+  RowsOn<B> const rows = find(row_of_node.data());
+  auto const node = download<Index>(rows.node), first = download<Index>(rows.first),
+             other = download<Index>(rows.other);
+  auto const weight = download<double>(rows.weight);
+  auto const wanted = host.slaves();
+  REQUIRE(rows.count == static_cast<Index>(wanted.size()));
+  int wrong = 0;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    auto const& slave = wanted[k];
+    auto const from = static_cast<std::size_t>(first[k]),
+               to = static_cast<std::size_t>(first[k + 1]);
+    REQUIRE(to - from == slave.masters.size());
+    wrong += node[k] != backwards[static_cast<std::size_t>(slave.node)];
+    for (std::size_t m = 0; m < slave.masters.size(); ++m) {
+      auto const& master = slave.masters[m];
+      wrong += other[from + m] != backwards[static_cast<std::size_t>(master.first)];
+      wrong += weight[from + m] != master.second;
+    }
+  }
+  CHECK(wrong == 0);
+}
+
 template <class V>
 std::vector<Index> numbers_of(std::vector<V> const& list, Index V::*number) {
   std::vector<Index> numbers;
@@ -61,10 +93,10 @@ std::vector<Index> some_leaves(Hierarchy<Dim> const& tree, std::size_t one_in, R
   return leaves;
 }
 
-/// Merges families of marked leaves here and on the host; returns how many.
+/// Merges families of marked leaves here and on the host.
 template <class B, int Dim>
-Index coarsen_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked,
-                   Random& random) {
+Coarsened coarsen_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked,
+                       Random& random) {
   auto const parents = host.families(marked);
   auto const before = on.tree.sizes(), initial = on.tree.initial();
   auto more = marked;  // some of them again, and cells that are no leaves
@@ -79,7 +111,7 @@ Index coarsen_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> c
   CHECK(done.before.cells == before.cells);
   CHECK(listed(std::vector{done.now}) == listed(std::vector{on.tree.sizes()}));
   check_same(on.tree, host);
-  if (parents.empty()) return 0;
+  if (parents.empty()) return done;
   CHECK(on.taken(done.parents, done.merged) == parents);
   auto const behind = [](std::vector<Index> const& all, Index first) {
     return std::vector(all.begin() + first, all.end());
@@ -88,10 +120,10 @@ Index coarsen_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> c
         behind(wanted.renumbered.nodes, initial.nodes));
   CHECK(on.taken(done.cells, before.cells - initial.cells) ==
         behind(wanted.renumbered.cells, initial.cells));
-  return done.merged;
+  return done;
 }
 template <class B, int Dim>
-void refine_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked) {
+auto refine_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> const& marked) {
   auto const done = on.refine(marked);
   auto const wanted = host.refine(marked);
   REQUIRE(done.leaves == static_cast<Index>(wanted.parents.size()));
@@ -100,6 +132,7 @@ void refine_both(TreeBeside<B>& on, Hierarchy<Dim>& host, std::vector<Index> con
   for (auto const& node : wanted.new_nodes) nodes.push_back(node.node);
   CHECK(numbers_of(on.taken(done.nodes, done.new_nodes), &PlacedNode::node) == nodes);
   check_same(on.tree, host);
+  return done;
 }
 
 }  // namespace pliant::test

@@ -101,8 +101,8 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout =
-        new_layout(copies, [&] { return on_->hanging.rows(on_->tree, on_->rows.of_node()); });
+    auto layout = new_layout(
+        copies, [&] { return on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()); });
     on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, layout.held.data());
     MergedElements<E> const families{on_->order.merged_families(), on_->order.merged_count(),
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),

@@ -4,8 +4,10 @@
 
 #include <pliant/backend/atomic.hpp>
 #include <pliant/config.hpp>
+#include <pliant/topology/compaction_view.hpp>
 #include <pliant/topology/division_view.hpp>
 #include <pliant/topology/hanging_passes.hpp>
+#include <pliant/topology/tree_passes.hpp>
 
 // Passes that list the edges and sides of a tree on which nodes hang, for loops of a backend.
 namespace pliant::detail {
@@ -64,6 +66,50 @@ struct ListNewlyHungSides {
     Index const side =
         is_hung.view.tree.cells[static_cast<std::size_t>(cells[k / each].cell)].sides[s];
     if (is_hung(side)) list[atomic_add(*count, 1)] = side;
+  }
+};
+
+/// Of edges or sides that were listed before a coarsening, lists those on which nodes hang still, by their new numbers.
+template <class IsHung>
+struct ListStaying {
+  IsHung is_hung;
+  Index const* known;
+  NewNumbers numbers;
+  ListOnce list;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (Index const now = numbers(known[k]); now >= 0 && is_hung(now)) list(now);
+  }
+};
+/// Lists the edges of cells that are leaves again, where nodes hang on them.
+template <int Dim>
+struct ListHungEdgesOfMerged {
+  static constexpr Index each = RefinementPattern::most_edges;
+  IsHungOnEdge<Dim> is_hung;
+  Index const* parents;  // by their old numbers
+  NewNumbers numbers;    // of cells
+  ListOnce list;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell =
+        is_hung.view.tree.cells[static_cast<std::size_t>(numbers(parents[k / each]))];
+    if (k % each >= cell.pattern().edges) return;
+    Index const edge = cell.edges[static_cast<std::size_t>(k % each)];
+    if (is_hung(edge)) list(edge);
+  }
+};
+/// The same of their sides.
+template <int Dim>
+struct ListHungSidesOfMerged {
+  static constexpr Index each = RefinementPattern::most_sides;
+  IsHungOnSide<Dim> is_hung;
+  Index const* parents;
+  NewNumbers numbers;
+  ListOnce list;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    auto const& cell =
+        is_hung.view.tree.cells[static_cast<std::size_t>(numbers(parents[k / each]))];
+    if (k % each >= cell.pattern().sides) return;
+    Index const side = cell.sides[static_cast<std::size_t>(k % each)];
+    if (is_hung(side)) list(side);
   }
 };
 

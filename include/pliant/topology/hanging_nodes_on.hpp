@@ -12,6 +12,7 @@
 #include <pliant/error.hpp>
 #include <pliant/topology/hanging_lists.hpp>
 #include <pliant/topology/hanging_passes.hpp>
+#include <pliant/topology/stamps.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
@@ -40,6 +41,15 @@ class HangingNodesOn {
                        Index const* row_of_node) {
     if (knows_all_)
       find_after(tree, refined);
+    else
+      find_all(tree);
+    return rows_found(tree, row_of_node);
+  }
+  /// The same after a coarsening of the tree.
+  RowsOn<B> rows_after(TreeOn<B> const& tree, Coarsened const& coarsened,
+                       Index const* row_of_node) {
+    if (knows_all_)
+      find_after(tree, coarsened);
     else
       find_all(tree);
     return rows_found(tree, row_of_node);
@@ -83,6 +93,40 @@ class HangingNodesOn {
             ListStillHung<IsHungOnSide<Dim>>{{view}, sides_before_.data(), sides_.data(), sides}},
         LoopStep{new_edges, NewEdges{{view}, refined.cells, refined.parts, edges_.data(), edges}},
         LoopStep{new_sides, NewSides{{view}, refined.cells, refined.parts, sides_.data(), sides}});
+    count_found();
+  }
+  /// Only leaves that were made of families come to have finer neighbours: what else hangs did so before.
+  void find_after(TreeOn<B> const& tree, Coarsened const& coarsened) {
+    if (coarsened.merged == 0) return;
+    using detail::LoopStep, detail::IsHungOnEdge, detail::IsHungOnSide, detail::ListStaying,
+        detail::NewNumbers;
+    using EdgesOfMerged = detail::ListHungEdgesOfMerged<Dim>;
+    using SidesOfMerged = detail::ListHungSidesOfMerged<Dim>;
+    detail::HangingView<Dim> const view{tree.view()};
+    auto const& initial = coarsened.initial;
+    NewNumbers const cells{initial.cells, coarsened.cells};
+    std::swap(edges_, edges_before_);
+    std::swap(sides_, sides_before_);
+    Index const of_edges = EdgesOfMerged::each * coarsened.merged,
+                of_sides = sides_have_nodes_ ? SidesOfMerged::each * coarsened.merged : 0;
+    need(edges_, edge_count_ + of_edges);
+    need(sides_, side_count_ + of_sides);
+    counters_ = zeros<Index>(backend_, 2);
+    edge_stamps_.begin(backend_, at(coarsened.now.edges));
+    side_stamps_.begin(backend_, sides_have_nodes_ ? at(coarsened.now.sides) : 0);
+    detail::ListOnce const edges{edge_stamps_.data(), edge_stamps_.now(), edges_.data(),
+                                 counters_.data()},
+        sides{side_stamps_.data(), side_stamps_.now(), sides_.data(), counters_.data() + 1};
+    detail::in_turn(
+        backend_,
+        LoopStep{edge_count_,
+                 ListStaying<IsHungOnEdge<Dim>>{
+                     {view}, edges_before_.data(), {initial.edges, coarsened.edges}, edges}},
+        LoopStep{side_count_,
+                 ListStaying<IsHungOnSide<Dim>>{
+                     {view}, sides_before_.data(), {initial.sides, coarsened.sides}, sides}},
+        LoopStep{of_edges, EdgesOfMerged{{view}, coarsened.parents, cells, edges}},
+        LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}});
     count_found();
   }
   void count_found() {
@@ -155,6 +199,7 @@ class HangingNodesOn {
   Array<Index> edges_, sides_;  // on which nodes hang, in no order
   Index edge_count_ = 0, side_count_ = 0;
   Array<Index> edges_before_, sides_before_;
+  detail::Stamps<B> edge_stamps_, side_stamps_;
   Array<Index> start_, order_, counters_;
   Array<std::uint64_t> nodes_;  // slaves
   Array<detail::HangingPlace> places_;
