@@ -50,10 +50,12 @@ struct FindLeaves {
   std::uint32_t* words;
   PLIANT_HOST_DEVICE void operator()(Index w) const {
     constexpr Index per_word = ElementNumbersView::per_word;
-    Index const first = w * per_word, count = cells - first < per_word ? cells - first : per_word;
+    Index const first = w * per_word, count = cells - first;
     std::uint32_t bits = 0;
-    for (Index k = 0; k < count; ++k)
-      if (tree.is_leaf(first + k)) bits |= std::uint32_t{1} << k;
+    // So many reads in any case, none of which hangs on another: a device waits for memory once.
+    for (Index k = 0; k < per_word; ++k)
+      bits |= std::uint32_t{tree.is_leaf(first + (k < count ? k : count - 1))} << k;
+    if (count < per_word) bits &= (std::uint32_t{1} << count) - 1;
     words[w] = bits;
   }
 };

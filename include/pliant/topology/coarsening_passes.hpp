@@ -27,10 +27,12 @@ struct ListFamilies {
     list(cell.parent);
   }
 };
-/// Lists those of them of which all children are marked and can be merged, with their numbers for keys.
+/// Lists those of them of which all children are marked and can be merged, with their numbers for keys. A call for each that
+/// there may be.
 struct ListMergeable {
   TreeView tree;
   Index const* families;
+  Index const* listed;  // how many of these there are
   Index const* stamps;  // by cell
   Index now;
   Index* list;
@@ -38,6 +40,7 @@ struct ListMergeable {
   std::uint64_t* keys;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (k >= *listed) return;
     Index const c = families[k];
     auto const& cell = tree.cells[static_cast<std::size_t>(c)];
     for (Index i = 0; i < cell.divided().children; ++i)
@@ -56,7 +59,21 @@ struct IsKnowing {
     return cell.first_child >= 0 || cell.has != cell.had;
   }
 };
+/// Lists refined cells of the initial mesh that knew of none before.
+struct ListRefined {
+  TreeView tree;  // after it
+  Index initial;  // cells
+  CellSplit const* refined;
+  Index* list;
+  Index* count;
 
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    Index const c = refined[r].cell;
+    if (c >= initial) return;
+    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
+    if (cell.has == cell.had) list[atomic_add(*count, 1)] = c;
+  }
+};
 /// Marks the pages of what becomes leaves, and of their children. So many calls for each of the former.
 struct MarkMerged {
   static constexpr Index each = 1 + RefinementPattern::most_children;
@@ -142,13 +159,18 @@ struct CountUsed {
     return CompactionView::is_used(entries[static_cast<std::size_t>(first + k)]) ? 1 : 0;
   }
 };
-/// New numbers of entries from `first` on, by how many stay before each; those that go have −1.
+/// New numbers of `count` entries from `first` on, by how many stay before each; those that go have −1. A call more notes how
+/// many stay.
 struct NumberStaying {
   Index const* before;
-  Index first;
+  Index count, first;
   Index* numbers;
+  Index* staying;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    numbers[k] = before[k] < before[k + 1] ? first + before[k] : -1;
+    if (k == count)
+      *staying = before[k];
+    else
+      numbers[k] = before[k] < before[k + 1] ? first + before[k] : -1;
   }
 };
 
@@ -196,12 +218,16 @@ struct TellEdges {
         view.renumber_within(tree.edges[static_cast<std::size_t>(cell.edges[e])]);
   }
 };
+/// Lists those that know of others still.
 struct TellCells {
   CompactionView view;
   TreeView tree;
   Index const* cells;
+  Index* knowing;
+  Index* count;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     view.renumber_within(tree.cells[static_cast<std::size_t>(cells[k])]);
+    if (IsKnowing{tree}(cells[k])) knowing[atomic_add(*count, 1)] = cells[k];
   }
 };
 

@@ -47,6 +47,23 @@ struct CopyPages {
   }
 };
 
+/// Puts listed pages, or none, into a table, and those in the place of which they come into another one; of the first, so
+/// many words are copied.
+template <class V>
+struct ReplacePages {
+  CopyPages<V> copy;
+  Index places, words;
+  Page<V>**table, **before;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (i < words) copy(i);
+    if (i >= places) return;
+    auto const& own = copy.copied[i];
+    table[own.place] = own.now;
+    before[own.place] = const_cast<Page<V>*>(own.before);
+  }
+};
+
 }  // namespace detail
 
 /// A list in pages in a backend's memory, as SharedList is one on the host. Loops change entries in pages that are the
@@ -115,22 +132,32 @@ class PagedList {
   /// Makes room for so many entries more, beside those of the last page if that is shared with what was kept.
   void extend(B const& backend, std::size_t count) { change(backend, {}, count); }
   /// Puts `count` entries, which have no value, in the place of those from `first` on; those before stay. Gives the list as
-  /// it was before, for loops that are asked for until it changes again.
+  /// it was from there on, for loops that are asked for until it changes again.
   [[nodiscard]] Pages<V> replace_from(B const& backend, std::size_t first, std::size_t count) {
-    detail::grow(backend, table_before_, pages_.size());
-    detail::copy_values<B, Page<V>*>(backend, table_.data(), table_before_.data(), pages_.size());
     auto const staying = first / per_page, needed = pages_for(first + count);
     reserve(backend, needed - staying, std::max(needed, pages_.size()), pages_.size() - staying);
+    detail::grow(backend, table_before_, table_.size());
     std::vector<Page<V>*> const left(pages_.begin() + static_cast<std::ptrdiff_t>(staying),
                                      pages_.end());
     pages_.resize(staying);
     take_pages(needed);
+    copied_.clear();
+    for (std::size_t p = staying; p < std::max(needed, staying + left.size()); ++p)
+      copied_.push_back({static_cast<Index>(p),
+                         p - staying < left.size() ? left[p - staying] : nullptr,
+                         p < needed ? pages_[p] : nullptr});
     for (std::size_t k = 0; k < left.size(); ++k) leave(staying + k, left[k]);
     size_ = first + count;
-    put_in_table(backend, staying);
+    if (copied_.empty()) return {table_before_.data()};
+    auto const listed = upload(backend, copied_);
+    auto const places = static_cast<Index>(copied_.size());
     bool const keeps_entries = first % per_page != 0;  // of the first page that is left
-    if (keeps_entries)
-      copy(backend, {{static_cast<Index>(staying), left[0], pages_[staying]}}, nullptr);
+    backend.for_each(keeps_entries ? std::max(places, detail::CopyPages<V>::words) : places,
+                     detail::ReplacePages<V>{{listed.data(), nullptr},
+                                             places,
+                                             keeps_entries ? detail::CopyPages<V>::words : 0,
+                                             table_.data(),
+                                             table_before_.data()});
     return {table_before_.data()};
   }
 

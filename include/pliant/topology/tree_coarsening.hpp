@@ -27,11 +27,17 @@ class TreeCoarsening {
                        TreeSizes const& sizes, Stamps<B>& stamps, Index const* marked,
                        Index count) {
     Coarsened done{.initial = initial, .before = sizes, .now = sizes};
-    auto const found = find_families(backend, tree.view(), done, stamps, marked, count);
-    Index const merged = found[0], knowing = found[1];
-    if (merged == 0) return done;
+    find_families(backend, tree.view(), done, stamps, marked, count);
+    auto const found = counted();
+    Index const merged = found[1], knowing = found[2];
+    if (merged == 0) {
+      std::swap(counters_, counters_before_);
+      return done;
+    }
+    // Parents are put in order in the launch that marks pages.
     tree.own(backend, [&](PageMarks const& marks) {
-      in_turn(backend, LoopStep{merged * MarkMerged::each, MarkMerged{parents_.data(), marks}},
+      in_turn(backend, SortStep{merged, keys_.data(), parents_.data(), key_bits(done.before.cells)},
+              LoopStep{merged * MarkMerged::each, MarkMerged{parents_.data(), marks}},
               LoopStep{knowing, MarkKnowing{knowing_.data(), marks}});
     });
     grow(backend, first_children_, at(merged));
@@ -51,9 +57,20 @@ class TreeCoarsening {
     return done;
   }
 
+  /// Follows a refinement, after which the tree looks so, in a step of a list of steps.
+  LoopStep<ListRefined> follow(TreeView const& tree, Index initial, CellSplit const* refined,
+                               Index leaves) {
+    if (!knows_) return {};
+    return {leaves, {tree, initial, refined, knowing_.data(), counters_.data() + of_knowing}};
+  }
+  /// The tree is what it was some changes ago.
+  void forget() { knows_ = false; }
+
  private:
   template <class U>
   using Array = typename B::template Array<U>;
+  /// Counters: four of a call's lists, in turn; and of cells that know of others, until the next call.
+  static constexpr std::size_t of_knowing = 4, counters = 5;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   std::array<Index, 4> counted() {
@@ -62,86 +79,96 @@ class TreeCoarsening {
     return counts;
   }
 
-  /// Lists the parents of families that are merged, ascending, and the cells of the initial mesh that know of what came
-  /// later; returns how many of each.
-  std::array<Index, 2> find_families(B const& backend, TreeView const& tree, Coarsened const& of,
-                                     Stamps<B>& stamps, Index const* marked, Index count) {
+  /// Lists the parents of families that are merged, and the cells of the initial mesh that know of what came later. Counts
+  /// them behind the families of which any child is marked.
+  void find_families(B const& backend, TreeView const& tree, Coarsened const& of, Stamps<B>& stamps,
+                     Index const* marked, Index count) {
+    Index const most = std::min(count, of.before.cells), initial = of.initial.cells;
     stamps.begin(backend, at(of.before.cells));
-    counters_ = zeros<Index>(backend, 4);
-    grow(backend, families_, at(std::min(count, of.before.cells)));
-    backend.for_each(
-        count,
-        ListFamilies{
-            tree, marked, {stamps.data(), stamps.now(), families_.data(), counters_.data()}});
-    Index const families = counted()[0];
-    if (families == 0) return {};
-    grow(backend, parents_, at(families));
-    grow(backend, keys_, at(families));
-    grow(backend, knowing_, at(of.initial.cells));
-    backend.for_each(families, ListMergeable{tree, families_.data(), stamps.data(), stamps.now(),
-                                             parents_.data(), counters_.data() + 1, keys_.data()});
-    backend.select(of.initial.cells, IsKnowing{tree}, knowing_.data(), counters_.data() + 2);
-    auto const counts = counted();
-    backend.sort(counts[1], keys_.data(), parents_.data(), key_bits(of.before.cells));
-    return {counts[1], counts[2]};
+    std::swap(counters_, counters_before_);
+    counters_ = zeros<Index>(backend, counters);
+    auto* const counts = counters_.data();
+    grow(backend, families_, at(most));
+    grow(backend, parents_, at(most));
+    grow(backend, keys_, at(most));
+    grow(backend, knowing_, at(initial));
+    if (!knows_) backend.select(initial, IsKnowing{tree}, knowing_.data(), counts + 2);
+    in_turn(backend,
+            LoopStep{count,
+                     ListFamilies{
+                         tree, marked, {stamps.data(), stamps.now(), families_.data(), counts}}},
+            LoopStep{most, ListMergeable{tree, families_.data(), counts, stamps.data(),
+                                         stamps.now(), parents_.data(), counts + 1, keys_.data()}},
+            LoopStep{knows_ ? 1 : 0,
+                     CopyValue<Index>{counters_before_.data() + of_knowing, counts + 2}});
   }
 
   /// Numbers what stays. Notes how many of each that are.
   CompactionView number(B const& backend, PagedTree<B> const& tree, Coarsened& of, Index knowing) {
-    auto const& initial = of.initial;
-    CompactionView view{.tree = tree.view(), .initial = initial};
-    auto const nodes = of.before.nodes - initial.nodes, cells = of.before.cells - initial.cells;
-    used_.begin(backend, at(nodes));
-    backend.for_each(cells, UseNodes{view, used_.data(), used_.now()});
-    backend.for_each(knowing, UseNodes{view, used_.data(), used_.now(), knowing_.data()});
-    view.nodes =
-        number_staying(backend, 0, initial.nodes, nodes, CountStamped{used_.data(), used_.now()});
-    view.cells = number_staying(backend, 1, initial.cells, cells, CountCells{view});
-    view.edges = number_staying(backend, 2, initial.edges, of.before.edges - initial.edges,
-                                CountUsed<TreeEdge>{view.tree.edges, initial.edges});
-    view.sides = number_staying(backend, 3, initial.sides, of.before.sides - initial.sides,
-                                CountUsed<TreeSide>{view.tree.sides, initial.sides});
+    auto const &initial = of.initial, &before = of.before;
+    std::array<Index, 4> const first{initial.nodes, initial.cells, initial.edges, initial.sides},
+        counts{before.nodes - first[0], before.cells - first[1], before.edges - first[2],
+               before.sides - first[3]};
+    used_.begin(backend, at(counts[0]));
+    grow(backend, before_, at(*std::ranges::max_element(counts)) + 1);
+    for (std::size_t k = 0; k < 4; ++k) grow(backend, numbers_[k], at(counts[k]));
+    auto const numbers = [&](std::size_t k) { return NewNumbers{first[k], numbers_[k].data()}; };
+    CompactionView const view{tree.view(), initial, numbers(0), numbers(1), numbers(2), numbers(3)};
+    UseNodes const use{view, used_.data(), used_.now()};
+    auto const sum = [&](std::size_t k, auto const& stays) {
+      return ScanStep{counts[k], stays, before_.data()};
+    };
+    auto const number_staying = [&](std::size_t k) {
+      return LoopStep{counts[k] + 1, NumberStaying{before_.data(), counts[k], first[k],
+                                                   numbers_[k].data(), counters_.data() + k}};
+    };
+    in_turn(backend, LoopStep{counts[1], use},
+            LoopStep{knowing, UseNodes{view, use.stamps, use.now, knowing_.data()}},
+            sum(0, CountStamped{use.stamps, use.now}), number_staying(0), sum(1, CountCells{view}),
+            number_staying(1), sum(2, CountUsed<TreeEdge>{view.tree.edges, first[2]}),
+            number_staying(2), sum(3, CountUsed<TreeSide>{view.tree.sides, first[3]}),
+            number_staying(3));
     auto const staying = counted();
-    of.now = {.cells = initial.cells + staying[1],
-              .edges = initial.edges + staying[2],
-              .sides = initial.sides + staying[3],
-              .nodes = initial.nodes + staying[0]};
+    of.now = {.cells = first[1] + staying[1],
+              .edges = first[2] + staying[2],
+              .sides = first[3] + staying[3],
+              .nodes = first[0] + staying[0]};
     return view;
-  }
-  /// Of `count` from `first` on, of the k-th sort.
-  template <class Stays>
-  NewNumbers number_staying(B const& backend, std::size_t k, Index first, Index count,
-                            Stays const& stays) {
-    grow(backend, before_, at(count) + 1);
-    grow(backend, numbers_[k], at(count));
-    in_turn(backend, ScanStep{count, stays, before_.data()},
-            LoopStep{count, NumberStaying{before_.data(), first, numbers_[k].data()}},
-            LoopStep{1, CopyValue<Index>{before_.data() + count, counters_.data() + k}});
-    return {first, numbers_[k].data()};
   }
 
   /// Moves what stays to its new numbers. Sides look at cells, which are still where they were.
   void move_up(B const& backend, PagedTree<B>& tree, Coarsened const& of,
                CompactionView const& view, Index knowing) {
-    auto const move = [&](auto& list, NewNumbers const& numbers, Index before, Index now) {
-      auto const old = list.replace_from(backend, at(numbers.first), at(now));
-      using V = std::remove_cvref_t<decltype(old[0])>;
-      backend.for_each(before, MoveUp<V>{view, numbers, old, list.pages()});
-    };
     auto const &first = of.initial, &before = of.before, &now = of.now;
-    move(tree.sides, view.sides, before.sides - first.sides, now.sides - first.sides);
+    auto const move = [&](auto& list, NewNumbers const& numbers, Index count_before, Index count) {
+      auto const old = list.replace_from(backend, at(numbers.first), at(count - numbers.first));
+      using V = std::remove_cvref_t<decltype(old[0])>;
+      return LoopStep{count_before - numbers.first, MoveUp<V>{view, numbers, old, list.pages()}};
+    };
     side_stamps_.begin(backend, at(first.sides));
-    backend.for_each(knowing, TellSides{view, tree.view(), knowing_.data(), side_stamps_.data(),
-                                        side_stamps_.now()});
-    move(tree.edges, view.edges, before.edges - first.edges, now.edges - first.edges);
     edge_stamps_.begin(backend, at(first.edges));
-    backend.for_each(knowing, TellEdges{view, tree.view(), knowing_.data(), edge_stamps_.data(),
-                                        edge_stamps_.now()});
-    move(tree.cells, view.cells, before.cells - first.cells, now.cells - first.cells);
-    backend.for_each(knowing, TellCells{view, tree.view(), knowing_.data()});
+    auto const move_sides = move(tree.sides, view.sides, before.sides, now.sides);
+    auto const move_edges = move(tree.edges, view.edges, before.edges, now.edges);
+    in_turn(backend, move_sides,
+            LoopStep{knowing, TellSides{view, tree.view(), knowing_.data(), side_stamps_.data(),
+                                        side_stamps_.now()}},
+            move_edges,
+            LoopStep{knowing, TellEdges{view, tree.view(), knowing_.data(), edge_stamps_.data(),
+                                        edge_stamps_.now()}});
+    auto const move_cells = move(tree.cells, view.cells, before.cells, now.cells);
+    grow(backend, still_knowing_, at(first.cells));
+    in_turn(backend, move_cells,
+            LoopStep{knowing, TellCells{view, tree.view(), knowing_.data(), still_knowing_.data(),
+                                        counters_.data() + of_knowing}});
+    std::swap(knowing_, still_knowing_);
+    knows_ = true;
   }
 
-  Array<Index> families_, parents_, first_children_, knowing_, counters_, before_;
+  Array<Index> families_, parents_, first_children_, before_;
+  Array<Index> counters_, counters_before_;
+  // Cells of the initial mesh that know of what came later, each once, from one call to the next: (initial cells).
+  Array<Index> knowing_, still_knowing_;
+  bool knows_ = false;
   Array<std::uint64_t> keys_;
   Stamps<B> used_;                       // by nodes behind the initial mesh's
   Stamps<B> edge_stamps_, side_stamps_;  // of the initial mesh

@@ -98,7 +98,8 @@ class TreeOn {
     detail::in_turn(backend_, for_each_part(n, detail::MakeOnEdges{dividing}),
                     for_each_part(n, detail::MakeOnSides{dividing}),
                     detail::LoopStep{n, detail::MakeInside{dividing}},
-                    for_each_part(n, detail::MakeChildren{dividing}));
+                    for_each_part(n, detail::MakeChildren{dividing}),
+                    coarsening_.follow(view(), initial_.cells, leaves_.data(), n));
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
     if (has_quadratic_) make_quadratic(n, limits);
@@ -125,6 +126,7 @@ class TreeOn {
   /// The tree is what it was when it was kept the last time.
   void take_back() {
     lists_.take_back(backend_);
+    coarsening_.forget();
     now_ = kept_;
   }
 
