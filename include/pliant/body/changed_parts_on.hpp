@@ -87,8 +87,9 @@ class ChangedPartsOn {
   /// Energies are of all elements: nodes that begin to hang displace some that stay.
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
     synchronize_velocities(parts_);
-    check_fields();
+    energies_.count_not_finite(parts_);
     double const speed = backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v));  // m/s
+    if (!is_finite(speed)) check_fields();
     energies_.add_kinetic(Energies::before, parts_);
     add_strain(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));

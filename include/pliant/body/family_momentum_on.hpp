@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -7,11 +8,13 @@
 #include <pliant/backend/atomic.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/body/exact_sum.hpp>
 #include <pliant/body/family_momentum_passes.hpp>
 #include <pliant/body/nodal_masses_on.hpp>
 #include <pliant/constraint/condition.hpp>
 #include <pliant/constraint/mass_weights_on.hpp>
+#include <pliant/constraint/rows_on.hpp>
 #include <pliant/error.hpp>
 
 namespace pliant {
@@ -36,20 +39,26 @@ class FamilyMomentumOn {
     auto const rows = at(masses.rows());
     detail::grow_zeroed(backend_, place_, rows);
     detail::grow(backend_, list_, rows);
-    counters_ = zeros<Index>(backend_, 2);
-    detail::TouchOnce const touch{place_.data(), list_.data(), counters_.data()};
+    counter_ = zeros<Index>(backend_, 1);
+    detail::TouchOnce const touch{place_.data(), list_.data(), counter_.data()};
     // The many have the nodes of the few.
     using Members = detail::MembersOf<Families, (Families::most_come > Families::most_gone)>;
     Members const members{families};
-    backend_.for_each(members.places(), detail::TouchMembers<Members>{members, touch});
-    for (auto const* weights : {&before, &now})
-      for (auto const* some :
-           {&weights->interpolation().slaves(), &weights->interpolation().masters()})
-        backend_.for_each(some->count, detail::TouchListed{some->node.data(), touch});
-    count_ = download<Index>(counters_)[0];
-    detail::grow(backend_, staying_mass_, at(count_));
-    backend_.for_each(count_, detail::NoteMass{list_.data(), place_.data(), masses.unit(),
-                                               masses.own(), staying_mass_.data()});
+    auto const touch_all = [&](RowsOn<B> const& some) {
+      return detail::LoopStep{some.count, detail::TouchListed{some.node.data(), touch}};
+    };
+    auto const &slaves_before = before.interpolation(), &slaves_now = now.interpolation();
+    auto most = E::nodes * at(members.places());
+    for (auto const* slaves : {&slaves_before, &slaves_now})
+      most += at(slaves->slaves().count) + at(slaves->masters().count);
+    most_ = static_cast<Index>(std::min(most, rows));
+    detail::grow(backend_, staying_mass_, at(most_));
+    detail::in_turn(
+        backend_, detail::LoopStep{members.places(), detail::TouchMembers<Members>{members, touch}},
+        touch_all(slaves_before.slaves()), touch_all(slaves_before.masters()),
+        touch_all(slaves_now.slaves()), touch_all(slaves_now.masters()),
+        of_listed(detail::NoteMass{list_.data(), place_.data(), masses.unit(), masses.own(),
+                                   staying_mass_.data()}));
   }
 
   /// Changes the velocities `v`, to which a refinement gave new nodes theirs, so that each family keeps its momentum; returns
@@ -63,55 +72,61 @@ class FamilyMomentumOn {
                        MassWeightsOn<B> const& now, double density, double bound,
                        double const* kilograms, DirectionMask const* held, NodeField<T, dim> v) {
     detail::SumUnit const unit(bound);
-    auto const values = at(count_) * dim;
+    auto const values = at(most_) * dim;
     for (auto* array : {&before_, &now_, &impulse_}) detail::grow(backend_, *array, values);
     detail::grow(backend_, sums_, values);
-    taken_ = zeros<detail::ExactSum>(backend_, dim);
+    taken_ = zeros<detail::TakenMomentum<dim>>(backend_, 1);
+    auto* const refused = &taken_.data()->refused;
     using Placed = detail::DoublesByPlace<dim>;
     Placed const v_before{place_.data(), before_.data()}, v_now{place_.data(), now_.data()},
         impulse{place_.data(), impulse_.data()};
-    backend_.for_each(count_, detail::TakeVelocities<T, dim>{list_.data(), v, before_.data(),
-                                                             now_.data(), sums_.data()});
+    of_listed(
+        detail::TakeVelocities<T, dim>{list_.data(), v, before_.data(), now_.data(), sums_.data()})
+        .run(backend_);
     before.template apply<dim>(v_before);
     now.template apply<dim>(v_now);
-    Index* const refused = counters_.data() + 1;
-    backend_.for_each(families.count, detail::AddFamilyImpulse<E, Families>{
-                                          families, density, v_before, v_now, unit, place_.data(),
-                                          sums_.data(), refused});
-    backend_.for_each(count_,
-                      detail::AddImpulseOfSlave<dim>{unit, sums_.data(), staying_mass_.data(),
-                                                     before_.data(), now_.data(), impulse_.data()});
+    detail::in_turn(
+        backend_,
+        detail::LoopStep{
+            families.count,
+            detail::AddFamilyImpulse<E, Families>{families, density, v_before, v_now, unit,
+                                                  place_.data(), sums_.data(), refused}},
+        of_listed(detail::AddImpulseOfSlave<dim>{unit, sums_.data(), staying_mass_.data(),
+                                                 before_.data(), now_.data(), impulse_.data()}));
     now.template hand<dim>(impulse);
-    backend_.for_each(count_, detail::CheckImpulses<dim>{unit, impulse_.data(), refused});
-    bool const was_refused = download<Index>(counters_)[1] != 0;
-    if (!was_refused)
-      backend_.for_each(
-          count_, detail::GiveImpulses<T, dim>{list_.data(), impulse_.data(), kilograms, held, unit,
-                                               v, taken_.data()});
-    backend_.for_each(count_, detail::ForgetPlaces{list_.data(), place_.data()});
-    count_ = 0;
-    if (was_refused)
+    detail::in_turn(backend_, of_listed(detail::CheckImpulses<dim>{unit, impulse_.data(), refused}),
+                    of_listed(detail::GiveImpulses<T, dim>{list_.data(), impulse_.data(), kilograms,
+                                                           held, unit, v, taken_.data()}),
+                    of_listed(detail::ForgetPlaces{list_.data(), place_.data()}));
+    most_ = 0;
+    auto const taken = download<detail::TakenMomentum<dim>>(taken_)[0];
+    if (taken.refused != 0)
       throw Error(
           "change of the mesh: the momentum that a node is given is no number, or exceeds the "
           "bound of ",
           bound, " kg m/s; give one for all nodes together");
-    auto const taken = download<detail::ExactSum>(taken_);
     Point<dim> sum{};
-    for (std::size_t k = 0; k < dim; ++k) sum[k] = unit.signed_value_of(taken[k]);
+    for (std::size_t k = 0; k < dim; ++k) sum[k] = unit.signed_value_of(taken.sums[k]);
     return sum;
   }
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  /// A pass over what is listed.
+  template <class Pass>
+  auto of_listed(Pass const& pass) const {
+    return detail::LoopStep{most_, detail::ForListed<Pass>{counter_.data(), pass}};
+  }
 
   B backend_;
-  Array<Index> place_;  // by row: in the list, one more; zero, as between two changes: not there
-  Array<Index> list_;   // rows of the nodes that are touched
-  Index count_ = 0;     // of them
-  Array<Index> counters_;
+  Array<Index> place_;    // by row: in the list, one more; zero, as between two changes: not there
+  Array<Index> list_;     // rows of the nodes that are touched
+  Index most_ = 0;        // of them
+  Array<Index> counter_;  // how many there are
   Array<double> staying_mass_, before_, now_,
       impulse_;  // by place; values of components side by side
-  Array<detail::ExactSum> sums_, taken_;
+  Array<detail::ExactSum> sums_;
+  Array<detail::TakenMomentum<dim>> taken_;
 };
 
 }  // namespace pliant

@@ -40,6 +40,15 @@ struct TouchListed {
   TouchOnce touch;
   PLIANT_HOST_DEVICE void operator()(Index i) const { touch(rows[i]); }
 };
+/// A pass over entries of the list, with a call for each that there may be.
+template <class Pass>
+struct ForListed {
+  Index const* count;
+  Pass pass;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (i < *count) pass(i);
+  }
+};
 struct ForgetPlaces {
   Index const* list;
   Index* place;
@@ -164,7 +173,13 @@ struct CheckImpulses {
         atomic_store(*refused, 1);
   }
 };
-/// Changes the velocity of a node where it is not held.
+/// What held nodes took of impulses, and whether any impulse was refused.
+template <int Dim>
+struct TakenMomentum {
+  ExactSum sums[Dim];
+  Index refused = 0, unused = 0;
+};
+/// Changes the velocity of a node where it is not held; of none where an impulse was refused.
 template <class T, int Dim>
 struct GiveImpulses {
   Index const* list;
@@ -172,14 +187,15 @@ struct GiveImpulses {
   DirectionMask const* held;
   SumUnit unit;
   NodeField<T, Dim> v;
-  ExactSum* taken;
+  TakenMomentum<Dim>* taken;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (taken->refused != 0) return;
     Index const row = list[i];
     for (int k = 0; k < Dim; ++k) {
       double const own = impulse[static_cast<std::ptrdiff_t>(Dim) * i + k];
       if (own == 0) continue;
       if (held != nullptr && (held[row] >> k & 1) != 0)
-        taken[k].add_from_threads(unit.signed_multiple_of(own));
+        taken->sums[k].add_from_threads(unit.signed_multiple_of(own));
       else if (kilograms[row] > 0)
         v(row, k) = static_cast<T>(static_cast<double>(v(row, k)) + own / kilograms[row]);
     }
