@@ -77,6 +77,18 @@ ensure_packages() {
   install_packages "${missing[@]}"
 }
 
+# compiles_openmp COMPILER: also whether it is there at all.
+compiles_openmp() {
+  "$1" -fopenmp -x c++ - -o /dev/null <<<'#include <omp.h>
+int main() { return omp_get_max_threads() == 0; }' 2>/dev/null
+}
+
+# Where CXX names no compiler, lets CMake take clang++ if that knows OpenMP: it compiles tests in half the time of g++, which
+# CMake takes else. A build folder keeps its compiler.
+prefer_fast_compiler() {
+  if [[ -z ${CXX:-} ]] && compiles_openmp clang++; then export CXX=clang++; fi
+}
+
 # preset_of BACKEND: the preset in CMakePresets.json that builds it.
 preset_of() {
   case $1 in
