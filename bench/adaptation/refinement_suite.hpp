@@ -129,6 +129,32 @@ void time_change(benchmark::State& state, B const& backend, int cells,
   if (beside == Beside::sleep && asleep(body).patches == 0) state.SkipWithError("nothing sleeps");
 }
 
+/// The mean of so many changes, there and back, with what the host does so as not to fall behind without end.
+template <class F, class B>
+void time_many_changes(benchmark::State& state, B const& backend, int cells,
+                       std::vector<Index> const& marked) {
+  constexpr int rounds = 300;
+  auto body = body_to_change<F>(backend, cells);
+  report_elements(state, body);
+  Lists const there{marked};
+  refine(body, there);
+  std::vector<Index> made;
+  auto const levels = refinement_levels<typename F::element>(body);
+  for (std::size_t e = 0; e < levels.size(); ++e)
+    if (levels[e] > 0) made.push_back(static_cast<Index>(e));
+  Lists const back{made};
+  coarsen(body, back);
+  for (auto _ : state)
+    state.SetIterationTime(seconds(backend,
+                                   [&] {
+                                     for (int round = 0; round < rounds; ++round) {
+                                       refine(body, there);
+                                       coarsen(body, back);
+                                     }
+                                   }) /
+                           (2 * rounds));
+}
+
 inline void add_refinements() {
   on_each_backend<double>([](auto const& backend, std::string const& name, Role role) {
     using B = std::remove_cvref_t<decltype(backend)>;
@@ -158,6 +184,15 @@ inline void add_refinements() {
       change("a hundredth", first_elements(count / 100));
       change("each hundredth", each_of(count, 100));
       if constexpr (std::same_as<E, Tet4>) {
+        auto const change_often = [&](std::string const& what, std::vector<Index> const& marked) {
+          using F = Usual<E, SaintVenantKirchhoff>;
+          add_once<F, T>("refine or coarsen " + what + ", of 600 changes", name, cells,
+                         [=](benchmark::State& state) {
+                           time_many_changes<F>(state, backend, cells, marked);
+                         });
+        };
+        change_often("two", first_elements(2));
+        change_often("each hundredth", each_of(count, 100));
         auto const change_beside = [&]<Beside beside>() {
           change.template operator()<beside>("two", first_elements(2));
           change.template operator()<beside>("each hundredth", each_of(count, 100));

@@ -8,6 +8,7 @@
 
 #include "adaptation/two_bodies.hpp"
 #include "support/spring.hpp"
+#include "topology/tree_states.hpp"
 
 // Bodies that are refined in their backend's memory, beside bodies that are refined on the host.
 namespace pliant::test::refinement_on_backend_suite {
@@ -268,20 +269,98 @@ TEST_CASE("where a condition holds a part of what would be merged, the host does
 TEST_CASE("the host falls behind by so many changes and no more", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
-    auto body = body_of<F>(backend, false, 2);
-    auto const first = body.mesh();
-    int most = 0;
-    for (int round = 0; round < 200; ++round) {
-      refine(body, {{0}});
-      std::vector<Index> all;
-      for (Index e = 0; e < count(body); ++e) all.push_back(e);
-      CHECK(coarsen(body, {all}).merged == 1);
-      REQUIRE(is_on_backend(body));
-      most = std::max(most, body.parts().topology_on->changes_behind);
+    auto const check = [&](Index cells, int rounds, auto const& check_most) {
+      auto body = body_of<F>(backend, false, cells);
+      auto const first = body.mesh();
+      int most = 0;
+      for (int round = 0; round < rounds; ++round) {
+        refine(body, {{0}});
+        std::vector<Index> all;
+        for (Index e = 0; e < count(body); ++e) all.push_back(e);
+        CHECK(coarsen(body, {all}).merged == 1);
+        REQUIRE(is_on_backend(body));
+        most = std::max(most, body.parts().topology_on->on_host.changes);
+      }
+      check_most(most, body.parts().topology_on->on_host.changes);
+      CHECK(body.mesh().tables == first.tables);
+    };
+    check(3, 280, [](int most, int now) {
+      CHECK(most == 512);
+      CHECK(now == 2 * 280 - 512);
+    });
+    auto const few = count(body_of<F>(backend, false, 2));
+    REQUIRE(64 * few < 512);
+    check(2, 40 * few, [&](int most, int) { CHECK(most == 64 * few); });  // a cell in each change
+  });
+}
+
+/// Facets in an order that does not depend on the one in which they came, nor on the corners at which they begin.
+template <int Dim>
+std::vector<std::vector<Index>> in_any_order(std::vector<Facet<Dim>> const& facets) {
+  std::vector<std::vector<Index>> lists;
+  for (auto const& facet : facets) {
+    auto& list = lists.emplace_back(facet.begin(), facet.end());
+    if (Dim == 3) std::rotate(list.begin(), std::ranges::min_element(list), list.end());
+  }
+  std::ranges::sort(lists);
+  return lists;
+}
+
+/// Brings a mesh over to the host after some changes, and after more, beside a body that the host changes.
+template <class F, class B>
+void check_brought_over(B const& backend, Index cells, std::size_t one_in, int rounds) {
+  constexpr int dim = F::element::dim;
+  TwoBodies<F, B> both(backend, cells);
+  for (int round = 0; round < rounds; ++round) {
+    both.refine_one_in(one_in);
+    // Nobody has asked for this one when the mesh has changed again.
+    auto const earlier = both.body.state().topology;
+    auto const wanted_then = both.host.state().topology.shared();
+    both.refine_one_in(one_in);
+    if (round > 0) CHECK(both.coarsen_all_but_one_in(9) > 0);
+    if (round == 1) CHECK(earlier->mesh().tables == wanted_then->mesh().tables);
+    REQUIRE(is_on_backend(both.body));
+    auto& on = *both.body.parts().topology_on;
+    auto const brought = detail::brought_over(on);
+    REQUIRE(brought);
+    auto const& wanted = *both.host.state().topology;
+    auto const& topology = *brought->topology;
+    CHECK(listed(topology.tree->tree().cells()) == listed(wanted.tree->tree().cells()));
+    CHECK(listed(topology.tree->tree().edges()) == listed(wanted.tree->tree().edges()));
+    CHECK(listed(topology.tree->tree().sides()) == listed(wanted.tree->tree().sides()));
+    CHECK(topology.tree->leaf_count() == wanted.tree->leaf_count());
+    CHECK(topology.tree->points() == wanted.tree->points());
+    CHECK(topology.mesh().tables == wanted.mesh().tables);
+    CHECK(std::ranges::equal(topology.interpolation.slaves(), wanted.interpolation.slaves(),
+                             [](auto const& one, auto const& other) {
+                               return one.node == other.node &&
+                                      std::ranges::equal(one.masters, other.masters);
+                             }));
+    auto divided = wanted.tree->tree().divided();
+    std::ranges::sort(divided);
+    CHECK(topology.tree->tree().divided() == divided);
+    CHECK(topology.boundaries().size() == wanted.boundaries().size());
+    for (auto const& [name, facets] : wanted.boundaries())
+      CHECK(in_any_order<dim>(topology.boundaries().at(name)) == in_any_order<dim>(facets));
+    auto const& conditions = both.host.state().prescribed->conditions;
+    REQUIRE(brought->prescribed->conditions.size() == conditions.size());
+    for (std::size_t c = 0; c < conditions.size(); ++c) {
+      auto const& own = brought->prescribed->conditions[c];
+      CHECK(in_any_order<dim>(own.facets) == in_any_order<dim>(conditions[c].facets));
+      CHECK(own.nodes == conditions[c].nodes);
     }
-    CHECK(most == 256);
-    CHECK(body.parts().topology_on->changes_behind == 400 - 256);
-    CHECK(body.mesh().tables == first.tables);
+    if (round % 2 == 1) on.set_on_host(*brought);
+  }
+  both.check_all();
+}
+
+TEST_CASE("a mesh that is brought over to the host is the one that its changes make there",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_brought_over<Formulation<Tri3, Gauss<1>, NeoHookean>>(backend, 6, 5, 5);
+    check_brought_over<Formulation<Quad4, Gauss<2>, NeoHookean>>(backend, 6, 5, 5);
+    check_brought_over<Formulation<Tet4, Gauss<1>, NeoHookean>>(backend, 3, 12, 5);
+    check_brought_over<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 3, 8, 4);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -45,10 +46,8 @@ class ChangesOnBackend {
       parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
     }
     if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
-    if (on().changes_behind == On::most_changes_behind) {
-      (void)*parts_.state.topology;
-      on().changes_behind = 0;
-    }
+    if (on().is_too_far_ahead()) (void)*parts_.state.topology;
+    Changing const changing(parts_.topology_on);
     try {
       return change(marked);
     } catch (...) {
@@ -58,6 +57,22 @@ class ChangesOnBackend {
   }
 
  private:
+  /// While it lives, the host takes nothing from what is changed.
+  class Changing {
+   public:
+    explicit Changing(std::shared_ptr<On> on) : on_(std::move(on)) { set(true); }
+    Changing(Changing const&) = delete;
+    Changing& operator=(Changing const&) = delete;
+    ~Changing() { set(false); }
+
+   private:
+    void set(bool changing) {
+      std::scoped_lock const lock(on_->on_host.guard);
+      on_->on_host.is_changing = changing;
+    }
+    std::shared_ptr<On> on_;
+  };
+
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   On& on() { return *parts_.topology_on; }
   B const& backend() const { return parts_.backend; }
@@ -145,7 +160,9 @@ class ChangesOnBackend {
       return changed;
     });
     kept->tree.keep();
-    ++kept->changes_behind;
+    ++kept->on_host.version;
+    ++kept->on_host.changes;
+    kept->on_host.cells += count;
   }
   /// The last two entries of the ledger become one.
   void enter_as_one() {

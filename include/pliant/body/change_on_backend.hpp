@@ -2,10 +2,14 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/host_threads.hpp>
+#include <pliant/body/brought_over.hpp>
 #include <pliant/body/change_topology.hpp>
 #include <pliant/body/topology_on.hpp>
 #include <pliant/topology/plan.hpp>
@@ -41,40 +45,59 @@ bool can_change_on_backend(Parts const& parts) {
   return parts.first->interpolation.empty() && !sets_values_by_place(parts);
 }
 
-/// What the host knows of a mesh that was changed in a backend's memory.
+/// The topology of a body, with some of its cells refined, or some merged, and conditions there. `numbers`: of those that are
+/// refined, or of which the children are merged.
 template <class M>
-struct ChangedOnHost {
-  std::shared_ptr<Topology<M> const> topology;
-  std::shared_ptr<Prescribed<M::dim> const> prescribed;
-};
-/// The topology of a body, with some of its cells refined, or some merged, and conditions there, when they are asked for. `cells`:
-/// those that are refined, or of which the children are merged.
-template <class Parts, class Cells>
-auto changed_when_asked(Parts const& parts, std::shared_ptr<Cells> cells, bool merged) {
+MeshOnHost<M> changed_on_host(MeshOnHost<M> const& before, std::vector<Index> numbers, bool merged,
+                              ElementValues<M::dim> const& values) {
+  HostThreads const threads(*before.topology);
+  if (merged) {
+    std::vector<Index> children;
+    for (Index const c : numbers) {
+      auto const& parent = before.topology->tree->cell(c);
+      for (Index k = 0; k < parent.divided().children; ++k)
+        children.push_back(parent.first_child + k);
+    }
+    numbers = std::move(children);
+  }
+  if (before.topology->tree)
+    for (Index& number : numbers) number = before.topology->cells[0].rank(number);
+  MarkedElements marked;
+  (merged ? marked.coarsen : marked.refine).push_back(std::move(numbers));
+  auto const plan = plan_change(before.topology, marked, {}, {}, values);
+  return {plan->after,
+          std::make_shared<Prescribed<M::dim> const>(carried(*before.prescribed, plan->transfer))};
+}
+/// The same when it is asked for, of cells in the backend's memory; or brought over from there, where that takes less time and `on`
+/// is still at the version behind the change.
+template <class Parts, class On, class Cells>
+auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
+                        std::shared_ptr<Cells> cells, bool merged) {
   using M = typename Parts::mesh_type;
-  using Changed = ChangedOnHost<M>;
-  return WhenAsked<Changed>::by(
+  using Table = std::tuple_element_t<0, decltype(Parts::layout_type::tables)>;
+  return WhenAsked<MeshOnHost<M>>::by(
       [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
-       merged, values = element_values_of(parts)]() -> std::shared_ptr<Changed const> {
-        HostThreads const threads(*before);
-        auto numbers = download<Index>(*cells);
-        if (merged) {
-          std::vector<Index> children;
-          for (Index const c : numbers) {
-            auto const& parent = before->tree->cell(c);
-            for (Index k = 0; k < parent.divided().children; ++k)
-              children.push_back(parent.first_child + k);
+       merged, values = element_values_of(parts), of = std::weak_ptr<On>(on),
+       version = on->on_host.version + 1]() {
+        auto const own = of.lock();
+        auto const is_now = [&] {
+          return own->on_host.version == version && !own->on_host.is_changing;
+        };
+        std::optional<MeshOnHost<M>> mesh;
+        // Values of elements the host has in double precision.
+        if constexpr (Table::Laws::value_count == 0)
+          if (own) {
+            std::scoped_lock const lock(own->on_host.guard);
+            if (is_now() && own->is_far_ahead()) mesh = brought_over(*own);
           }
-          numbers = std::move(children);
+        if (!mesh)
+          mesh = changed_on_host<M>({before.shared(), prescribed.shared()}, download<Index>(*cells),
+                                    merged, values);
+        if (own) {
+          std::scoped_lock const lock(own->on_host.guard);
+          if (is_now()) own->set_on_host(*mesh);
         }
-        if (before->tree)
-          for (Index& number : numbers) number = before->cells[0].rank(number);
-        MarkedElements marked;
-        (merged ? marked.coarsen : marked.refine).push_back(std::move(numbers));
-        auto const plan = plan_change(before.shared(), marked, {}, {}, values);
-        return std::make_shared<Changed>(Changed{
-            plan->after,
-            std::make_shared<Prescribed<M::dim> const>(carried(*prescribed, plan->transfer))});
+        return std::make_shared<MeshOnHost<M> const>(std::move(*mesh));
       });
 }
 

@@ -153,7 +153,7 @@ class ChangedPartsOn {
     check_field("change of the mesh (velocities)", layout.in_user_order(state.v), layout.nodes());
   }
   void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
-    auto const changed = changed_when_asked(parts_, std::move(cells), merged);
+    auto const changed = changed_when_asked(parts_, on_, std::move(cells), merged);
     topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
     prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
     on_->prescribed = prescribed_;

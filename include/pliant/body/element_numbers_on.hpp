@@ -3,11 +3,13 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/body/leaf_order_on.hpp>
+#include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
@@ -95,6 +97,13 @@ class ElementNumbersOn {
   /// `order`: of the elements now.
   [[nodiscard]] ElementNumbersView of(LeafOrderOn<B> const& order) const {
     return {order.leaves(), words_.data(), before_.data(), count_of_words_};
+  }
+
+  /// The leaves, on the host.
+  [[nodiscard]] CellSet leaves() const {
+    std::vector<std::uint32_t> words(static_cast<std::size_t>(count_of_words_));
+    words_.download(words);
+    return CellSet::of_words(words);
   }
 
   /// The same after a change.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,25 @@
 
 namespace pliant {
 
+/// What the host knows of a mesh.
+template <class M>
+struct MeshOnHost {
+  std::shared_ptr<Topology<M> const> topology;
+  std::shared_ptr<Prescribed<M::dim> const> prescribed;
+};
+/// How far the host is behind a mesh that is changed in a backend's memory. The host may ask from another thread for what there
+/// is: not while `guard` is locked.
+template <class M>
+struct OnHost {
+  MeshOnHost<M> known;  // an earlier one, since which the tree notes changes
+  std::shared_ptr<Hierarchy<M::dim> const> tree;  // of it
+  int changes = 0;                                // since then
+  std::size_t cells = 0;                          // that they divided or merged
+  long version = 0;                               // of the mesh now
+  bool is_changing = false;                       // between two versions
+  std::mutex guard{};
+};
+
 /// What a body keeps of its topology in a backend's memory while its mesh is changed there.
 template <class M, Backend B>
 struct TopologyOn;
@@ -29,8 +49,8 @@ template <Element E, Backend B>
 struct TopologyOn<Mesh<E>, B> {
   using element = E;
   static constexpr int dim = E::dim;
-  /// After so many changes the host makes them too, so that what it would have to do has an end.
-  static constexpr int most_changes_behind = 256;
+  /// After so many changes the host follows, or of so many cells for each element, so that what it has to keep has an end.
+  static constexpr int most_changes = 512, most_cells = 64;
 
   TreeOn<B> tree;
   LeafOrderOn<B> order;
@@ -43,9 +63,8 @@ struct TopologyOn<Mesh<E>, B> {
   typename B::template Array<double> points;  // (rows, node_stride), m
   HeldSidesOn<dim, B> held;
   ActingOn<dim, B> acting;
-  WhenAsked<Prescribed<dim>> prescribed{};      // that these are of
-  int changes_behind = 0;                       // that the host may not have made yet
-  std::shared_ptr<Hierarchy<dim> const> first;  // the host's tree, from which it goes on
+  WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
+  OnHost<Mesh<E>> on_host;
 
   /// Of a body as it is. Takes a look at all of it.
   template <class Parts>
@@ -64,14 +83,37 @@ struct TopologyOn<Mesh<E>, B> {
       return false;
     acting.set(parts.backend, *parts.state.prescribed, row_of);
     prescribed = parts.state.prescribed;
+    MeshOnHost<Mesh<E>> now{parts.state.topology.shared(), prescribed.shared()};
+    std::scoped_lock const lock(on_host.guard);
+    set_on_host(std::move(now));
     return true;
+  }
+
+  /// Notes what the host knows of the mesh as it is now. on_host.guard has to be locked.
+  void set_on_host(MeshOnHost<Mesh<E>> now) {
+    on_host.tree = now.topology->tree_or_first();
+    on_host.known = std::move(now);
+    on_host.changes = 0;
+    on_host.cells = 0;
+    tree.begin_noting();
+  }
+  /// Whether the host has to follow before another change.
+  [[nodiscard]] bool is_too_far_ahead() const {
+    return on_host.changes >= most_changes ||
+           on_host.cells >= most_cells * static_cast<std::size_t>(tree.leaves());
+  }
+  /// Whether it takes the host less time to bring the mesh over than to make all changes since what it knows: to make one takes it
+  /// as long as to bring over a hundredth of the elements, and to divide or merge an element as long as 32 (an H200's host).
+  [[nodiscard]] bool is_far_ahead() const {
+    auto const leaves = static_cast<std::size_t>(tree.leaves());
+    return static_cast<std::size_t>(on_host.changes) * (leaves / 64) + 32 * on_host.cells > leaves;
   }
 
  private:
   template <class Parts>
-  TopologyOn(Parts const& parts, detail::RefinementTree<Mesh<E>> const& known)
-      : tree(parts.backend, known.tree->tree().lists(), *known.tree->tree().cells_at_edges()),
-        order(parts.backend, leaves_of(parts, *known.cells), parts.layout.first_of_block[0],
+  TopologyOn(Parts const& parts, detail::RefinementTree<Mesh<E>> const& first)
+      : tree(parts.backend, first.tree->tree().lists(), *first.tree->tree().cells_at_edges()),
+        order(parts.backend, leaves_of(parts, *first.cells), parts.layout.first_of_block[0],
               tree.sizes().cells),
         rows(parts.backend, parts.layout.node_rows()),
         numbers(parts.backend, tree),
@@ -79,7 +121,8 @@ struct TopologyOn<Mesh<E>, B> {
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),
         gone(parts.backend),
-        first(known.tree) {
+        on_host{.known = {parts.state.topology.shared(), parts.state.prescribed.shared()},
+                .tree = first.tree} {
     std::vector<double> values(node_stride * static_cast<std::size_t>(rows.count()));
     for (Index node = 0; node < parts.layout.nodes(); ++node)
       for (std::size_t k = 0; k < dim; ++k)

@@ -65,6 +65,16 @@ class CellSet {
     return set;
   }
 
+  /// Of bits for each cell, 32 in a word.
+  static CellSet of_words(std::vector<std::uint32_t> const& words) {
+    CellSet set;
+    set.words_.resize((words.size() + 1) / 2);
+    for (std::size_t w = 0; w < words.size(); ++w)
+      set.words_[w / 2] |= std::uint64_t{words[w]} << (w % 2 * 32);
+    set.count_from(0);
+    return set;
+  }
+
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(before_.back()); }
   [[nodiscard]] Iterator begin() const { return {words_, 0}; }
   [[nodiscard]] Iterator end() const { return {words_, words_.size()}; }

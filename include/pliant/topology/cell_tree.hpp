@@ -27,6 +27,9 @@ class CellTree {
  public:
   CellTree() = default;
   explicit CellTree(Index nodes) { lists_.nodes = nodes; }
+  /// Of lists that fit together; `at_edges`: of the same initial mesh, or null.
+  CellTree(TreeLists lists, std::shared_ptr<CellsAtEdges const> at_edges)
+      : lists_(std::move(lists)), at_edges_(std::move(at_edges)) {}
 
   /// Adds cells of the initial mesh, the nodes of each in the order of an element (see Element): corners,
   /// then one per edge, one per side with four corners, one in the middle, as far as it has them.
@@ -65,6 +68,9 @@ class CellTree {
   [[nodiscard]] std::vector<Index> const& divided() const { return lists_.divided; }
   [[nodiscard]] TreeCell const& operator[](Index c) const { return lists_.cells[at(c)]; }
   [[nodiscard]] bool is_leaf(Index c) const { return lists_.is_leaf(c); }
+  [[nodiscard]] std::size_t leaf_count() const {
+    return at(lists_.linear_leaves) + at(lists_.quadratic_leaves);
+  }
   [[nodiscard]] Index node_count() const { return lists_.nodes; }
   /// Those of the initial mesh, which stay.
   [[nodiscard]] Index initial_nodes() const { return lists_.initial.nodes; }

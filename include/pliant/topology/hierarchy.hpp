@@ -47,25 +47,29 @@ class Hierarchy {
     requires(Mesh<Es...>::dim == Dim)
   explicit Hierarchy(Mesh<Es...> const& mesh)
       : points_(mesh.nodes), tree_(static_cast<Index>(mesh.nodes.size())) {
-    ((leaf_count_ += mesh.template elements<Es>().size()), ...);
-    if (std::max(points_.size(), 12 * leaf_count_) > most_)
+    auto const elements = (mesh.template elements<Es>().size() + ...);
+    if (std::max(points_.size(), 12 * elements) > most_)
       throw Error(
           "Hierarchy: the mesh has more nodes or edges than Index can number; give a coarser one");
     (add<Es>(mesh.template elements<Es>()), ...);
     tree_.seal();
   }
 
+  /// Of a tree with elements of one degree, and its nodes.
+  Hierarchy(SharedList<Point<Dim>> points, CellTree<Dim> tree)
+      : points_(std::move(points)), tree_(std::move(tree)) {}
+
   [[nodiscard]] SharedList<Point<Dim>> const& points() const { return points_; }
   [[nodiscard]] CellTree<Dim> const& tree() const { return tree_; }
   [[nodiscard]] SharedList<TreeCell> const& cells() const { return tree_.cells(); }
   [[nodiscard]] TreeCell const& cell(Index c) const { return tree_[c]; }
   [[nodiscard]] bool is_leaf(Index c) const { return tree_.is_leaf(c); }
-  [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
+  [[nodiscard]] std::size_t leaf_count() const { return tree_.leaf_count(); }
 
   /// The cells that are not refined, ascending.
   [[nodiscard]] std::vector<Index> leaves() const {
     std::vector<Index> found;
-    found.reserve(leaf_count_);
+    found.reserve(leaf_count());
     for (Index c = 0; c < size(cells()); ++c)
       if (is_leaf(c)) found.push_back(c);
     return found;
@@ -126,10 +130,7 @@ class Hierarchy {
     TreeFacets const facets(tree_, known);
     done.facets = facets.divided(facets.sides_of_no_other(refined));
     auto const inside = detail::nodes_between(tree_, lowered, parents);
-    std::size_t children = 0;
-    for (Index const c : parents) children += at(cell(c).divided().children);
     done.renumbered = tree_.merge(parents, lowered);
-    leaf_count_ = leaf_count_ + parents.size() - children;
     for (NewNode const& node : inside)
       if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
     for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
@@ -173,7 +174,6 @@ class Hierarchy {
   static void for_each_member(Visit const& visit, R&... r) {
     visit("points", r.points_...);
     visit("cells", r.tree_...);
-    visit("number of leaves", r.leaf_count_...);
   }
 
  private:
@@ -239,10 +239,9 @@ class Hierarchy {
                     " in all, and the limit is ", limit, "; mark fewer cells or raise the limit");
     };
     check("nodes", points_.size() + count_new_nodes(plan, leaves), std::min(limits.nodes, most_));
-    check("leaves", leaf_count_ + plan.new_cells() - leaves.size(), limits.leaves);
+    check("leaves", leaf_count() + plan.new_cells() - leaves.size(), limits.leaves);
     check("cells", cells().size() + plan.new_cells(), most_);
     check("edges", tree_.edges().size() + plan.new_edges(), most_);
-    leaf_count_ += plan.new_cells() - leaves.size();
     return add_points(tree_.divide(plan));
   }
   /// Those between the corners of children's elements with them.
@@ -294,7 +293,6 @@ class Hierarchy {
 
   SharedList<Point<Dim>> points_;
   CellTree<Dim> tree_;
-  std::size_t leaf_count_ = 0;
 };
 
 }  // namespace pliant

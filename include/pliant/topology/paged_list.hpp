@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,60 +10,11 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/topology/page_copies.hpp>
 #include <pliant/topology/pages.hpp>
 #include <pliant/topology/shared_list.hpp>
 
 namespace pliant {
-
-namespace detail {
-
-/// A page that takes the place of another one, which it is a copy of at first.
-template <class V>
-struct CopiedPage {
-  Index place;  // in the table
-  Page<V> const* before;
-  Page<V>* now;
-};
-
-/// Copies pages, so many bytes at a time, and puts the copies into a table where there is one.
-template <class V>
-struct CopyPages {
-  struct alignas(16) Word {
-    std::uint32_t bits[4];
-  };
-  static_assert(sizeof(Page<V>) % sizeof(Word) == 0);
-  static constexpr Index words = sizeof(Page<V>) / sizeof(Word);
-  static constexpr Index most_pages = std::numeric_limits<Index>::max() / words;  // in a loop
-
-  CopiedPage<V> const* copied;
-  Page<V>** table;
-
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    auto const& own = copied[i / words];
-    Index const word = i % words;
-    if (word == 0 && table != nullptr) table[own.place] = own.now;
-    reinterpret_cast<Word*>(own.now)[word] = reinterpret_cast<Word const*>(own.before)[word];
-  }
-};
-
-/// Puts listed pages, or none, into a table, and those in the place of which they come into another one; of the first, so
-/// many words are copied.
-template <class V>
-struct ReplacePages {
-  CopyPages<V> copy;
-  Index places, words;
-  Page<V>**table, **before;
-
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    if (i < words) copy(i);
-    if (i >= places) return;
-    auto const& own = copy.copied[i];
-    table[own.place] = own.now;
-    before[own.place] = const_cast<Page<V>*>(own.before);
-  }
-};
-
-}  // namespace detail
 
 /// A list in pages in a backend's memory, as SharedList is one on the host. Loops change entries in pages that are the
 /// list's own since it was kept the last time: until it is kept again, all changes since then can be taken back. Pages that
@@ -87,6 +37,7 @@ class PagedList {
           copy(backend, pages, batch, true);
         });
     keep();
+    begin_noting();
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -109,12 +60,45 @@ class PagedList {
     return values;
   }
 
+  /// A list on the host with the same entries. `like`: what the list was when it was made or began to note changes; pages that
+  /// have not changed since then are shared with that.
+  [[nodiscard]] SharedList<V> download(B const& backend, SharedList<V> const& like) {
+    SharedList<V> list = like;
+    if (list.size() > size_) list.shrink(size_);
+    list.extend(size_ - list.size());
+    std::vector<std::size_t> changed;
+    for (std::size_t p = 0; p < pages_.size(); ++p)
+      if (is_noted_[p] != 0) changed.push_back(p);
+    auto batch = unset<V>(backend, std::min(per_batch, changed.size()) * per_page);
+    std::vector<Page<V>*> pages;
+    std::vector<V> values;
+    for (std::size_t first = 0; first < changed.size(); first += per_batch) {
+      std::span const some =
+          std::span(changed).subspan(first, std::min(per_batch, changed.size() - first));
+      pages.clear();
+      for (auto const p : some) pages.push_back(pages_[p]);
+      copy(backend, pages, batch, false);
+      values.resize(some.size() * per_page);
+      batch.download(values);
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        auto const from = values.begin() + static_cast<std::ptrdiff_t>(k * per_page);
+        std::copy_n(from, std::min(per_page, size_ - some[k] * per_page),
+                    &list.edit(some[k] * per_page));
+      }
+    }
+    return list;
+  }
+  /// Notes which pages change from now on, for that.
+  void begin_noting() { is_noted_.assign(pages_.size(), 0); }
+
   /// Makes pages of which the byte is not zero the list's own, and room for `count` entries more, which have no value.
   void change(B const& backend, std::span<std::uint8_t const> touched, std::size_t count) {
     copied_.clear();
-    for (std::size_t p = 0; p < touched.size(); ++p)
-      if (touched[p] != 0 && !is_own(p))
-        copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
+    for (std::size_t p = 0; p < touched.size(); ++p) {
+      if (touched[p] == 0) continue;
+      is_noted_[p] = 1;
+      if (!is_own(p)) copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
+    }
     auto const needed = std::max(pages_.size(), pages_for(size_ + count));
     reserve(backend, copied_.size() + needed - pages_.size(), needed, copied_.size());
     for (Copied& page : copied_) {
@@ -126,6 +110,7 @@ class PagedList {
     auto const before = pages_.size();
     take_pages(needed);
     size_ += count;
+    if (count > 0) note_from((size_ - count) / per_page);
     copy(backend, copied_, table_.data());
     put_in_table(backend, before);
   }
@@ -148,6 +133,7 @@ class PagedList {
                          p < needed ? pages_[p] : nullptr});
     for (std::size_t k = 0; k < left.size(); ++k) leave(staying + k, left[k]);
     size_ = first + count;
+    note_from(staying);
     if (copied_.empty()) return {table_before_.data()};
     auto const listed = upload(backend, copied_);
     auto const places = static_cast<Index>(copied_.size());
@@ -182,6 +168,7 @@ class PagedList {
       pages_[page.place] = page.before;
       is_left_[page.place] = 0;
     }
+    is_noted_.resize(pages_.size(), 1);
     left_.clear();
     size_ = kept_;
     backend.synchronize();
@@ -210,6 +197,11 @@ class PagedList {
       left_.push_back({p, before});
       is_left_[p] = 1;
     }
+  }
+  /// Notes that pages from a place on change.
+  void note_from(std::size_t first) {
+    is_noted_.resize(std::min(first, is_noted_.size()));
+    is_noted_.resize(pages_.size(), 1);
   }
   /// Free pages behind the others, until there are so many.
   void take_pages(std::size_t count) {
@@ -280,9 +272,11 @@ class PagedList {
   std::size_t kept_ = 0, kept_pages_ = 0;  // size and pages when it was kept
   std::vector<Left> left_;                 // since then: each place once
   std::vector<std::uint8_t> is_left_;      // by place among those pages
-  std::vector<Copied> copied_;             // of a change
-  Array<Page<V>*> table_;                  // the same as pages_, and room
-  Array<Page<V>*> table_before_;           // the last replace_from
+  std::vector<std::uint8_t>
+      is_noted_;                  // by place: whether a page changed since it began to note that
+  std::vector<Copied> copied_;    // of a change
+  Array<Page<V>*> table_;         // the same as pages_, and room
+  Array<Page<V>*> table_before_;  // the last replace_from
   std::vector<Array<V>> chunks_;
   std::vector<Page<V>*> free_;
   std::size_t reserved_ = 0;  // pages

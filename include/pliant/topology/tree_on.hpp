@@ -11,6 +11,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/error.hpp>
+#include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/stamps.hpp>
@@ -66,6 +67,26 @@ class TreeOn {
   [[nodiscard]] std::vector<TreeCell> cells() { return lists_.cells.download(backend_); }
   [[nodiscard]] std::vector<TreeEdge> edges() { return lists_.edges.download(backend_); }
   [[nodiscard]] std::vector<TreeSide> sides() { return lists_.sides.download(backend_); }
+
+  /// The tree on the host, where it has no leaves of different degrees. `like`: what it was when it was made or began to note
+  /// changes, or has been since; what has not changed is shared with that. `leaves`: of it.
+  [[nodiscard]] TreeLists lists(TreeLists const& like, CellSet const& leaves) {
+    TreeLists lists{.cells = lists_.cells.download(backend_, like.cells),
+                    .edges = lists_.edges.download(backend_, like.edges),
+                    .sides = lists_.sides.download(backend_, like.sides),
+                    .initial = initial_,
+                    .nodes = now_.nodes};
+    (has_quadratic_ ? lists.quadratic_leaves : lists.linear_leaves) = now_.leaves;
+    for (Index c = 0; c < sizes().cells; ++c)
+      if (!leaves.contains(c)) lists.divided.push_back(c);
+    return lists;
+  }
+  /// Notes what changes from now on, for that.
+  void begin_noting() {
+    lists_.cells.begin_noting();
+    lists_.edges.begin_noting();
+    lists_.sides.begin_noting();
+  }
 
   /// Refines marked leaves below the limit of levels and, before each, the leaves that are coarser across one of its edges or
   /// sides, and so on. `marked`: in the backend's memory; cells may be marked several times, and what is no leaf is left
