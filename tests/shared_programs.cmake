@@ -90,7 +90,7 @@ share(shared/laws
       law/printed_energies law/ranges law/stretches law/tangents)
 share(shared/points
       body/copy_values body/numbering element/cell math/dual math/eigenvalue_bounds math/functions math/matrix math/spectrum
-      mesh/hilbert quadrature/exactness topology/group_numbers topology/shared_list)
+      mesh/hilbert quadrature/exactness topology/facets_between topology/group_numbers topology/shared_list)
 share(shared/elements_alone
       formulation/inversion formulation/mass formulation/modes)
 

@@ -294,18 +294,6 @@ TEST_CASE("the host falls behind by so many changes and no more", "[adaptation]"
   });
 }
 
-/// Facets in an order that does not depend on the one in which they came, nor on the corners at which they begin.
-template <int Dim>
-std::vector<std::vector<Index>> in_any_order(std::vector<Facet<Dim>> const& facets) {
-  std::vector<std::vector<Index>> lists;
-  for (auto const& facet : facets) {
-    auto& list = lists.emplace_back(facet.begin(), facet.end());
-    if (Dim == 3) std::rotate(list.begin(), std::ranges::min_element(list), list.end());
-  }
-  std::ranges::sort(lists);
-  return lists;
-}
-
 /// Brings a mesh over to the host after some changes, and after more, beside a body that the host changes.
 template <class F, class B>
 void check_brought_over(B const& backend, Index cells, std::size_t one_in, int rounds) {

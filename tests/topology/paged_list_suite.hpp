@@ -35,6 +35,7 @@ struct Pair {
   B backend;
   PagedList<B, Index> list;
   std::vector<Index> values, kept;
+  SharedList<Index> noted;  // when it began to note changes
   Index next = 0;
 
   explicit Pair(B const& on) : backend(on) {}
@@ -75,6 +76,10 @@ struct Pair {
     list.take_back(backend);
     values = kept;
   }
+  void begin_noting() {
+    list.begin_noting();
+    noted = SharedList<Index>(values);
+  }
 };
 
 TEST_CASE("lists in pages hold what they were given, and take back what was not kept",
@@ -84,7 +89,7 @@ TEST_CASE("lists in pages hold what they were given, and take back what was not 
     Random random(9);
     constexpr std::size_t most = 4000;
     for (int round = 0; round < 400; ++round) {
-      switch (random.below(6)) {
+      switch (random.below(7)) {
         case 0:
           if (on.values.size() < most) on.extend(random.below(900));
           break;
@@ -102,11 +107,15 @@ TEST_CASE("lists in pages hold what they were given, and take back what was not 
         case 4:
           on.keep();
           break;
+        case 5:
+          if (random.below(3) == 0) on.begin_noting();
+          break;
         default:
           if (random.below(2) == 0) on.take_back();
       }
       REQUIRE(on.list.size() == on.values.size());
       REQUIRE(on.list.download(backend) == on.values);
+      REQUIRE(on.list.download(backend, on.noted) == SharedList<Index>(on.values));
     }
     CHECK(on.list.bytes() < 6 * most * sizeof(Index));
   });

@@ -131,8 +131,7 @@ void check_hanging_nodes(B const& backend, M const& mesh, int rounds) {
     on.tree.keep();
   }
   CHECK(most > 3);
-  while (host.leaf_count() > first)
-    check(coarsen_both(on, host, host.leaves(), random));
+  while (host.leaf_count() > first) check(coarsen_both(on, host, host.leaves(), random));
   CHECK(host.slaves().empty());
 }
 

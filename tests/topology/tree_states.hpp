@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
+#include <vector>
 
 #include <pliant/topology/hierarchy.hpp>
 
@@ -41,6 +43,18 @@ std::vector<Index> some_leaves(Hierarchy<3> const& tree, std::size_t one_in, Ran
   std::erase_if(leaves,
                 [&](Index c) { return !wanted(tree.cell(c)) || random.below(one_in) != 0; });
   return leaves;
+}
+
+/// Facets in an order that does not depend on the one in which they came, nor on the corners at which they begin.
+template <int Dim>
+std::vector<std::vector<Index>> in_any_order(std::vector<Facet<Dim>> const& facets) {
+  std::vector<std::vector<Index>> lists;
+  for (auto const& facet : facets) {
+    auto& list = lists.emplace_back(facet.begin(), facet.end());
+    if (Dim == 3) std::rotate(list.begin(), std::ranges::min_element(list), list.end());
+  }
+  std::ranges::sort(lists);
+  return lists;
 }
 
 }  // namespace pliant::test

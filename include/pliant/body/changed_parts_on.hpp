@@ -59,8 +59,7 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout = new_layout(
-        copies, [&] { return on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()); });
+    auto layout = new_layout(copies, done);
     on_->points = std::move(points);
     in_turn(backend_,
             filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), on_->point_field(),
@@ -102,8 +101,7 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout = new_layout(
-        copies, [&] { return on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()); });
+    auto layout = new_layout(copies, done);
     on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, layout.held.data());
     MergedElements<E> const families{on_->order.merged_families(), on_->order.merged_count(),
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
@@ -164,10 +162,9 @@ class ChangedPartsOn {
     return copies.template extended<T>(parts_.state.load, values());
   }
 
-  /// With all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hanging(): rows of
-  /// hanging nodes.
-  template <class Hanging>
-  Layout new_layout(Copies& copies, Hanging const& hanging) {
+  /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies.
+  template <class Change>
+  Layout new_layout(Copies& copies, Change const& done) {
     auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_->rows.lists(copies));
     WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
         [snapshot] { return std::make_shared<NodeRows>(snapshot->download_all()); });
@@ -192,7 +189,8 @@ class ChangedPartsOn {
     auto const scratch = std::get<0>(layout.tables).elements.scratch_nodes();
     layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
     layout.mass = unset<T>(backend_, at(rows_));
-    layout.interpolation = InterpolationOn<B>(backend_, hanging(), false, rows_);
+    layout.interpolation = InterpolationOn<B>(
+        backend_, on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()), false, rows_);
     return layout;
   }
   void make_table(Table& table, ElementBlocks const& blocks) {

@@ -164,11 +164,12 @@ class PagedList {
     for (Left const& page : left_)
       if (page.place < pages_.size()) free_.push_back(pages_[page.place]);
     pages_.resize(kept_pages_);
+    is_noted_.resize(pages_.size(), 1);
     for (Left const& page : left_) {
       pages_[page.place] = page.before;
       is_left_[page.place] = 0;
+      is_noted_[page.place] = 1;
     }
-    is_noted_.resize(pages_.size(), 1);
     left_.clear();
     size_ = kept_;
     backend.synchronize();
