@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -60,16 +59,14 @@ class ChangesOnBackend {
   /// While it lives, the host takes nothing from what is changed.
   class Changing {
    public:
-    explicit Changing(std::shared_ptr<On> on) : on_(std::move(on)) { set(true); }
+    explicit Changing(std::shared_ptr<On> on) : on_(std::move(on)) {
+      on_->on_host.is_changing = true;
+    }
     Changing(Changing const&) = delete;
     Changing& operator=(Changing const&) = delete;
-    ~Changing() { set(false); }
+    ~Changing() { on_->on_host.is_changing = false; }
 
    private:
-    void set(bool changing) {
-      std::scoped_lock const lock(on_->on_host.guard);
-      on_->on_host.is_changing = changing;
-    }
     std::shared_ptr<On> on_;
   };
 

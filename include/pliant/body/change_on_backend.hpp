@@ -2,8 +2,8 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -69,7 +69,8 @@ MeshOnHost<M> changed_on_host(MeshOnHost<M> const& before, std::vector<Index> nu
           std::make_shared<Prescribed<M::dim> const>(carried(*before.prescribed, plan->transfer))};
 }
 /// The same when it is asked for, of cells in the backend's memory; or brought over from there, where that takes less time and `on`
-/// is still at the version behind the change.
+/// is still at the version behind the change. The latter in the thread that made the change alone: it is that which works with the
+/// backend.
 template <class Parts, class On, class Cells>
 auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
                         std::shared_ptr<Cells> cells, bool merged) {
@@ -78,25 +79,17 @@ auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
   return WhenAsked<MeshOnHost<M>>::by(
       [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
        merged, values = element_values_of(parts), of = std::weak_ptr<On>(on),
-       version = on->on_host.version + 1]() {
-        auto const own = of.lock();
-        auto const is_now = [&] {
-          return own->on_host.version == version && !own->on_host.is_changing;
-        };
+       version = on->on_host.version + 1, thread = std::this_thread::get_id()]() {
+        auto const own = std::this_thread::get_id() == thread ? of.lock() : nullptr;
+        bool const is_now = own && !own->on_host.is_changing && own->on_host.version == version;
         std::optional<MeshOnHost<M>> mesh;
         // Values of elements the host has in double precision.
         if constexpr (Table::Laws::value_count == 0)
-          if (own) {
-            std::scoped_lock const lock(own->on_host.guard);
-            if (is_now() && own->is_far_ahead()) mesh = brought_over(*own);
-          }
+          if (is_now && own->is_far_ahead()) mesh = brought_over(*own);
         if (!mesh)
           mesh = changed_on_host<M>({before.shared(), prescribed.shared()}, download<Index>(*cells),
                                     merged, values);
-        if (own) {
-          std::scoped_lock const lock(own->on_host.guard);
-          if (is_now()) own->set_on_host(*mesh);
-        }
+        if (is_now) own->set_on_host(*mesh);
         return std::make_shared<MeshOnHost<M> const>(std::move(*mesh));
       });
 }

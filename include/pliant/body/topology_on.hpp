@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -27,8 +26,7 @@ struct MeshOnHost {
   std::shared_ptr<Topology<M> const> topology;
   std::shared_ptr<Prescribed<M::dim> const> prescribed;
 };
-/// How far the host is behind a mesh that is changed in a backend's memory. The host may ask from another thread for what there
-/// is: not while `guard` is locked.
+/// How far the host is behind a mesh that is changed in a backend's memory.
 template <class M>
 struct OnHost {
   MeshOnHost<M> known;  // an earlier one, since which the tree notes changes
@@ -37,7 +35,6 @@ struct OnHost {
   std::size_t cells = 0;                          // that they divided or merged
   long version = 0;                               // of the mesh now
   bool is_changing = false;                       // between two versions
-  std::mutex guard{};
 };
 
 /// What a body keeps of its topology in a backend's memory while its mesh is changed there.
@@ -83,13 +80,11 @@ struct TopologyOn<Mesh<E>, B> {
       return false;
     acting.set(parts.backend, *parts.state.prescribed, row_of);
     prescribed = parts.state.prescribed;
-    MeshOnHost<Mesh<E>> now{parts.state.topology.shared(), prescribed.shared()};
-    std::scoped_lock const lock(on_host.guard);
-    set_on_host(std::move(now));
+    set_on_host({parts.state.topology.shared(), prescribed.shared()});
     return true;
   }
 
-  /// Notes what the host knows of the mesh as it is now. on_host.guard has to be locked.
+  /// Notes what the host knows of the mesh as it is now.
   void set_on_host(MeshOnHost<Mesh<E>> now) {
     on_host.tree = now.topology->tree_or_first();
     on_host.known = std::move(now);
