@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <thread>
 
 #include <pliant/body/compare.hpp>
 
@@ -351,6 +352,22 @@ TEST_CASE("a mesh that is brought over to the host is the one that its changes m
     check_brought_over<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 3, 8, 4);
   });
 }
+
+#if !defined(__CUDACC__)
+TEST_CASE("a mesh that another thread asks for is the same", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    TwoBodies<Formulation<Tri3, Gauss<1>, NeoHookean>, B> both(backend, 6);
+    both.refine_one_in(5);
+    both.refine_one_in(5);
+    REQUIRE(is_on_backend(both.body));
+    auto const topology = both.body.state().topology;
+    std::thread([&] { (void)*topology; }).join();
+    CHECK(topology->mesh().tables == both.host.mesh().tables);
+    both.refine_one_in(5);
+    both.check_all();
+  });
+}
+#endif
 
 TEST_CASE("a body goes on from a refinement on its backend by any other change", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
