@@ -97,8 +97,8 @@ struct TopologyOn<Mesh<E>, B> {
     return on_host.changes >= most_changes ||
            on_host.cells >= most_cells * static_cast<std::size_t>(tree.leaves());
   }
-  /// Whether it takes the host less time to bring the mesh over than to make all changes since what it knows: to make one takes it
-  /// as long as to bring over a hundredth of the elements, and to divide or merge an element as long as 32 (an H200's host).
+  /// Whether it takes the host less time to bring the mesh over than to make all changes since what it knows, roughly: to make one
+  /// is reckoned as long as to bring over a 64th of the elements, and to divide or merge an element as long as 32 of them.
   [[nodiscard]] bool is_far_ahead() const {
     auto const leaves = static_cast<std::size_t>(tree.leaves());
     return static_cast<std::size_t>(on_host.changes) * (leaves / 64) + 32 * on_host.cells > leaves;

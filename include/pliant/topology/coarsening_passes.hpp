@@ -74,6 +74,7 @@ struct ListRefined {
     if (cell.has == cell.had) list[atomic_add(*count, 1)] = c;
   }
 };
+
 /// Marks the pages of what becomes leaves, and of their children. So many calls for each of the former.
 struct MarkMerged {
   static constexpr Index each = 1 + RefinementPattern::most_children;
