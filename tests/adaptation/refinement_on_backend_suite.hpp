@@ -439,6 +439,20 @@ TEST_CASE("where a refinement on a backend fails, the body is as it was", "[adap
     body.parts().state.v.upload(before);
     check_unchanged();
 
+    std::vector<Index> all;
+    for (Index e = 0; e < count(body); ++e) all.push_back(e);
+    auto const check_coarsening = [&](auto& field, std::string const& name) {
+      auto const kept = download<double>(field);
+      auto not_finite = kept;
+      not_finite[0] = std::numeric_limits<double>::quiet_NaN();
+      field.upload(not_finite);
+      CHECK_THROWS_WITH(coarsen(body, {all}), says(name));
+      field.upload(kept);
+      check_unchanged();
+    };
+    check_coarsening(body.parts().state.u, "displacements");
+    check_coarsening(body.parts().state.v, "velocities");
+
     auto const next = some(body, 6, random);
     CHECK(refine(body, {next}).refined == refine(same, {next}).refined);
     REQUIRE(is_on_backend(body));
