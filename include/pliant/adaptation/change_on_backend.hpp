@@ -164,14 +164,14 @@ class ChangesOnBackend {
   /// The last two entries of the ledger become one.
   void enter_as_one() {
     auto& entries = parts_.state.record.refinements;
-    auto const merged = entries[entries.size() - 2];
-    auto& entry = entries.back();
+    auto entry = entries.take_back();
+    auto const merged = entries.take_back();
     entry.action = "refine and coarsen";
     entry.elements += merged.elements;
     entry.strain_energy += merged.strain_energy;
     entry.kinetic_energy += merged.kinetic_energy;
     for (std::size_t k = 0; k < entry.impulse.size(); ++k) entry.impulse[k] += merged.impulse[k];
-    entries.erase(entries.end() - 2);
+    entries.push_back(std::move(entry));
   }
 
   Parts& parts_;

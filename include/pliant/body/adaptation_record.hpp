@@ -1,36 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <vector>
 
+#include <pliant/body/ledger_entries.hpp>
 #include <pliant/config.hpp>
 
 namespace pliant {
-
-/// What adaptation did to a body's energy. Switching laws and refining are not physics: whatever
-/// they add or take is written down.
-template <std::size_t Dim>
-struct LedgerEntry {
-  double time;  // s; of the last action that it counts
-  std::string action;
-  double elements;                  // that acted
-  double strain_energy;             // change, J
-  double kinetic_energy;            // change, J
-  std::array<double, Dim> impulse;  // given to held nodes, N s
-
-  template <class Visit, class... R>
-  static void for_each_member(Visit const& visit, R&... r) {
-    visit("time", r.time...);
-    visit("action", r.action...);
-    visit("elements", r.elements...);
-    visit("strain energy", r.strain_energy...);
-    visit("kinetic energy", r.kinetic_energy...);
-    visit("impulse", r.impulse...);
-  }
-};
 
 /// The largest mesh that refinement may make.
 struct MeshLimits {
@@ -59,7 +36,7 @@ struct LastLook {
 /// What adaptation has done to a body beyond the present mesh.
 template <std::size_t Dim>
 struct AdaptationRecord {
-  std::vector<LedgerEntry<Dim>> refinements;
+  LedgerEntries<Dim> refinements;
   /// Per element type, in the order of the mesh: counters (CounterLayout) of the meshes that are gone.
   std::vector<std::vector<double>> totals;
   std::int64_t born = 0;  // the step at which the present mesh was made

@@ -110,10 +110,9 @@ std::vector<int> switch_counts(TheBody const& body) {
 template <class Parts>
 double adaptation_energy_of(Parts const& parts) {
   auto const work = download<double>(parts.state.work);
-  double sum =
-      work[static_cast<std::size_t>(Work::switching)] + work[static_cast<std::size_t>(Work::sleep)];
-  for (auto const& entry : parts.state.record.refinements)
-    sum += entry.strain_energy + entry.kinetic_energy;
+  double sum = work[static_cast<std::size_t>(Work::switching)] +
+               work[static_cast<std::size_t>(Work::sleep)] +
+               parts.state.record.refinements.energy();
   detail::for_each_numbered_type(
       parts, [&](auto const& table, auto const& elements, std::size_t which) {
         using Table = std::remove_cvref_t<decltype(table)>;
@@ -182,7 +181,8 @@ double booked_energy(Parts const& parts) {
 /// made; sums over time have the body's present time.
 template <DeformableBody TheBody>
 auto ledger(TheBody const& body) {
-  auto entries = body.state().record.refinements;
+  auto const& refinements = body.state().record.refinements;
+  std::vector<LedgerEntry<TheBody::dim>> entries(refinements.begin(), refinements.end());
   detail::for_each_numbered_type(
       body.parts(), [&](auto const& table, auto const& elements, std::size_t which) {
         using Table = std::remove_cvref_t<decltype(table)>;
