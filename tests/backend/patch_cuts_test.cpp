@@ -64,6 +64,14 @@ TEST_CASE("patches of chapters of which all blocks stay are known from before", 
   CHECK(then.known_from(first, {after.first, {}, {}}) == std::vector<Index>(14, -1));
 }
 
+TEST_CASE("large patches stay where blocks of others beside them change", "[backend]") {
+  auto const [before, after] = change(std::vector<Index>(40, 240), {{9, 254}});
+  PatchCuts const first(40 * 240, 2048, before), then(40 * 240 + 14, 2048, after);
+  CHECK(first.first() == std::vector<Index>{0, 1920, 3840, 5760, 7680, 9600});
+  CHECK(then.first() == std::vector<Index>{0, 1920, 3854, 5774, 7694, 9614});
+  CHECK(then.known_from(first, after) == std::vector<Index>{0, -1, 2, 3, 4});
+}
+
 TEST_CASE("every element finds its patch", "[backend]") {
   // Chapters of no element, of one, of many, and patches shorter than a run.
   std::vector<Index> sizes(80, 0);

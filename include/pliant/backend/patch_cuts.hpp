@@ -35,16 +35,17 @@ class PatchCuts {
  public:
   PatchCuts() = default;
   /// `size`: how many elements a patch has at most.
-  PatchCuts(Index elements, Index size, ElementBlocks const& blocks = {}) : size_(size) {
+  PatchCuts(Index elements, Index size, ElementBlocks const& blocks = {})
+      : size_(size), blocks_of_chapter_(size < 2048 ? 16 : 8) {
     if (blocks.first.empty()) {
       for (Index e = 0; e < elements; e += size) first_.push_back(std::min(e + size, elements));
       return;
     }
     auto const count = blocks.first.size() - 1;
     of_chapter_ = {0};
-    for (std::size_t b = 0; b < count; b += blocks_of_chapter) {
+    for (std::size_t b = 0; b < count; b += blocks_of_chapter_) {
       Index const begin = blocks.first[b],
-                  own = blocks.first[std::min(b + blocks_of_chapter, count)] - begin,
+                  own = blocks.first[std::min(b + blocks_of_chapter_, count)] - begin,
                   parts = own / size + (own % size != 0);
       for (Index k = 1; k <= parts; ++k)
         first_.push_back(begin + static_cast<Index>(std::int64_t{own} * k / parts));
@@ -65,8 +66,8 @@ class PatchCuts {
         before.of_chapter_.size() != of_chapter_.size())
       return known;
     for (std::size_t c = 0; c + 1 < of_chapter_.size(); ++c) {
-      auto const from = blocks_of_chapter * c,
-                 to = std::min(from + blocks_of_chapter, blocks.stays.size());
+      auto const from = blocks_of_chapter_ * c,
+                 to = std::min(from + blocks_of_chapter_, blocks.stays.size());
       if (std::ranges::count(std::span(blocks.stays).subspan(from, to - from), 0) > 0) continue;
       for (Index p = of_chapter_[c]; p < of_chapter_[c + 1]; ++p)
         known[static_cast<std::size_t>(p)] = before.of_chapter_[c] + p - of_chapter_[c];
@@ -75,10 +76,9 @@ class PatchCuts {
   }
 
  private:
-  /// Of 240 elements each in a first mesh, these are five patches of 768 or ten of 384.
-  static constexpr std::size_t blocks_of_chapter = 16;
-
   Index size_ = 1;
+  /// Of 240 elements each in a first mesh, 16 are five patches of 768 or ten of 384, and 8 are one of 2048.
+  std::size_t blocks_of_chapter_ = 16;
   std::vector<Index> first_{0}, of_chapter_;  // elements; patches
 };
 

@@ -16,7 +16,8 @@ namespace pliant::detail {
 struct FanBlock {
   std::vector<unsigned char> sizes;  // of the fans, in elements
   std::vector<Index> elements;       // of the block, in the order of fans
-  std::vector<Index> corners;        // of each fan: places 4 · element + a of its 3 + size nodes
+  std::vector<Index> nodes;          // places 4 · element + a, as corners first have them
+  std::vector<Index> corners;        // of each fan: numbers in `nodes` of its 3 + size nodes
 
   /// Of `count` elements with the nodes rows[4 · count].
   FanBlock(Index const* rows, Index count, HostFanSplitter& splitter) {
@@ -25,10 +26,19 @@ struct FanBlock {
     for (Index part = 0; part < parts; ++part) {
       auto const begin = static_cast<Index>(std::int64_t{count} * part / parts);
       auto const end = static_cast<Index>(std::int64_t{count} * (part + 1) / parts);
+      std::vector<Index> numbers(4 * static_cast<std::size_t>(end - begin), -1);
+      auto const add_corner = [&](int place) {
+        Index& number = numbers[static_cast<std::size_t>(place)];
+        if (number < 0) {
+          number = static_cast<Index>(nodes.size());
+          nodes.push_back(4 * begin + place);
+        }
+        corners.push_back(number);
+      };
       splitter.split(rows + std::ptrdiff_t{4} * begin, end - begin,
                      [&](int const* ends, int const* ring, int const* members, int fan_size) {
-                       for (int k = 0; k < 2; ++k) corners.push_back(4 * begin + ends[k]);
-                       for (int k = 0; k <= fan_size; ++k) corners.push_back(4 * begin + ring[k]);
+                       for (int k = 0; k < 2; ++k) add_corner(ends[k]);
+                       for (int k = 0; k <= fan_size; ++k) add_corner(ring[k]);
                        for (int k = 0; k < fan_size; ++k) elements.push_back(begin + members[k]);
                        sizes.push_back(static_cast<unsigned char>(fan_size));
                      });

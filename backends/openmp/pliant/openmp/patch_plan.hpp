@@ -82,23 +82,37 @@ PatchPlan plan_fans(FanBlocks const& blocks, Index begin, Index end, RowsOf cons
   PatchPlan plan;
   numbers.begin(plan.nodes);
   FanList& fans = plan.fans;
-  fans.elements.reserve(static_cast<std::size_t>(end - begin));
-  std::size_t most = 0;
-  blocks.for_each_in(begin, end,
-                     [&](FanBlock const& block, Index) { most += block.corners.size(); });
-  plan.places.reserve(most);
+  std::vector<Index> known;  // the number of each node of a block; −1: not yet
+  auto const append = [](auto& list, auto const& others, auto const& value_of) {
+    using Value = typename std::remove_reference_t<decltype(list)>::value_type;
+    auto const before = list.size();
+    list.resize(before + others.size());
+    std::ranges::transform(others, list.begin() + static_cast<std::ptrdiff_t>(before),
+                           [&](auto other) { return static_cast<Value>(value_of(other)); });
+  };
   blocks.for_each_in(begin, end, [&](FanBlock const& block, Index first) {
     Index const* const rows = rows_of(first);
+    if (begin <= first && first + static_cast<Index>(block.elements.size()) <= end) {
+      known.clear();
+      append(known, block.nodes, [&](Index place) { return numbers.of(rows[place]); });
+      append(plan.places, block.corners,
+             [&](Index k) { return known[static_cast<std::size_t>(k)]; });
+      append(fans.elements, block.elements, [&](Index k) { return first - begin + k; });
+      append(fans.sizes, block.sizes, [](unsigned char size) { return size; });
+      return;
+    }
+    known.assign(block.nodes.size(), -1);
     auto const add_corners = [&](Index corner, int count) {
-      for (int k = 0; k < count; ++k)
-        plan.places.push_back(
-            numbers.of(rows[block.corners[static_cast<std::size_t>(corner + k)]]));
+      for (int k = corner; k < corner + count; ++k) {
+        auto const node = static_cast<std::size_t>(block.corners[static_cast<std::size_t>(k)]);
+        if (known[node] < 0) known[node] = numbers.of(rows[block.nodes[node]]);
+        plan.places.push_back(static_cast<std::uint16_t>(known[node]));
+      }
     };
     auto const element = [&](Index k) {
       return first + block.elements[static_cast<std::size_t>(k)];
     };
-    bool const whole = begin <= first && first + static_cast<Index>(block.elements.size()) <= end;
-    auto const is_in = [&](Index k) { return whole || (begin <= element(k) && element(k) < end); };
+    auto const is_in = [&](Index k) { return begin <= element(k) && element(k) < end; };
     Index corner = 0, member = 0;
     for (int const size : block.sizes) {
       for (int from = 0, to = 0; from < size; from = to) {
