@@ -27,15 +27,24 @@ struct PutRows {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to.set(places[i], from.at(i)); }
 };
 
+/// An array of `count` values: those of another one, as far as there are some, and 0 behind them.
+template <class U, class B, class Array>
+auto lengthened(B const& backend, Array const& from, std::size_t count) {
+  auto array = unset<U>(backend, count);
+  std::size_t const kept = std::min(count, from.size());
+  copy_values(backend, from.data(), array.data(), kept);
+  clear_values(backend, array.data() + kept, count - kept);
+  return array;
+}
+
 /// A field of `rows` rows, in a backend's memory: those of `from`, but value(i, k) in the row places[i], and 0 in the rows
 /// `freed` and in those that `from` has not.
 template <int Dim, class B, class Array, class Value>
 auto carried_field(B const& backend, Index rows, Array const& from, std::vector<Index> const& freed,
                    std::vector<Index> places, Value const& value) {
   using Scalar = typename B::scalar;
-  auto field = zeros<Scalar>(
-      backend, static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(rows));
-  copy_values(backend, from.data(), field.data(), std::min(field.size(), from.size()));
+  auto field = lengthened<Scalar>(
+      backend, from, static_cast<std::size_t>(node_stride) * static_cast<std::size_t>(rows));
   std::vector<Scalar> values(node_stride * (places.size() + freed.size()));
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t k = 0; k < std::size_t{Dim}; ++k)
@@ -62,8 +71,7 @@ auto carried_values(B const& backend, Index rows, Array const& from,
                     std::vector<Index> const& freed, std::vector<Index> places,
                     Value const& value) {
   using Scalar = typename B::scalar;
-  auto values = zeros<Scalar>(backend, static_cast<std::size_t>(rows));
-  copy_values(backend, from.data(), values.data(), std::min(values.size(), from.size()));
+  auto values = lengthened<Scalar>(backend, from, static_cast<std::size_t>(rows));
   std::vector<Scalar> some(places.size() + freed.size(), Scalar(0));
   for (std::size_t i = 0; i < places.size(); ++i) some[i] = value(i);
   places.insert(places.end(), freed.begin(), freed.end());

@@ -15,13 +15,31 @@ struct CopyValue {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
-/// Copies values in pieces that an Index can number.
-template <class B, class U>
-void copy_values(B const& backend, U const* from, U* to, std::size_t count) {
+template <class U>
+struct ClearValue {
+  U* values;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { values[i] = U(0); }
+};
+
+/// Calls piece(first, count) for pieces of `count` values that an Index can number.
+template <class Piece>
+void for_each_piece(std::size_t count, Piece const& piece) {
   constexpr std::size_t most = std::numeric_limits<Index>::max();
   for (std::size_t first = 0; first < count; first += most)
-    backend.for_each(static_cast<Index>(std::min(most, count - first)),
-                     CopyValue<U>{from + first, to + first});
+    piece(first, static_cast<Index>(std::min(most, count - first)));
+}
+template <class B, class U>
+void copy_values(B const& backend, U const* from, U* to, std::size_t count) {
+  for_each_piece(count, [&](std::size_t first, Index n) {
+    backend.for_each(n, CopyValue<U>{from + first, to + first});
+  });
+}
+/// Sets values to zero.
+template <class B, class U>
+void clear_values(B const& backend, U* values, std::size_t count) {
+  for_each_piece(count, [&](std::size_t first, Index n) {
+    backend.for_each(n, ClearValue<U>{values + first});
+  });
 }
 
 }  // namespace pliant::detail
