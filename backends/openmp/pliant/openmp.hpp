@@ -187,7 +187,7 @@ class OpenMP {
     threads_.for_each_block(active.patch_count(), [&](Index k) {
       double total = 0;
       detail::for_each_pack<Groups, T>(
-          active.elements, active.patch(k), [&](auto group, PackMembers const& m) {
+          active.elements, active.patch(k), kernel, [&](auto group, PackMembers const& m) {
             Scalar const values =
                 call(kernel, group, m, detail::gather_pack<nodes>(active.elements, m, fields)...);
             for (int l = 0; l < m.count; ++l) total += static_cast<double>(values[l]);
@@ -247,19 +247,19 @@ class OpenMP {
       if (elements.has_fans())
         return detail::accumulate_fans<Groups>(elements, patch, kernel, out, fields...);
     detail::PatchTargets<Nodes> const targets(elements, patch);
-    detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
-      if (!detail::selects_any(kernel, group, m)) return;
-      detail::prefetch_next<Nodes>(elements, m, out, fields...);
-      auto const values =
-          call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
-      for (int a = 0; a < Nodes; ++a) {
-        Index rows[Scalar::lanes];
-        for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l])[a];
-        typename Scalar::Register r[4] = {};
-        for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
-        detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
-      }
-    });
+    detail::for_each_pack<Groups, T>(
+        elements, patch, kernel, [&](auto group, PackMembers const& m) {
+          detail::prefetch_next<Nodes>(elements, m, out, fields...);
+          auto const values =
+              call(kernel, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
+          for (int a = 0; a < Nodes; ++a) {
+            Index rows[Scalar::lanes];
+            for (int l = 0; l < Scalar::lanes; ++l) rows[l] = targets.of(m.element[l])[a];
+            typename Scalar::Register r[4] = {};
+            for (int k = 0; k < C; ++k) r[k] = values(a, k).v;
+            detail::scatter_add_nodes<T, Scalar::lanes>(out.data, rows, m.count, r);
+          }
+        });
   }
 
   template <int Groups, int Nodes, class Visitor, class... Fields>
@@ -267,15 +267,15 @@ class OpenMP {
                           Fields const&... fields) {
     std::array<double, Visitor::counters> counters{};
     auto const tally = [&](int k, double x) { counters[static_cast<std::size_t>(k)] += x; };
-    detail::for_each_pack<Groups, T>(elements, patch, [&](auto group, PackMembers const& m) {
-      if (!detail::selects_any(visitor, group, m)) return;
-      auto const values =
-          evaluate_at(visitor, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
-      for (int l = 0; l < m.count; ++l) {
-        Gather<Nodes, Fields...> const again{elements.nodes(patch, m.element[l]), {fields...}};
-        visitor.finish(group, m.element[l], detail::lane_of(values, l), again, tally);
-      }
-    });
+    detail::for_each_pack<Groups, T>(
+        elements, patch, visitor, [&](auto group, PackMembers const& m) {
+          auto const values =
+              evaluate_at(visitor, group, m, detail::gather_pack<Nodes>(elements, m, fields)...);
+          for (int l = 0; l < m.count; ++l) {
+            Gather<Nodes, Fields...> const again{elements.nodes(patch, m.element[l]), {fields...}};
+            visitor.finish(group, m.element[l], detail::lane_of(values, l), again, tally);
+          }
+        });
     return counters;
   }
 

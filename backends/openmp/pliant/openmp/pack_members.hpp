@@ -33,14 +33,24 @@ struct PackMembers {
   }
 };
 
-template <int Group, class T, int Nodes, class F>
-void for_each_pack_of(Patches<Nodes> const& elements, Index patch, F const& f) {
+/// f(GroupNumber<Group>{}, members) for each pack of those of a patch with which `functor`, a kernel or a visitor, has to do.
+template <int Group, class T, int Nodes, class Functor, class F>
+void for_each_pack_of(Patches<Nodes> const& elements, Index patch, Functor const& functor,
+                      F const& f) {
   constexpr int lanes = Pack<T>::lanes;
-  auto const members = elements.members(patch, Group);
+  auto members = elements.members(patch, Group);
+  Index const first_of_patch = elements.patch_bounds()[static_cast<std::size_t>(patch)];
+  std::uint16_t selected[Selects<Functor> ? PatchOrder::largest : 1];
+  if constexpr (Selects<Functor>) {
+    auto* const end = std::ranges::copy_if(members, selected, [&](std::uint16_t e) {
+                        return functor.selects(first_of_patch + e, static_cast<Tag>(Group));
+                      }).out;
+    members = {selected, end};
+  }
   for (std::size_t first = 0; first < members.size(); first += lanes) {
     PackMembers<T> m;
     m.patch = patch;
-    m.first = elements.patch_bounds()[static_cast<std::size_t>(patch)];
+    m.first = first_of_patch;
     m.count = static_cast<int>(std::min<std::size_t>(lanes, members.size() - first));
     std::size_t const end = first + static_cast<std::size_t>(m.count);
     m.next = members.subspan(end, std::min<std::size_t>(lanes, members.size() - end));
@@ -49,24 +59,13 @@ void for_each_pack_of(Patches<Nodes> const& elements, Index patch, F const& f) {
     f(GroupNumber<Group>{}, m);
   }
 }
-/// f(GroupNumber<g>{}, members) for each pack of a patch, group by group.
-template <int Groups, class T, int Nodes, class F>
-void for_each_pack(Patches<Nodes> const& elements, Index patch, F const& f) {
+/// The same, group by group.
+template <int Groups, class T, int Nodes, class Functor, class F>
+void for_each_pack(Patches<Nodes> const& elements, Index patch, Functor const& functor,
+                   F const& f) {
   [&]<int... G>(std::integer_sequence<int, G...>) {
-    (for_each_pack_of<G, T>(elements, patch, f), ...);
+    (for_each_pack_of<G, T>(elements, patch, functor, f), ...);
   }(std::make_integer_sequence<int, Groups>());
-}
-
-/// Whether a kernel or visitor has anything to do with one of a pack's elements: see Selects.
-template <class F, int Group, class T>
-bool selects_any(F const& f, GroupNumber<Group>, PackMembers<T> const& m) {
-  if constexpr (Selects<F>) {
-    for (int l = 0; l < m.count; ++l)
-      if (f.selects(m.element[l], static_cast<Tag>(Group))) return true;
-    return false;
-  } else {
-    return true;
-  }
 }
 
 /// Asks for the rows of fields that the next pack works on, so that they are in the caches by then.
