@@ -330,7 +330,7 @@ void check_brought_over(B const& backend, Index cells, std::size_t one_in, int r
     CHECK(topology.tree->tree().divided() == divided);
     CHECK(topology.boundaries().size() == wanted.boundaries().size());
     for (auto const& [name, facets] : wanted.boundaries())
-      CHECK(in_any_order<dim>(topology.boundaries().at(name)) == in_any_order<dim>(facets));
+      CHECK(in_any_order<dim>(*topology.boundaries().at(name)) == in_any_order<dim>(*facets));
     auto const& conditions = both.host.state().prescribed->conditions;
     REQUIRE(brought->prescribed->conditions.size() == conditions.size());
     for (std::size_t c = 0; c < conditions.size(); ++c) {

@@ -26,17 +26,16 @@ void check_facets(M const& mesh, int rounds) {
     auto leaves = tree.leaves();
     std::erase_if(leaves, [&](Index) { return random.below(4) != 0; });
     auto const done = tree.refine(leaves);
-    return FacetTransfer<dim>(done.facets, {}).carry(facets, [](auto const& own) { return own; });
+    return FacetTransfer<dim>(done.facets, {}).carry(facets, {}).value_or(facets);
   };
   auto const coarsen = [&](Facets const& facets) {
     auto leaves = tree.leaves();
     std::erase_if(leaves, [&](Index) { return random.below(30) == 0; });
     auto const done = tree.coarsen(leaves);
     CHECK(!done.parents.empty());
-    return FacetTransfer<dim>({}, done.facets).carry(facets, [&](Facet<dim> own) {
-      for (Index& node : own) node = done.renumbered.nodes[static_cast<std::size_t>(node)];
-      return own;
-    });
+    return FacetTransfer<dim>({}, done.facets)
+        .carry(facets, done.renumbered.nodes)
+        .value_or(facets);
   };
   auto const first = refine(turned<dim>(mesh.boundary("left")));
   auto const before = tree;

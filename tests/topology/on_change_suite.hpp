@@ -40,6 +40,29 @@ struct Simulator {
   }
 };
 
+TEST_CASE("topologies share the boundaries that a change leaves as they are", "[topology]") {
+  auto const mesh = regular_mesh<Quad4>(4);
+  auto body = body_of<Formulation<Quad4, Gauss<2>, Hooke>>(Reference<double>{}, mesh);
+  int shared = 0, changed = 0;
+  body.on_change([&](TopologyChange<Mesh<Quad4>> const& change) {
+    for (auto const& [name, before] : change.before.boundaries()) {
+      auto const& after = change.after.boundaries().at(name);
+      CHECK((after == before) == (*after == *before));
+      ++(after == before ? shared : changed);
+    }
+  });
+  refine(body, {{0}});  // in a corner
+  CHECK(shared == 2);
+  CHECK(changed == 2);
+  std::vector<Index> children;
+  auto const levels = refinement_levels<Quad4>(body);
+  for (std::size_t e = 0; e < levels.size(); ++e)
+    if (levels[e] > 0) children.push_back(static_cast<Index>(e));
+  coarsen(body, {children});
+  CHECK(shared == 4);
+  CHECK(changed == 4);
+}
+
 TEST_CASE("a simulator's own arrays follow the mesh of a body", "[topology]") {
   on_plane_meshes<MainAlone>(5, []<class B, class M>(B const& backend, M const& mesh) {
     auto body = plane_body(backend, mesh);

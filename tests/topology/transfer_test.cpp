@@ -118,6 +118,17 @@ TEST_CASE("parts of a facet are made whole where all of them are listed", "[topo
   CHECK_THROWS_WITH(t.carry_facets({{2, 5}}), says("nodes 0 and 2") && says("not all are listed"));
 }
 
+TEST_CASE("facets that stay as they are, numbers included, are told from others", "[topology]") {
+  auto const t = transfer(), merged = merging();
+  using Facets = std::vector<Facet<2>>;
+  CHECK(!t.changed_facets({{0, 1}, {1, 0}, {0, 5}}));
+  CHECK(t.changed_facets({{0, 1}, {1, 2}}) == Facets{{0, 1}, {1, 8}, {8, 6}, {6, 2}});
+  CHECK(!merged.changed_facets({{0, 1}}));
+  CHECK(merged.changed_facets({{0, 1}, {1, 3}}) == Facets{{0, 1}, {1, 2}});
+  CHECK(merged.changed_facets({{0, 2}, {2, 5}}) == Facets{{0, 3}});
+  CHECK(!merged.changed_facets({}));
+}
+
 TEST_CASE("arrays of another size are refused", "[topology][errors]") {
   auto const t = transfer();
   CHECK_THROWS_WITH(t.carry_nodes(std::vector<double>(9)),

@@ -56,15 +56,15 @@ std::optional<MeshOnHost<M>> brought_over(TopologyOn<M, B>& on) {
   auto leaves = on.numbers.leaves();
   auto lists = on.tree.lists(like.lists(), leaves);
   std::vector<typename FacetsBetween<dim>::Facets const*> facets;
-  for (auto const& [name, list] : earlier->boundaries()) facets.push_back(&list);
+  for (auto const& [name, list] : earlier->boundaries()) facets.push_back(list.get());
   for (auto const& condition : prescribed_before->conditions) facets.push_back(&condition.facets);
   for (auto const& pressure : prescribed_before->pressures) facets.push_back(&pressure.facets);
   FacetsBetween<dim> const between(like.lists(), lists, facets);
-  std::map<std::string, std::vector<Facet<dim>>> boundaries;
+  std::map<std::string, typename Topology<M>::Facets> boundaries;
   for (auto const& [name, list] : earlier->boundaries()) {
-    auto carried = between.carry(list);
+    auto carried = between.carry(*list);
     if (!carried) return std::nullopt;
-    boundaries.emplace(name, std::move(*carried));
+    boundaries.emplace(name, std::make_shared<std::vector<Facet<dim>> const>(std::move(*carried)));
   }
   auto prescribed = taken_over(*prescribed_before, between, lists.initial.nodes);
   if (!prescribed) return std::nullopt;

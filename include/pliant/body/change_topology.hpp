@@ -38,15 +38,16 @@ void put_points_to_rest(Parts& parts, Table& table, std::vector<Tag> tags,
 template <int Dim>
 Prescribed<Dim> carried(Prescribed<Dim> prescribed, Transfer<Dim> const& transfer) {
   for (auto& pressure : prescribed.pressures)
-    pressure.facets = transfer.carry_facets(pressure.facets);
+    if (auto facets = transfer.changed_facets(pressure.facets))
+      pressure.facets = std::move(*facets);
   for (auto& condition : prescribed.conditions) {
     if (condition.facets.empty()) {
       for (Index& node : condition.nodes) node = transfer.renumbered(node);
       continue;
     }
-    auto facets = transfer.carry_facets(condition.facets);
-    if (facets == condition.facets) continue;
-    condition.facets = std::move(facets);
+    auto facets = transfer.changed_facets(condition.facets);
+    if (!facets || *facets == condition.facets) continue;
+    condition.facets = std::move(*facets);
     condition.nodes = nodes_of(condition.facets);
   }
   return prescribed;

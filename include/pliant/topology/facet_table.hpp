@@ -36,9 +36,16 @@ class FacetTable {
   [[nodiscard]] bool empty() const { return keys_.empty(); }
   /// False for most facets that were not added.
   [[nodiscard]] bool may_have(Facet<Dim> const& facet) const {
+    return may_have(facet, [](Index node) { return node; });
+  }
+  /// The same of the facet that has the nodes number_of(node) in place of its own.
+  template <class NumberOf>
+  [[nodiscard]] bool may_have(Facet<Dim> const& facet, NumberOf const& number_of) const {
     if (empty()) return false;
-    for (std::size_t k = 0; k < facet.corners(); ++k)
-      if ((word_of(facet[k]) & bit_of(facet[k])) == 0) return false;
+    for (std::size_t k = 0; k < facet.corners(); ++k) {
+      Index const node = number_of(facet[k]);
+      if ((word_of(node) & bit_of(node)) == 0) return false;
+    }
     return true;
   }
   /// Of a facet that was added several times the first one.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -40,10 +42,24 @@ class FacetTransfer {
       for (auto const& part : merged_[i].parts) parts_.add(part, i);
   }
 
-  /// See Transfer::carry_facets. `renumber(facet)`: the same by new numbers.
-  template <class Renumber>
-  std::vector<Facet<Dim>> carry(std::vector<Facet<Dim>> const& facets,
-                                Renumber const& renumber) const {
+  /// See Transfer::changed_facets. `numbers`: of nodes, by the old one; empty: all stay.
+  std::optional<std::vector<Facet<Dim>>> carry(std::vector<Facet<Dim>> const& facets,
+                                               std::span<Index const> numbers) const {
+    auto const number_of = [&](Index node) {
+      return numbers.empty() ? node : numbers[static_cast<std::size_t>(node)];
+    };
+    auto const renumbered = [&](Facet<Dim> facet) {
+      for (Index& node : facet) node = number_of(node);
+      return facet;
+    };
+    auto const is_whole = [&](Facet<Dim> const& facet) {
+      return !parts_.may_have(facet) && !whole_.may_have(facet, number_of);
+    };
+    auto const keeps_numbers = [&](Index node) { return number_of(node) == node; };
+    if (std::ranges::all_of(facets, [&](Facet<Dim> const& facet) {
+          return is_whole(facet) && (numbers.empty() || std::ranges::all_of(facet, keeps_numbers));
+        }))
+      return std::nullopt;
     if (std::vector<Facet<Dim>> const missing = cut(facets); !missing.empty())
       throw Error(
           "transfer: of the ", missing.size(), " facets that were merged, the one with the nodes ",
@@ -53,22 +69,19 @@ class FacetTransfer {
     std::vector<Facet<Dim>> carried;
     carried.reserve(facets.size());
     std::vector<bool> done(merged_.size(), false);
-    auto const stays = [&](Facet<Dim> const& facet) {
-      return !parts_.may_have(facet) && (whole_.empty() || !whole_.may_have(renumber(facet)));
-    };
     for (auto facet = facets.begin(); facet != facets.end();) {
-      if (auto const end = std::find_if_not(facet, facets.end(), stays); end != facet) {
+      if (auto const end = std::find_if_not(facet, facets.end(), is_whole); end != facet) {
         auto const first = carried.insert(carried.end(), facet, end);
-        std::transform(first, carried.end(), first, renumber);
+        if (!numbers.empty()) std::transform(first, carried.end(), first, renumbered);
         facet = end;
         continue;
       }
       auto const whole = parts_.find(*facet);
       if (!whole) {
-        add_parts(renumber(*facet), carried);
+        add_parts(renumbered(*facet), carried);
       } else if (!done[*whole]) {
         done[*whole] = true;
-        add_parts(renumber(whole_of(merged_[*whole], *facet)), carried);
+        add_parts(renumbered(whole_of(merged_[*whole], *facet)), carried);
       }
       ++facet;
     }

@@ -54,7 +54,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   auto changes = detail::changes_of(old, marked);
   if (changes.none()) return std::nullopt;
   auto lists = kept.facets;
-  for (auto const& [name, facets] : before->boundaries()) lists.push_back(&facets);
+  for (auto const& [name, facets] : before->boundaries()) lists.push_back(facets.get());
   KnownFacets<dim> const known(std::move(lists));
   auto changed = detail::change_cells(*old.tree, changes, limits, known);
   while (detail::take_back(*old.tree, changes, changed, kept))
@@ -89,8 +89,9 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   detail::share_volumes(*before, parts.families);
   Transfer<dim> transfer(std::move(parts));
   auto topology = std::make_shared<Topology<M>>(changed.tree, std::move(cells));
-  topology->set_boundaries(before->boundaries(), [&](std::vector<Facet<dim>> const& facets) {
-    return transfer.carry_facets(facets);
+  topology->set_boundaries(before->boundaries(), [&](auto const& facets) {
+    auto changed = transfer.changed_facets(*facets);
+    return changed ? std::make_shared<std::vector<Facet<dim>> const>(std::move(*changed)) : facets;
   });
   detail::for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     topology->element_values.push_back(

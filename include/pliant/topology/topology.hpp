@@ -23,6 +23,8 @@ template <class M>
 class Topology {
  public:
   static constexpr int dim = M::dim;
+  /// A list that topologies share as long as no change touches it.
+  using Facets = std::shared_ptr<std::vector<Facet<dim>> const>;
 
   Interpolation interpolation;                 ///< its hanging nodes
   std::shared_ptr<Hierarchy<dim> const> tree;  ///< null before the first refinement
@@ -31,7 +33,10 @@ class Topology {
 
   Topology() = default;
   /// Of a mesh that nothing was done to.
-  explicit Topology(M mesh) : interpolation(compose(mesh.slaves)), stored_(std::move(mesh)) {}
+  explicit Topology(M mesh) : interpolation(compose(mesh.slaves)), stored_(std::move(mesh)) {
+    for (auto const& [name, facets] : stored_.boundaries)
+      boundaries_.emplace(name, std::make_shared<std::vector<Facet<dim>> const>(facets));
+  }
   /// Of the cells of a tree, per type.
   Topology(std::shared_ptr<Hierarchy<dim> const> of, std::vector<CellSet> cells_of_types)
       : interpolation(of->slave_rows()), tree(std::move(of)), cells(std::move(cells_of_types)) {}
@@ -94,18 +99,15 @@ class Topology {
     }
     return nodes;
   }
-  [[nodiscard]] std::map<std::string, std::vector<Facet<dim>>> const& boundaries() const {
-    return stored_.boundaries;
-  }
+  [[nodiscard]] std::map<std::string, Facets> const& boundaries() const { return boundaries_; }
   /// Takes carry(facets) of others, several at once on the threads of the host.
   template <class Carry>
-  void set_boundaries(std::map<std::string, std::vector<Facet<dim>>> const& others,
-                      Carry const& carry) {
-    std::vector<std::pair<std::vector<Facet<dim>> const*, std::vector<Facet<dim>>*>> lists;
+  void set_boundaries(std::map<std::string, Facets> const& others, Carry const& carry) {
+    std::vector<std::pair<Facets const*, Facets*>> lists;
     std::size_t count = 0;
     for (auto const& [name, facets] : others) {
-      lists.emplace_back(&facets, &stored_.boundaries[name]);
-      count += facets.size();
+      lists.emplace_back(&facets, &boundaries_[name]);
+      count += facets->size();
     }
     Index const few = count < 65536 ? static_cast<Index>(lists.size()) : 1;  // worth a thread
     detail::for_each_on_host(static_cast<Index>(lists.size()), few, [&](Index i) {
@@ -116,7 +118,8 @@ class Topology {
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
-    visit("mesh before the first refinement, then named boundaries", r.stored_...);
+    visit("mesh before the first refinement", r.stored_...);
+    visit("named boundaries", r.boundaries_...);
     visit("hanging nodes", r.interpolation...);
     visit("refinement tree", r.tree...);
     visit("cells of elements", r.cells...);
@@ -138,7 +141,7 @@ class Topology {
           elements[e] = nodes_of_cell<E>(*cell++);
       });
     });
-    mesh.boundaries = stored_.boundaries;
+    for (auto const& [name, facets] : boundaries_) mesh.boundaries.emplace(name, *facets);
     mesh.slaves = detail::slaves_of(interpolation.slaves());
   }
 
@@ -148,7 +151,8 @@ class Topology {
     std::mutex mutex;
     std::weak_ptr<Hierarchy<dim> const> first_tree;
   };
-  M stored_;  // with a tree: boundaries alone
+  M stored_;  // with a tree: nothing
+  std::map<std::string, Facets> boundaries_;
   std::shared_ptr<Made> made_ = std::make_shared<Made>();
 };
 

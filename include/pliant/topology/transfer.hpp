@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -173,9 +174,13 @@ class Transfer {
   /// Facets of the boundary, or such as the mesh, a condition or a pressure names, on the new mesh: a facet that was divided gives way to its parts, and parts that were
   /// merged to the whole, in the place of the first. Throws Error where not all of them are there.
   std::vector<Facet<Dim>> carry_facets(std::vector<Facet<Dim>> const& facets) const {
-    return facets_.carry(facets, [&](Facet<Dim> const& facet) {
-      return p_.renumbered.empty() ? facet : new_numbers(facet);
-    });
+    auto changed = changed_facets(facets);
+    return changed ? std::move(*changed) : facets;
+  }
+  /// The same; nothing where all facets stay, with the same numbers of nodes.
+  std::optional<std::vector<Facet<Dim>>> changed_facets(
+      std::vector<Facet<Dim>> const& facets) const {
+    return facets_.carry(facets, p_.renumbered);
   }
   /// Those of the facets that are merged while others of their whole are not among them.
   std::vector<Facet<Dim>> cut_facets(std::vector<Facet<Dim>> const& facets) const {
@@ -275,10 +280,6 @@ class Transfer {
     }
   }
 
-  Facet<Dim> new_numbers(Facet<Dim> facet) const {
-    for (Index& node : facet) node = renumbered(node);
-    return facet;
-  }
   Parts p_;
   Index stay_ = 0, first_moved_ = 0;
   FacetTransfer<Dim> facets_;
