@@ -127,6 +127,14 @@ TEST_CASE("facets that stay as they are, numbers included, are told from others"
   CHECK(merged.changed_facets({{0, 1}, {1, 3}}) == Facets{{0, 1}, {1, 2}});
   CHECK(merged.changed_facets({{0, 2}, {2, 5}}) == Facets{{0, 3}});
   CHECK(!merged.changed_facets({}));
+  Transfer<2> const both({.old_nodes = 4,
+                          .renumbered = {0, -1, 1, 2},
+                          .new_nodes = {{3, {{1, 0.5}, {2, 0.5}}}},
+                          .gone = {{1, {{0, 1}}}},
+                          .old_elements = {1},
+                          .origins = {{{0, -1}}},
+                          .divided = {{{1, 2}, {{1, 3}, {3, 2}}}}});
+  CHECK(both.changed_facets({{3, 2}, {0, 2}}) == Facets{{2, 3}, {3, 1}, {0, 1}});
 }
 
 TEST_CASE("arrays of another size are refused", "[topology][errors]") {
