@@ -90,8 +90,8 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   Transfer<dim> transfer(std::move(parts));
   auto topology = std::make_shared<Topology<M>>(changed.tree, std::move(cells));
   topology->set_boundaries(before->boundaries(), [&](auto const& facets) {
-    auto changed = transfer.changed_facets(*facets);
-    return changed ? std::make_shared<std::vector<Facet<dim>> const>(std::move(*changed)) : facets;
+    auto others = transfer.changed_facets(*facets);
+    return others ? std::make_shared<std::vector<Facet<dim>> const>(std::move(*others)) : facets;
   });
   detail::for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     topology->element_values.push_back(
