@@ -28,6 +28,7 @@ void for_each_piece(std::size_t count, Piece const& piece) {
   for (std::size_t first = 0; first < count; first += most)
     piece(first, static_cast<Index>(std::min(most, count - first)));
 }
+/// Copies values.
 template <class B, class U>
 void copy_values(B const& backend, U const* from, U* to, std::size_t count) {
   for_each_piece(count, [&](std::size_t first, Index n) {

@@ -9,7 +9,7 @@
 namespace pliant::detail {
 
 /// Small blocks of a device's memory that were given back on a stream, for work that is queued there later: a call of the
-/// driver for each takes some microseconds, which in changes of a mesh add up. Blocks have four sizes between one power of two and
+/// driver for each takes a microsecond or more, which in changes of a mesh adds up. Blocks have four sizes between one power of two and
 /// the next. Any thread may call any of these.
 class SmallBlocks {
  public:
