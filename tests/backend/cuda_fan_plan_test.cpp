@@ -171,14 +171,22 @@ TEST_CASE("tetrahedra that all follow the same one are in one fan each", "[cuda]
   check_sums({{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 1, 3, 2}, {0, 1, 2, 3}}, 768);
 }
 
+TEST_CASE("a patch may have as many fans as elements", "[cuda][fan plan]") {
+  // Of tetrahedra with a node twice, of which none follows another.
+  Table const alone(1024, {0, 1, 1, 2});
+  auto const plan = plan_on_host<detail::FanPlanner>(alone, 1024);
+  CHECK(accumulate_by(plan, alone, 3).fans == 1024);
+  check_sums(alone, 1024);
+}
+
 TEST_CASE("a patch with too many nodes for fans is counted, not planned", "[cuda][fan plan]") {
   std::vector<std::array<Index, 4>> apart;
   for (Index e = 0; e < 300; ++e) apart.push_back({4 * e, 4 * e + 1, 4 * e + 2, 4 * e + 3});
   detail::PlanMemory needed;
-  detail::FanPlanner const sizes(needed, 1, 384, 0);
+  detail::FanPlanner const sizes(needed, 384, 0);
   std::vector<Index> words(static_cast<std::size_t>(needed.most()) / sizeof(Index) + 1);
   detail::PlanMemory memory(words.data());
-  detail::FanPlanner planner(memory, 1, 384, 300);
+  detail::FanPlanner planner(memory, 384, 300);
   auto const counts = planner.count(detail::OneThread{}, apart[0].data(), 4);
   CHECK(counts.nodes == 1200);
   CHECK(counts.nodes > detail::FanSplitter::most_nodes);

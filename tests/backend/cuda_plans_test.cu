@@ -198,6 +198,8 @@ TEST_CASE("a GPU plans fans as one host thread does", "[cuda]") {
   compare_plan<detail::FanPlanner>(box(9), 768);
   compare_plan<detail::FanPlanner>(box(5), 100);
   compare_plan<detail::FanPlanner>(random_table<4>(3000), 768);
+  // Tetrahedra with a node twice are in fans of one element.
+  compare_plan<detail::FanPlanner>({1024, {0, 1, 1, 2}}, 1024);
 }
 
 }  // namespace pliant::test::cuda_plans_test

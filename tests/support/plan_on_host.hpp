@@ -35,13 +35,13 @@ HostPlan<Planner> plan_on_host(std::vector<std::array<Index, Planner::nodes>> co
   plan.patch_size = patch_size;
   plan.patches = cuts.count();
   detail::PlanMemory needed;
-  Planner const sizes(needed, 1, patch_size, 0);
+  Planner const sizes(needed, patch_size, 0);
   std::vector<Index> words(static_cast<std::size_t>(needed.most()) / sizeof(Index) + 1);
   auto const for_each_patch = [&](auto const& f) {
     for (Index p = 0; p < plan.patches; ++p) {
       Index const first = cuts.first(p);
       detail::PlanMemory memory(words.data());
-      Planner planner(memory, 1, patch_size, cuts.first(p + 1) - first);
+      Planner planner(memory, patch_size, cuts.first(p + 1) - first);
       auto const counts =
           planner.count(detail::OneThread{}, table[static_cast<std::size_t>(first)].data(),
                         static_cast<int>(Planner::nodes));

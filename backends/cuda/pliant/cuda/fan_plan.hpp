@@ -49,13 +49,13 @@ class FanPlanner {
   }
 
   /// For patches of at most `patch_size` elements, FanSplitter::most_elements or fewer, and one of `size`.
-  PLIANT_HOST_DEVICE FanPlanner(PlanMemory& memory, int threads, int patch_size, int size)
+  PLIANT_HOST_DEVICE FanPlanner(PlanMemory& memory, int patch_size, int size)
       : size_(size),
         nodes_(memory.take<Index>(nodes * patch_size)),
         local_(memory.take<std::uint16_t>(nodes * patch_size)),
         visits_(memory.take<std::uint16_t>(most_fan_visits * patch_size)),
         begin_(memory.used()),
-        numbering_(memory, patch_size, threads),
+        numbering_(memory, patch_size),
         splitter_(memory.from(begin_), patch_size),
         slots_(memory.from(splitter_.end()), patch_size, most_fan_visits, FanSplitter::most_nodes) {
   }

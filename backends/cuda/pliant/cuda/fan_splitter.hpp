@@ -26,8 +26,7 @@ class FanSplitter {
         around_(memory.take<int>(mask_ + 1)),
         votes_(memory.take<int>(mask_ + 1)),
         first_(memory.take<int>(mask_ + 1)),
-        totals_(memory.take<int>(3)),
-        places_(memory.take<int>(most_fan_elements * most_runs)),
+        totals_(memory.take<int>(2)),
         edge_(memory.take<std::uint16_t>(6 * patch_size)),
         next_(memory.take<std::uint16_t>(6 * patch_size)),
         before_(memory.take<std::uint16_t>(patch_size)),
@@ -89,11 +88,10 @@ class FanSplitter {
   PLIANT_HOST_DEVICE int corner(FanMember member, int k) const { return member.corner(local_, k); }
 
  private:
-  static constexpr int none = 0xffff, most_runs = 32;
+  static constexpr int none = 0xffff;
 
-  PLIANT_HOST_DEVICE int* left() const { return totals_; }       // elements in no fan
-  PLIANT_HOST_DEVICE int* count() const { return totals_ + 1; }  // fans
-  PLIANT_HOST_DEVICE int* full() const { return totals_ + 2; }   // whether there are too many edges
+  PLIANT_HOST_DEVICE int* left() const { return totals_; }      // elements in no fan
+  PLIANT_HOST_DEVICE int* full() const { return totals_ + 1; }  // whether there are too many edges
 
   template <class Threads, class F>
   PLIANT_HOST_DEVICE void for_each_left(Threads const& threads, int size, F const& f) const {
@@ -109,18 +107,25 @@ class FanSplitter {
   }
 
   /// Of what `around_` sums up: how many there are, and whether each one's end is another one's begin.
-  static constexpr int counted = 1 << 21, balance = 1024;
+  static constexpr unsigned counted = 1 << 21;
+  static constexpr int balance = 1024;
   PLIANT_HOST_DEVICE int summand(FanMember m) const {
-    return counted + balance + corner(m, 2) - corner(m, 3);
+    return static_cast<int>(counted) + balance + corner(m, 2) - corner(m, 3);
   }
-  PLIANT_HOST_DEVICE int members_left(int edge) const { return around_[edge] / counted; }
+  PLIANT_HOST_DEVICE static int members(int sum) {
+    return static_cast<int>(static_cast<unsigned>(sum) / counted);
+  }
 
   /// Of an edge: the fewer nodes a fan there visits for an element, the better.
   PLIANT_HOST_DEVICE std::int64_t rating(int edge) const {
-    int const n = members_left(edge), most = most_fan_elements;
-    bool const closed = n > 2 && n <= most && around_[edge] % counted == balance * n;
+    // 60 / 1, 60 / 2, ... 60 / most_fan_elements, a byte each, the first lowest
+    constexpr std::uint64_t shares = 0x0a'0c'0f'14'1e'3c;
+    int const sum = around_[edge], n = members(sum), most = most_fan_elements;
+    bool const closed = n > 2 && n <= most &&
+                        static_cast<unsigned>(sum) % counted == static_cast<unsigned>(balance * n);
     int const size = n < most ? n : most;
-    int const visits_per_60 = (closed ? size + 2 : size + 3) * 60 / size;
+    int const visits_per_60 =
+        (closed ? size + 2 : size + 3) * static_cast<int>(shares >> 8 * (size - 1) & 0xff);
     return std::int64_t{256 - visits_per_60} << 32 | key_[edge];
   }
   PLIANT_HOST_DEVICE int best_edge(int t) const {
@@ -172,7 +177,7 @@ class FanSplitter {
   /// Whether all around an edge have voted for it.
   PLIANT_HOST_DEVICE bool is_agreed(FanMember m) const {
     int const edge = edge_[6 * m.element() + m.edge()];
-    return votes_[edge] == members_left(edge);
+    return votes_[edge] == members(around_[edge]);
   }
 
   /// Finds the members before and behind one around such an edge; of several the first.
@@ -233,36 +238,29 @@ class FanSplitter {
   /// Homes by the sizes of their fans, then in their order; how many there are. All threads have met then.
   template <class Threads>
   PLIANT_HOST_DEVICE int sort(Threads const& threads, int size) const {
-    // A run of elements for each of the first threads: how many fans of each size are at home there, then their places.
-    int const runs = threads.stride() < most_runs ? threads.stride() : most_runs,
-              run = threads.first(), each = (size + runs - 1) / runs;
-    auto const place = [&](int k, int r) -> int& {
-      return places_[(most_fan_elements - k) * most_runs + r];
-    };
+    // Numbers by sizes, side by side, the largest size lowest: only of single ones there may be as many as a field has no room for.
+    constexpr int bits = 10, field = (1 << bits) - 1;
+    auto const shift = [](int k) { return bits * (most_fan_elements - k); };
+    // A run of elements for each thread: how many fans of each size are at home there, then their places.
+    int const run = threads.first(), each = (size + threads.stride() - 1) / threads.stride();
     auto const for_each_home = [&](auto const& f) {
       for (int t = run * each; t < (run + 1) * each && t < size; ++t)
-        if (size_[t] > 0) f(t);
+        if (size_[t] > 0) f(t, shift(size_[t]));
     };
-    if (run < runs) {
-      for (int k = 1; k <= most_fan_elements; ++k) place(k, run) = 0;
-      for_each_home([&](int t) { ++place(size_[t], run); });
+    std::uint64_t own = 0, all = 0;
+    for_each_home([&](int, int at) { own += std::uint64_t{1} << at; });
+    std::uint64_t next = threads.sum_before(own, all);
+    int fans = 0;
+    for (int k = most_fan_elements; k > 0; --k) {
+      next += static_cast<std::uint64_t>(fans) << shift(k);
+      fans += static_cast<int>(k > 1 ? all >> shift(k) & field : all >> shift(k));
     }
+    for_each_home([&](int t, int at) {
+      home_[next >> at & field] = static_cast<std::uint16_t>(t);
+      next += std::uint64_t{1} << at;
+    });
     threads.meet();
-    if (threads.first() == 0) {
-      int fans = 0;
-      for (int k = most_fan_elements; k > 0; --k)
-        for (int r = 0; r < runs; ++r) {
-          int const own = place(k, r);
-          place(k, r) = fans;
-          fans += own;
-        }
-      *count() = fans;
-    }
-    threads.meet();
-    if (run < runs)
-      for_each_home([&](int t) { home_[place(size_[t], run)++] = static_cast<std::uint16_t>(t); });
-    threads.meet();
-    return *count();
+    return fans;
   }
 
   std::uint16_t const* local_ = nullptr;  // (elements, 4)
@@ -273,7 +271,6 @@ class FanSplitter {
   int mask_;
   int *key_, *around_, *votes_, *first_;  // (table), of edges; the first of a list of members
   int* totals_;
-  int* places_;                  // (sizes, runs): of fans
   std::uint16_t *edge_, *next_;  // (elements, 6): where in the table; the next in the edge's list
   std::uint16_t *before_, *after_;  // (elements): members around the chosen edge; or none
   std::uint8_t *choice_, *taken_,

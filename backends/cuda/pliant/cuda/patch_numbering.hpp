@@ -11,13 +11,12 @@ namespace pliant::detail {
 template <int Nodes>
 class PatchNumbering {
  public:
-  PLIANT_HOST_DEVICE PatchNumbering(PlanMemory& memory, int patch_size, int threads)
+  PLIANT_HOST_DEVICE PatchNumbering(PlanMemory& memory, int patch_size)
       : mask_(static_cast<int>(std::bit_ceil(static_cast<unsigned>(patch_size * Nodes * 5 / 4))) -
               1),
         keys_(memory.take<Index>(mask_ + 1)),
         share_(memory.take<int>(mask_ + 1)),
-        place_(memory.take<std::uint16_t>(patch_size * Nodes)),
-        new_(memory.take<int>(threads)) {}
+        place_(memory.take<std::uint16_t>(patch_size * Nodes)) {}
 
   /// Of `size` elements, rows of `width` numbers that were checked before: local[share], for each share (an element's
   /// node), and the node that each of these is. How many there are; all threads have met then.
@@ -47,7 +46,7 @@ class PatchNumbering {
     };
     int count = 0, total = 0;
     for_each_new([&](int) { ++count; });
-    int next = sum_before(threads, count, new_, total);
+    int next = threads.sum_before(count, total);
     for_each_new([&](int i) {
       nodes[next] = keys_[place_[i]];
       local[i] = static_cast<std::uint16_t>(next++);
@@ -66,7 +65,6 @@ class PatchNumbering {
   Index* keys_;           // (table)
   int* share_;            // (table): the first that has the node
   std::uint16_t* place_;  // (shares): in the table
-  int* new_;              // (threads)
 };
 
 }  // namespace pliant::detail

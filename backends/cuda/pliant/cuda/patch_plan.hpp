@@ -38,12 +38,12 @@ class PatchPlanner {
   static PatchCounts most(int patch_size) { return {Nodes * patch_size, 0, 0, Nodes * patch_size}; }
 
   /// For patches of at most `patch_size` elements, and one of `size`.
-  PLIANT_HOST_DEVICE PatchPlanner(PlanMemory& memory, int threads, int patch_size, int size)
+  PLIANT_HOST_DEVICE PatchPlanner(PlanMemory& memory, int patch_size, int size)
       : size_(size),
         local_(memory.take<std::uint16_t>(patch_size * Nodes)),
         nodes_(memory.take<Index>(patch_size * Nodes)),
         begin_(memory.used()),
-        numbering_(memory, patch_size, threads),
+        numbering_(memory, patch_size),
         slots_(memory.from(begin_), patch_size, Nodes, patch_size * Nodes) {}
 
   /// Rows of `width` node numbers, which were checked before.

@@ -21,13 +21,35 @@ struct BlockThreads {
   __device__ static constexpr int stride() { return Planner::block_threads; }
   __device__ void meet() const { __syncthreads(); }
   __device__ bool any(bool value) const { return __syncthreads_or(value) != 0; }
+  template <class U>
+  __device__ U sum_before(U own, U& all) const {
+    constexpr int warps = stride() / warp_size;
+    static_assert(stride() % warp_size == 0 && warps <= warp_size);
+    __shared__ U of_warps[warps];
+    int const lane = first() % warp_size, warp = first() / warp_size;
+    auto const sum_to = [&](U sum) {
+      for (int step = 1; step < warp_size; step *= 2) {
+        U const before = __shfl_up_sync(0xffffffffu, sum, step);
+        if (lane >= step) sum += before;
+      }
+      return sum;
+    };
+    U const sum = sum_to(own);
+    if (lane == warp_size - 1) of_warps[warp] = sum;
+    meet();
+    U const sums = sum_to(lane < warps ? of_warps[lane] : U{});
+    all = __shfl_sync(0xffffffffu, sums, warps - 1);
+    U const before = __shfl_sync(0xffffffffu, sums, warp > 0 ? warp - 1 : 0);
+    meet();
+    return sum - own + (warp > 0 ? before : U{});
+  }
 };
 
 /// The shared memory that planning patches of a size takes, bytes.
 template <class Planner>
 int plan_bytes(int patch_size) {
   PlanMemory memory;
-  Planner const planner(memory, Planner::block_threads, patch_size, 0);
+  Planner const planner(memory, patch_size, 0);
   return memory.most();
 }
 
@@ -76,8 +98,7 @@ __device__ void plan_patch(PatchInput const& input, Index patch, PlanView<Planne
   Index const first = input.first[patch];
   PlanMemory memory(planner_memory);
   BlockThreads<Planner> const threads;
-  Planner planner(memory, threads.stride(), input.patch_size,
-                  static_cast<int>(input.first[patch + 1] - first));
+  Planner planner(memory, input.patch_size, static_cast<int>(input.first[patch + 1] - first));
   auto const counts =
       planner.count(threads, input.connectivity + std::int64_t{first} * input.width, input.width);
   if (threadIdx.x == 0) to.set_counts(patch, counts, most);

@@ -11,29 +11,18 @@ struct OneThread {
   PLIANT_HOST_DEVICE static constexpr int stride() { return 1; }
   PLIANT_HOST_DEVICE void meet() const {}
   PLIANT_HOST_DEVICE bool any(bool value) const { return value; }  // of all threads, which meet
+  /// The sum of what the threads before this one have, and of what all have into `all`. All threads have met then.
+  template <class U>
+  PLIANT_HOST_DEVICE U sum_before(U own, U& all) const {
+    all = own;
+    return 0;
+  }
 };
 
 /// Calls f(i) for each i < n, in the calling threads together.
 template <class Threads, class F>
 PLIANT_HOST_DEVICE void share_out(Threads const& threads, int n, F const& f) {
   for (int i = threads.first(); i < n; i += threads.stride()) f(i);
-}
-
-/// The sum of what the threads before this one have, and of what all have into `all`. shared: (threads).
-template <class Threads>
-PLIANT_HOST_DEVICE int sum_before(Threads const& threads, int own, int* shared, int& all) {
-  int sum = own;
-  for (int step = 1; step < Threads::stride(); step *= 2) {
-    shared[threads.first()] = sum;
-    threads.meet();
-    if (threads.first() >= step) sum += shared[threads.first() - step];
-    threads.meet();
-  }
-  if (threads.first() == Threads::stride() - 1) shared[0] = sum;
-  threads.meet();
-  all = shared[0];
-  threads.meet();
-  return sum - own;
 }
 
 PLIANT_HOST_DEVICE int add_shared(int& to, int value) {

@@ -96,23 +96,46 @@ class SlotPlanner {
   /// Ranks nodes by valence, those of one valence in their order; where each diagonal begins. All threads have met then.
   template <class Threads>
   PLIANT_HOST_DEVICE void sort_by_valence(Threads const& threads, PatchCounts const& counts) const {
-    // Threads read the valence of one node at a time, all the same one.
-    share_out(threads, counts.nodes, [&](int n) {
-      int const own = valence_[n];
-      int rank = 0, free = 0;
-      for (int m = 0; m < counts.nodes; ++m) {
-        int const other = valence_[m];
-        rank += other > own || (other == own && m < n) ? 1 : 0;
-        free += m < n ? other : 0;
-      }
-      rank_[n] = static_cast<std::uint16_t>(rank);
-      first_free_[n] = static_cast<std::uint16_t>(free);
+    int const nodes = counts.nodes;
+    int* const ranks = free_;              // (nodes), until slots are free
+    std::uint16_t* const by_rank = slot_;  // (nodes), until visits have slots: valences
+    share_out(threads, nodes, [&](int n) { ranks[n] = 0; });
+    // A run of nodes for each thread.
+    int const each = (nodes + threads.stride() - 1) / threads.stride();
+    auto const for_each_own = [&](auto const& f) {
+      for (int n = threads.first() * each; n < (threads.first() + 1) * each && n < nodes; ++n) f(n);
+    };
+    int own_slots = 0, all_slots = 0;
+    for_each_own([&](int n) { own_slots += valence_[n]; });
+    int next = threads.sum_before(own_slots, all_slots);
+    for_each_own([&](int n) {
+      first_free_[n] = static_cast<std::uint16_t>(next);
+      next += valence_[n];
     });
+    threads.meet();
+    // Several threads compare a node with all others. They read the valence of one of these at a time, all the same one.
+    int const parts = nodes < threads.stride() ? threads.stride() / (nodes > 0 ? nodes : 1) : 1,
+              part = (nodes + parts - 1) / parts;
+    share_out(threads, nodes * parts, [&](int i) {
+      int const n = i % nodes, own = valence_[n], begin = i / nodes * part,
+                end = begin + part < nodes ? begin + part : nodes;
+      int before = 0;
+      for (int m = begin; m < end; ++m) {
+        int const other = valence_[m];
+        before += other > own || (other == own && m < n) ? 1 : 0;
+      }
+      add_shared(ranks[n], before);
+    });
+    threads.meet();
+    share_out(threads, nodes, [&](int n) {
+      rank_[n] = static_cast<std::uint16_t>(ranks[n]);
+      by_rank[ranks[n]] = static_cast<std::uint16_t>(valence_[n]);
+    });
+    threads.meet();
     // How many nodes have a d-th slot is the length of that diagonal.
-    share_out(threads, counts.diagonals, [&](int d) {
-      int length = 0;
-      for (int m = 0; m < counts.nodes; ++m) length += valence_[m] > d ? 1 : 0;
-      starts_[d] = static_cast<std::uint16_t>(length);
+    share_out(threads, nodes, [&](int r) {
+      for (int d = r + 1 < nodes ? by_rank[r + 1] : 0; d < by_rank[r]; ++d)
+        starts_[d] = static_cast<std::uint16_t>(r + 1);
     });
     threads.meet();
     if (threads.first() == 0)
