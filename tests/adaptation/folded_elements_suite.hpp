@@ -29,6 +29,12 @@ void fold(TheBody& body) {
   u[8] = {-0.6, -0.6};
   body.set_displacements(u);
 }
+/// How many changes of energy were not finite.
+template <class TheBody>
+double unbooked_changes(TheBody const& body) {
+  auto const& parts = body.parts();
+  return detail::booked(parts, download<double>(parts.state.work)).not_finite;
+}
 
 TEST_CASE("a rule leaves a law that cannot invert, and the run goes on", "[adaptation]") {
   on_each_backend<MainAlone>([]<class B>(B const& backend) {
@@ -52,7 +58,7 @@ TEST_CASE("a rule leaves a law that cannot invert, and the run goes on", "[adapt
 
     CHECK(std::isfinite(total_energy(body)));
     CHECK(booked_energy(body.parts()) == before);
-    CHECK(unbooked_changes(body.parts()) == (body.steps() > 0 ? 2 : 1));  // of all together too
+    CHECK(unbooked_changes(body) == (body.steps() > 0 ? 2 : 1));  // of all together too
     CHECK_NOTHROW(step(body, 20));
     CHECK(step.retries() == 0);
     CHECK(std::isfinite(booked_energy(body.parts())));
@@ -75,7 +81,7 @@ TEST_CASE("an element that folds between two checks is rescued by a rule", "[ada
 
     step(body, 4);
     CHECK(step.retries() == 0);
-    CHECK(unbooked_changes(body.parts()) == 1);
+    CHECK(unbooked_changes(body) == 1);
     CHECK(std::isfinite(booked_energy(body.parts())));
   });
 }
@@ -88,7 +94,7 @@ TEST_CASE("loads set while an element is folded leave the books finite", "[adapt
     auto const straight = body.displacements();
     fold(body);
     body.set_load(8, {1, 0});
-    CHECK(unbooked_changes(body.parts()) == 1);
+    CHECK(unbooked_changes(body) == 1);
     body.set_displacements(straight);
     body.set_load(8, {});
     CHECK_NOTHROW(step(body, 300));

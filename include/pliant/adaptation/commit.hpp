@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <pliant/adaptation/family_momentum.hpp>
+#include <pliant/backend/sums.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/change_topology.hpp>
 #include <pliant/topology/plan.hpp>
@@ -75,23 +77,28 @@ template <bool TellsKinetic = false, class Parts, class Change>
 void commit_change(Parts& parts, std::string actions, std::size_t count, Change const& change) {
   constexpr int dim = Parts::dim;
   wake_all(parts);
-  auto const energies_but_strain = [](Parts& p) {
-    return Energies{0, TellsKinetic ? 0 : kinetic_energy_of(p),
-                    p.watched_energy ? potential_energy_of(p) : 0};
+  enum Sum : std::size_t { kinetic, potential, term, all };  // before, and as many behind
+  Sums<2 * all, typename Parts::backend_type> sums(parts.backend);
+  auto const add = [](Parts& p, double* to) {
+    if (!TellsKinetic) add_kinetic_energy(p, to + kinetic);
+    if (p.add_watched_term == nullptr) return;
+    add_potential_energy(p, to + potential);
+    p.add_watched_term(p, to + term);
   };
-  auto const energy_now = [](Parts& p, Energies const& energies) {
-    return p.watched_energy ? p.watched_energy(p, energies) : WatchedEnergy{energies, 0};
-  };
-  auto energies = energies_but_strain(parts);
+  add(parts, sums.data());
   auto changed = change();
   auto& next = changed.parts;
-  energies.strain = changed.strain_energy_before;
-  if (TellsKinetic) energies.kinetic = *changed.kinetic_energy_before;
-  auto const before = energy_now(parts, energies);
-  energies = energies_but_strain(next);
-  energies.strain = changed.strain_energy;
-  if (TellsKinetic) energies.kinetic = *changed.kinetic_energy;
-  auto const after = energy_now(next, energies);
+  add(next, sums.data() + all);
+  auto const read = sums.read();
+  auto const energy_of = [](Parts const& p, double strain, std::optional<double> given,
+                            double const* from) {
+    return WatchedEnergy{{strain, given.value_or(from[kinetic]), from[potential]},
+                         square(p.state.integrator.step) * from[term]};
+  };
+  auto const before =
+      energy_of(parts, changed.strain_energy_before, changed.kinetic_energy_before, read.data());
+  auto const after =
+      energy_of(next, changed.strain_energy, changed.kinetic_energy, read.data() + all);
   auto const added_to = [](double from, double to) { return zero_if_not_finite(to - from); };
   LedgerEntry<dim> const entry{next.state.time,
                                std::move(actions),
@@ -101,8 +108,8 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
                                changed.taken};
   next.state.record.refinements.push_back(entry);
   // The energy that an integrator keeps may have changed by more, with masses and forces.
-  double const added = next.watched_energy ? watched_change(next, before, after) : 0;
-  if (next.watched_energy && next.state.integrator.active)
+  double const added = next.add_watched_term ? watched_change(next, before, after) : 0;
+  if (next.add_watched_term && next.state.integrator.active)
     next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
   if (changed.changed_rows.marks.size() > 0) parts.raise_bounds(parts, next, changed.changed_rows);
   put_in_force(parts, std::move(next));

@@ -191,7 +191,7 @@ void save_state(Stream& stream, Parts const& parts) {
   write.put(detail::signature_of(parts));
   State::for_each_member(detail::WriteMember<M>{write, parts.first}, parts.state);
   write.put(parts.layout.node_rows());
-  write.put(parts.watched_energy != nullptr);
+  write.put(parts.add_watched_term != nullptr);
   write.put(parts.has_checkpoint);
   if (parts.has_checkpoint)
     State::for_each_member(detail::WriteMember<M>{write, parts.state.topology}, *parts.checkpoint);
@@ -248,8 +248,8 @@ void load_state(Stream& stream, Parts& parts) {
   put_in_force(parts, std::move(next));
   parts.checkpoint = std::move(checkpoint);
   parts.has_checkpoint = has_checkpoint;
-  parts.watched_energy = nullptr;
-  if (watched) parts.watched_energy = leapfrog_energy<Parts>;
+  parts.add_watched_term = nullptr;
+  if (watched) parts.add_watched_term = add_acceleration_term<Parts>;
   parts.integrator = nullptr;
 }
 

@@ -72,7 +72,7 @@ Parts parts_on(Parts const& parts, typename Parts::layout_type layout,
   next.state.pending_half_kick = 0;
   next.upload_pressures = parts.upload_pressures;
   next.term_makers = parts.term_makers;
-  next.watched_energy = parts.watched_energy;
+  next.add_watched_term = parts.add_watched_term;
   next.revision = parts.revision;
   make_arrays_of_elements(next);
   return next;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <pliant/backend/element_sums.hpp>
+#include <pliant/backend/sums.hpp>
 #include <pliant/body/velocities.hpp>
 
 namespace pliant {
@@ -30,10 +31,9 @@ struct AccelerationTerm {
 };
 
 template <class Parts>
-double acceleration_term_of(Parts& parts, typename Parts::ConstField f) {
-  return parts.backend.sum(parts.layout.rows,
-                           AccelerationTerm<typename Parts::T, Parts::dim>{
-                               f, parts.layout.mass.data(), parts.still(), external_forces(parts)});
+AccelerationTerm<typename Parts::T, Parts::dim> acceleration_term_of_nodes(
+    Parts& parts, typename Parts::ConstField f) {
+  return {f, parts.layout.mass.data(), parts.still(), external_forces(parts)};
 }
 
 }  // namespace detail
@@ -43,30 +43,32 @@ double acceleration_term_of(Parts& parts, typename Parts::ConstField f) {
 template <class Parts>
 double acceleration_term(Parts& parts) {
   evaluate_forces(parts);
-  return detail::acceleration_term_of(parts, {parts.layout.f.data()});
+  return parts.backend.sum(parts.layout.rows,
+                           detail::acceleration_term_of_nodes(parts, {parts.layout.f.data()}));
+}
+/// Adds that to *to in the backend's memory.
+template <class Parts>
+void add_acceleration_term(Parts& parts, double* to) {
+  evaluate_forces(parts);
+  parts.backend.add_sum(parts.layout.rows,
+                        detail::acceleration_term_of_nodes(parts, {parts.layout.f.data()}), to);
 }
 
 /// The same of gravity and loads alone.
 template <class Parts>
 double load_term(Parts& parts) {
-  return detail::acceleration_term_of(parts, {nullptr});
+  return parts.backend.sum(parts.layout.rows, detail::acceleration_term_of_nodes(parts, {nullptr}));
 }
 
-/// Of the present energies: these, and what the one that leapfrog keeps has less than their total: that has the kinetic energy v₋·M·v₊/2 of the
+/// The present energies, and what the one that leapfrog keeps has less than their total: that has the kinetic energy v₋·M·v₊/2 of the
 /// half steps around the present time, v∓ = v ∓ Δt/2 a. For linear laws it is constant to rounding,
 /// whatever the step; beyond the stable one it no longer bounds the motion.
 template <class Parts>
-WatchedEnergy leapfrog_energy(Parts& parts, Energies const& energies) {
-  double const step = parts.state.integrator.step;
-  return {energies, step * step * acceleration_term(parts)};
-}
-
-template <class Parts>
 WatchedEnergy leapfrog_energy(Parts& parts) {
-  return leapfrog_energy(parts, energies_of(parts));
+  return watched_energy_of(parts, add_acceleration_term<Parts>);
 }
 
-/// Adds to what is booked, J. What is not finite is not; see unbooked_changes.
+/// Adds to what is booked, J. What is not finite is not; see detail::Booked.
 template <class Parts>
 void book(Parts& parts, Work what, double added) {
   bool const booked = std::isfinite(added);
@@ -81,10 +83,13 @@ void book(Parts& parts, Work what, double added) {
 template <class Parts, class Move>
 void book_switching(Parts& parts, Move const& move) {
   double const step = parts.state.pending_half_kick != 0 ? 0 : parts.state.integrator.step;
-  double const before = step > 0 ? acceleration_term(parts) : 0;
+  Sums<2, typename Parts::backend_type> sums(parts.backend);
+  if (step > 0) add_acceleration_term(parts, sums.data());
   move();
   if (step == 0) return;
-  book(parts, Work::switching, -step * step * (acceleration_term(parts) - before));
+  add_acceleration_term(parts, sums.data() + 1);
+  auto const [before, after] = sums.read();
+  book(parts, Work::switching, -step * step * (after - before));
 }
 
 }  // namespace pliant

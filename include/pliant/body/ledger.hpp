@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <pliant/body/parts.hpp>
 
 // What a user can read of a body's adaptation.
@@ -106,35 +108,37 @@ std::vector<int> switch_counts(TheBody const& body) {
   return counts;
 }
 
+namespace detail {
+
+/// What changes of a body's energy are booked, J, and how many are not because they are not finite. An integrator that finds
+/// more of these than before has nothing to compare energies with.
+struct Booked {
+  double energy, not_finite;
+};
+
+/// What switching, refining and sleep have added to the strain and kinetic energy so far. `work`: what is in state.work.
+template <class Parts>
+Booked booked_by_adaptation(Parts const& parts, std::span<double const> work) {
+  auto const at = [&](Work which) { return work[static_cast<std::size_t>(which)]; };
+  Booked booked{at(Work::switching) + at(Work::sleep) + parts.state.record.refinements.energy(),
+                at(Work::unbooked)};
+  for_each_numbered_type(parts, [&](auto const& table, auto const& elements, std::size_t which) {
+    using Table = std::remove_cvref_t<decltype(table)>;
+    using Counters = CounterLayout<Table::groups>;
+    auto const sums = counters<Table>(parts, elements, which);
+    for (std::size_t k = Counters::energy(0, 0); k < std::size_t{Counters::unbooked}; ++k)
+      booked.energy += sums[k];
+    booked.not_finite += sums[std::size_t{Counters::unbooked}];
+  });
+  return booked;
+}
+
+}  // namespace detail
+
 /// What switching, refining and sleep have added to the strain and kinetic energy so far, J.
 template <class Parts>
 double adaptation_energy_of(Parts const& parts) {
-  auto const work = download<double>(parts.state.work);
-  double sum = work[static_cast<std::size_t>(Work::switching)] +
-               work[static_cast<std::size_t>(Work::sleep)] +
-               parts.state.record.refinements.energy();
-  detail::for_each_numbered_type(
-      parts, [&](auto const& table, auto const& elements, std::size_t which) {
-        using Table = std::remove_cvref_t<decltype(table)>;
-        using Counters = CounterLayout<Table::groups>;
-        auto const sums = detail::counters<Table>(parts, elements, which);
-        for (std::size_t k = Counters::energy(0, 0); k < std::size_t{Counters::unbooked}; ++k)
-          sum += sums[k];
-      });
-  return sum;
-}
-/// How many changes of the energy are not booked because they are not finite. An integrator that finds more
-/// of them than before has nothing to compare energies with.
-template <class Parts>
-double unbooked_changes(Parts const& parts) {
-  double sum = download<double>(parts.state.work)[static_cast<std::size_t>(Work::unbooked)];
-  detail::for_each_numbered_type(
-      parts, [&](auto const& table, auto const& elements, std::size_t which) {
-        using Table = std::remove_cvref_t<decltype(table)>;
-        sum += detail::counters<Table>(parts, elements,
-                                       which)[std::size_t{CounterLayout<Table::groups>::unbooked}];
-      });
-  return sum;
+  return detail::booked_by_adaptation(parts, download<double>(parts.state.work)).energy;
 }
 /// The same, of a body.
 template <DeformableBody TheBody>
@@ -155,10 +159,9 @@ struct ExternalWork {
 };
 
 /// The work on a body since it was made: of loads from the first on, by hand once an integrator has taken the
-/// body, and the rest where integrators step.
+/// body, and the rest where integrators step. `work`: what is in state.work.
 template <class Parts>
-ExternalWork external_work_of(Parts const& parts) {
-  auto const work = download<double>(parts.state.work);
+ExternalWork external_work_of(Parts const& parts, std::span<double const> work) {
   auto const at = [&](Work which) { return work[static_cast<std::size_t>(which)]; };
   return {at(Work::changed_loads), at(Work::damping),          at(Work::motions),
           at(Work::pressures),     parts.state.energy_by_hand, parts.state.energy_of_steps};
@@ -166,13 +169,24 @@ ExternalWork external_work_of(Parts const& parts) {
 /// The same, of a body.
 template <DeformableBody TheBody>
 ExternalWork external_work(TheBody const& body) {
-  return external_work_of(body.parts());
+  auto const& parts = body.parts();
+  return external_work_of(parts, download<double>(parts.state.work));
 }
 
-/// All that is booked, J: what a body's energy has changed by besides time integration.
+namespace detail {
+/// All that is booked: what a body's energy has changed by besides time integration. `work`: what is in state.work.
+template <class Parts>
+Booked booked(Parts const& parts, std::span<double const> work) {
+  auto all = booked_by_adaptation(parts, work);
+  all.energy += external_work_of(parts, work).sum();
+  return all;
+}
+}  // namespace detail
+
+/// That, J.
 template <class Parts>
 double booked_energy(Parts const& parts) {
-  return adaptation_energy_of(parts) + external_work_of(parts).sum();
+  return detail::booked(parts, download<double>(parts.state.work)).energy;
 }
 
 /// Every change of energy that adaptation made: one entry per pair of groups that elements moved

@@ -77,13 +77,22 @@ void make_loads(Parts& parts) {
   parts.loads_current = false;
 }
 
+namespace detail {
+template <class Parts>
+PotentialEnergy<typename Parts::T, Parts::dim> potential_energy_of_nodes(Parts& parts) {
+  return {std::as_const(parts).u(), parts.layout.mass.data(), external_forces(parts)};
+}
+}  // namespace detail
+
 /// −(gravity + loads)·u, J.
 template <class Parts>
 double potential_energy_of(Parts& parts) {
-  return parts.backend.sum(
-      parts.layout.rows,
-      PotentialEnergy<typename Parts::T, Parts::dim>{
-          std::as_const(parts).u(), parts.layout.mass.data(), external_forces(parts)});
+  return parts.backend.sum(parts.layout.rows, detail::potential_energy_of_nodes(parts));
+}
+/// Adds that to *to in the backend's memory.
+template <class Parts>
+void add_potential_energy(Parts& parts, double* to) {
+  parts.backend.add_sum(parts.layout.rows, detail::potential_energy_of_nodes(parts), to);
 }
 
 /// The loads of all nodes, N, in the user's order; zero where none was set.

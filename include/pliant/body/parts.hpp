@@ -98,8 +98,8 @@ struct Parts {
   long revision = 0;             // changes whenever recorded kernels would no longer be right
   std::optional<state_type> checkpoint{};
   bool has_checkpoint = false;  // of the present mesh, with no change by hand since
-  /// The energies that an integrator watches; set by it.
-  WatchedEnergy (*watched_energy)(Parts&, Energies const& present) = nullptr;
+  /// Adds Σ m a²/8 of WatchedEnergy, J/s², to *to in the backend's memory; set by an integrator that watches energies, else null.
+  void (*add_watched_term)(Parts&, double* to) = nullptr;
   /// Raises the bounds of frequencies of the parts behind a change of the mesh; set by an integrator that steps by them.
   void (*raise_bounds)(Parts const& before, Parts& next, ChangedRows<B>&) = nullptr;
   /// Of the integrator that stepped last; null: any. It lives on here: another integrator where

@@ -53,13 +53,13 @@ Vector<T, int{Dim}> vector_of(std::array<double, Dim> const& x) {
 template <class Parts, class Change>
 void change_loads(Parts& parts, Change const& change) {
   synchronize_velocities(parts);
-  double const potential = parts.watched_energy ? 0 : potential_energy_of(parts);
+  double const potential = parts.add_watched_term ? 0 : potential_energy_of(parts);
   auto const before = present_energy(parts);
   change();
   ++parts.revision;
   parts.state.implicit.balanced = false;
-  double const added = parts.watched_energy ? watched_change(parts, before, present_energy(parts))
-                                            : potential_energy_of(parts) - potential;
+  double const added = parts.add_watched_term ? watched_change(parts, before, present_energy(parts))
+                                              : potential_energy_of(parts) - potential;
   if (!std::isfinite(added)) return;
   auto work = download<double>(parts.state.work);
   work[static_cast<std::size_t>(Work::changed_loads)] += added;
@@ -123,7 +123,7 @@ void set_load(Parts& parts, Index node, Point<Parts::dim> const& force) {
   wake_nodes(parts, std::array{parts.layout.internal_of(node)});
   synchronize_velocities(parts);
   make_loads(parts);
-  double const step = parts.watched_energy ? parts.state.integrator.step : 0;
+  double const step = parts.add_watched_term ? parts.state.integrator.step : 0;
   if (step > 0) evaluate_forces(parts);
   auto const external = external_forces(parts);
   parts.backend.for_each(1, detail::SetLoad<T, Parts::dim>{{parts.state.load.data()},

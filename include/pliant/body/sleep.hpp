@@ -195,21 +195,24 @@ void change_rest(Parts& parts, std::span<std::int32_t const> rest) {
   using T = typename Parts::T;
   synchronize_velocities(parts);
   relax_what_sleeps(parts);
-  double const step = parts.watched_energy ? parts.state.integrator.step : 0;
-  auto const energies = [&] {
-    return std::pair{kinetic_energy_of(parts),
-                     step > 0 ? step * step * acceleration_term(parts) : 0.0};
+  double const step = parts.add_watched_term ? parts.state.integrator.step : 0;
+  Sums<4, typename Parts::backend_type> sums(parts.backend);
+  auto const add = [&](double* to) {
+    add_kinetic_energy(parts, to);
+    if (step > 0) add_acceleration_term(parts, to + 1);
   };
-  auto const before = energies();
+  add(sums.data());
   parts.state.rest.upload(rest);
   detail::bring_up_to_rest(parts, rest);
   if (parts.awake) {
     parts.backend.for_each(parts.layout.rows, StopHeld<T, Parts::dim>{parts.v(), parts.still()});
     parts.layout.interpolation.apply(parts.backend, parts.v());
   }
-  auto const after = energies();
-  parts.state.integrator.last_energy += after.second - before.second;
-  book(parts, Work::sleep, after.first - before.first - (after.second - before.second));
+  add(sums.data() + 2);
+  auto const [kinetic_before, term_before, kinetic, term] = sums.read();
+  double const added = step * step * (term - term_before);
+  parts.state.integrator.last_energy += added;
+  book(parts, Work::sleep, kinetic - kinetic_before - added);
 }
 
 namespace detail {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/backend/sums.hpp>
 #include <pliant/body/internal_variables.hpp>
 #include <pliant/body/loads.hpp>
 
@@ -166,19 +167,47 @@ void synchronize_velocities(Parts& parts) {
   parts.state.pending_half_kick = 0;
 }
 
+namespace detail {
+template <class Parts>
+KineticEnergy<typename Parts::T, Parts::dim> kinetic_energy_of_nodes(Parts& parts) {
+  synchronize_velocities(parts);
+  return {std::as_const(parts).v(), parts.layout.mass.data()};
+}
+}  // namespace detail
+
 /// Σ m v²/2, J.
 template <class Parts>
 double kinetic_energy_of(Parts& parts) {
-  synchronize_velocities(parts);
-  return parts.backend.sum(parts.layout.rows,
-                           KineticEnergy<typename Parts::T, Parts::dim>{std::as_const(parts).v(),
-                                                                        parts.layout.mass.data()});
+  return parts.backend.sum(parts.layout.rows, detail::kinetic_energy_of_nodes(parts));
+}
+/// Adds that to *to in the backend's memory.
+template <class Parts>
+void add_kinetic_energy(Parts& parts, double* to) {
+  parts.backend.add_sum(parts.layout.rows, detail::kinetic_energy_of_nodes(parts), to);
 }
 
+/// Adds strain, kinetic and potential energy to to[3] in the backend's memory.
+template <class Parts>
+void add_energies(Parts& parts, double* to) {
+  add_energy_at(std::as_const(parts), std::as_const(parts).u(), to);
+  add_kinetic_energy(parts, to + 1);
+  add_potential_energy(parts, to + 2);
+}
 template <class Parts>
 Energies energies_of(Parts& parts) {
-  return {energy_at(std::as_const(parts), std::as_const(parts).u()), kinetic_energy_of(parts),
-          potential_energy_of(parts)};
+  Sums<3, typename Parts::backend_type> sums(parts.backend);
+  add_energies(parts, sums.data());
+  auto const [strain, kinetic, potential] = sums.read();
+  return {strain, kinetic, potential};
+}
+/// The present energies, where add_term(parts, to) is a Parts::add_watched_term.
+template <class Parts, class AddTerm>
+WatchedEnergy watched_energy_of(Parts& parts, AddTerm const& add_term) {
+  Sums<4, typename Parts::backend_type> sums(parts.backend);
+  add_energies(parts, sums.data());
+  add_term(parts, sums.data() + 3);
+  auto const [strain, kinetic, potential, term] = sums.read();
+  return {{strain, kinetic, potential}, square(parts.state.integrator.step) * term};
 }
 /// Strain, kinetic and potential energy, J.
 template <class Parts>

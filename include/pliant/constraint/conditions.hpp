@@ -119,7 +119,8 @@ void upload_conditions(Parts& parts) {
 /// The energy that an integrator watches; none while none does.
 template <class Parts>
 WatchedEnergy present_energy(Parts& parts) {
-  return parts.watched_energy ? parts.watched_energy(parts, energies_of(parts)) : WatchedEnergy{};
+  return parts.add_watched_term ? watched_energy_of(parts, parts.add_watched_term)
+                                : WatchedEnergy{};
 }
 
 /// What a change from `before` to `after` added to the energy that an integrator watches and keeps, J; 0 while none

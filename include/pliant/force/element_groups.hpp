@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/backend/element_sums.hpp>
 #include <pliant/backend/patch_list.hpp>
 #include <pliant/force/element_kernels.hpp>
 #include <pliant/force/force_term.hpp>
@@ -47,6 +48,18 @@ class ElementGroups {
       });
     });
     return total;
+  }
+  /// Adds that to *to in the backend's memory.
+  template <class B>
+  void add_energy(B const& backend, At const& at, double* to) const {
+    for_each_table([&](auto const& table) {
+      using Table = std::remove_cvref_t<decltype(table)>;
+      table.with_geometry([&](auto geometry) {
+        add_sum_elements<Table::groups>(
+            backend, table.elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
+            to, at.rest, at.u);
+      });
+    });
   }
   /// By the kernels kernel_of(table, its ForceKernel).
   template <class B, class KernelOf = TheirOwnKernels>

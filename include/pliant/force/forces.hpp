@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pliant/backend/element_sums.hpp>
 #include <pliant/body/parts.hpp>
 
 // The sum of a body's force terms.
@@ -43,6 +44,17 @@ double energy_at(Parts const& parts, typename Parts::ConstField u) {
   for_each_force_term(parts,
                       [&](auto const& term) { sum += term.energy(parts.backend, parts.at(u)); });
   return sum;
+}
+
+/// Adds that to *to in the backend's memory.
+template <class Parts>
+void add_energy_at(Parts const& parts, typename Parts::ConstField u, double* to) {
+  auto const& backend = parts.backend;
+  parts.elements().add_energy(backend, parts.at(u), to);
+  for_each_added_term(parts, [&](auto const& term) {
+    if (term.has_energy())
+      backend.for_each(1, detail::AddValue{to, term.energy(backend, parts.at(u))});
+  });
 }
 
 /// Sets the rows of all nodes to zero.

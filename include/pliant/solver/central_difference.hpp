@@ -151,7 +151,7 @@ class CentralDifference {
   /// Takes over a state that another integrator, or none, has advanced so far.
   template <class Parts>
   void begin(Parts& parts) {
-    parts.watched_energy = leapfrog_energy<Parts>;
+    parts.add_watched_term = add_acceleration_term<Parts>;
     if constexpr (!Parts::has_internal_variables)  // bounds of whose laws depend on the step
       parts.raise_bounds = detail::raise_bounds<Parts>;
     auto& own = parts.state.integrator;
@@ -224,13 +224,13 @@ class CentralDifference {
     Parts& parts;
     double acceleration = 0;  // J: what leapfrog's energy has less than the total
 
-    detail::CheckedEnergy energy(double total, double booked) {
+    void add_term(double* to) const { add_acceleration_term(parts, to); }
+    detail::CheckedEnergy energy(double total, double term, detail::Booked const& booked) {
       auto& own = parts.state.integrator;
-      acceleration = square(own.step) * acceleration_term(parts);
-      if (double const unbooked = unbooked_changes(parts);
-          unbooked != std::exchange(own.unbooked, unbooked))
+      acceleration = square(own.step) * term;
+      if (booked.not_finite != std::exchange(own.unbooked, booked.not_finite))
         detail::forget_energies(own);
-      return {total - booked, total - acceleration - booked};
+      return {total - booked.energy, total - acceleration - booked.energy};
     }
     /// Whether the total has no more over what leapfrog keeps than a stable step leaves it: of linear laws, whose
     /// forces are the loads and those of the strain energy, √A ≤ √A_loads + ω Δt/2 √W. So a load that

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
+#include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/sums.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/body/set_state.hpp>
 
@@ -44,7 +47,8 @@ inline void forget_energies(IntegratorState& own) {
 
 /// Whether the state is good, and is kept as a checkpoint; if not, it is rolled back, to be done again with half
 /// the step, or an Error where that was tried thrice or there is no checkpoint. The integrator says the rest:
-///   energy(total, booked) -> CheckedEnergy      where the total energy and what was booked are these, J
+///   add_term(to)                                adds what it needs for that to *to in the backend's memory
+///   energy(total, term, booked) -> CheckedEnergy  where the total energy, that and what is booked are these
 ///   explains(total, most) -> bool               whether growth of the total by `most` is none
 ///   step() -> double                            s, for the message
 ///   go_back()                                   to the checkpoint
@@ -56,11 +60,16 @@ template <class Parts, class Steps>
 bool check_energy(Parts& parts, EnergyCheck const& check, Steps& steps) {
   auto& state = parts.state;
   auto& own = state.integrator;
-  double const strain = energy_at(std::as_const(parts), std::as_const(parts).u());
-  double const kinetic = kinetic_energy_of(parts), present = strain + kinetic;
+  constexpr std::size_t term = 3, work = 4, works = static_cast<std::size_t>(Work::count);
+  Sums<work + works, typename Parts::backend_type> sums(parts.backend);
+  add_energies(parts, sums.data());
+  steps.add_term(sums.data() + term);
+  copy_values(parts.backend, std::as_const(state.work).data(), sums.data() + work, works);
+  auto const read = sums.read();
+  double const present = read[0] + read[1], potential = read[2];
   double const least = std::max(present, rounding_energy(parts));
-  double const booked = booked_energy(parts);
-  auto const [total, kept] = steps.energy(present + potential_energy_of(parts), booked);
+  auto const [total, kept] = steps.energy(present + potential, read[term],
+                                          booked(parts, std::span(read).template last<works>()));
   bool const watched =
       !Parts::has_internal_variables && parts.driven.empty() && parts.pressures.empty();
   // An unstable step lets the total grow while what the steps keep stays; a state that stiffens faster than the

@@ -152,7 +152,7 @@ class Implicit {
       synchronize_velocities(parts);
       wake_all(parts);
       parts.integrator = nullptr;
-      parts.watched_energy = nullptr;
+      parts.add_watched_term = nullptr;
       parts.has_checkpoint = false;
       parts.state.integrator.active = false;  // explicit integrators begin anew
       return parts;

@@ -131,7 +131,7 @@ class LocalSteps {
       commit_at(parts, std::as_const(parts).u());
       set_step_size(parts, 0);  // each element has its own
     }
-    parts.watched_energy = leapfrog_energy<Parts>;  // without a step of its own: the total
+    parts.add_watched_term = add_acceleration_term<Parts>;  // without a step of its own: the total
     auto& own = parts.state.integrator;
     bool const resumed = own.active && own.macro_step > 0 && parts.integrator == nullptr;
     bool const mine = own.active && parts.integrator == identity_;
@@ -220,15 +220,16 @@ class LocalSteps {
     LocalSteps const& integrator;
     Parts& parts;
 
-    detail::CheckedEnergy energy(double total, double booked) const {
+    void add_term(double*) const {}
+    detail::CheckedEnergy energy(double total, double, detail::Booked const& booked) const {
       // Of the present levels, once there are some; a change by hand begins the comparison anew.
       auto& own = parts.state.integrator;
       if (!parts.has_checkpoint) own.first_energy = std::numeric_limits<double>::quiet_NaN();
       // Loads that come at once let what is kept fall, by the half-kicks: only growth tells.
       own.last_kept = std::numeric_limits<double>::quiet_NaN();
-      double const kept = parts.schedule ? total - booked - correction(parts)
+      double const kept = parts.schedule ? total - booked.energy - correction(parts)
                                          : std::numeric_limits<double>::quiet_NaN();
-      return {total - booked, kept};
+      return {total - booked.energy, kept};
     }
     bool explains(double) const { return false; }
     double step() const { return integrator.step_; }
