@@ -107,11 +107,12 @@ struct Parts {
   std::shared_ptr<void const> integrator{};
   std::vector<Looker> lookers{};  // see detail::look_key
   struct Recorded {
-    typename B::Recording recording;
     double dt;
     long revision;
     std::shared_ptr<void const> look{};  // of which adaptation; null: of none
     int steps = 1;
+    std::optional<typename B::Recording> recording{};
+    int unrecorded = 0;  // how many steps were taken before there was one
   };
   std::optional<Recorded> recorded{};          // a step
   std::optional<Recorded> recorded_stretch{};  // several

@@ -68,7 +68,11 @@ void loop_over_step(Parts& parts, double dt) {
   advance_handing_on(parts, dt / 2, dt / 2, dt);
 }
 
-/// Replays `n` times what f() does in `steps` steps; records it where `kept` has something else.
+/// So many steps are taken one launch after the other before those like them are recorded. To record a stretch of steps takes a
+/// GPU's host longer than to launch it, and a mesh that changes often has it done in vain.
+inline constexpr int steps_before_recording = 16;
+
+/// Does `n` times what f() does in `steps` steps: replays what is recorded of it, where `kept` does not have something else.
 template <class Parts, class F>
 void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, double dt, int steps,
                   std::shared_ptr<void const> const& look, int n, F const& f) {
@@ -79,8 +83,16 @@ void replay_steps(Parts& parts, std::optional<typename Parts::Recorded>& kept, d
   prepare_handing_on(parts);
   if (!kept || kept->dt != dt || kept->revision != parts.revision || kept->look != look ||
       kept->steps != steps)
-    kept = typename Parts::Recorded{parts.backend.record(f), dt, parts.revision, look, steps};
-  kept->recording.replay(n);
+    kept = typename Parts::Recorded{dt, parts.revision, look, steps};
+  int left = n;
+  for (; left > 0 && !kept->recording && kept->unrecorded < steps_before_recording; --left) {
+    f();
+    kept->unrecorded += steps;
+  }
+  if (left > 0) {
+    if (!kept->recording) kept->recording = parts.backend.record(f);
+    kept->recording->replay(left);
+  }
   auto& state = parts.state;
   for (int k = 0; k < n * steps; ++k) state.time += dt;  // the same bits however steps are grouped
   state.steps += n * steps;
