@@ -62,6 +62,7 @@ struct Tables {
     auto const before = topology();
     change(before, {.refine = {ranks(*before, marked)}}, [&] {
       mesh.refine(marked);
+      numbers.follow(backend, mesh.tree, mesh.refined);
       return RefinedPlaces<B>(backend, mesh.order, mesh.refined);
     });
   }
@@ -70,6 +71,7 @@ struct Tables {
     auto const before = topology();
     change(before, {.coarsen = {ranks(*before, marked)}}, [&] {
       mesh.coarsen(marked);
+      numbers.follow(backend, mesh.tree, mesh.coarsened);
       return RefinedPlaces<B>(backend, mesh.tree.view(), mesh.order);
     });
     return mesh.coarsened.merged;
@@ -176,7 +178,7 @@ struct Tables {
     Index const node_rows = mesh.rows.count();
     on = elements_of_rows(backend, rows(before), groups, copy_of_tags(), node_rows, node_order<E>,
                           blocks, changed ? &on : nullptr);
-    numbers.find(backend, mesh.tree);
+    if (!changed) numbers = {backend, mesh.tree};
     check_rows(node_rows, changed);
     check_results(node_rows);
   }

@@ -89,6 +89,8 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   auto changed = change();
   auto& next = changed.parts;
   add(next, sums.data() + all);
+  if (changed.changed_rows.marks.size() > 0)  // waits, too
+    parts.raise_bounds(parts, next, changed.changed_rows);
   auto const read = sums.read();
   auto const energy_of = [](Parts const& p, double strain, std::optional<double> given,
                             double const* from) {
@@ -111,7 +113,6 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   double const added = next.add_watched_term ? watched_change(next, before, after) : 0;
   if (next.add_watched_term && next.state.integrator.active)
     next.state.energy_by_hand += added - entry.strain_energy - entry.kinetic_energy;
-  if (changed.changed_rows.marks.size() > 0) parts.raise_bounds(parts, next, changed.changed_rows);
   put_in_force(parts, std::move(next));
 }
 

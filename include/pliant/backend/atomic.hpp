@@ -43,6 +43,13 @@ PLIANT_HOST_DEVICE Index atomic_add(Index& number, Index by) {
   return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
 #endif
 }
+PLIANT_HOST_DEVICE std::uint32_t atomic_add(std::uint32_t& number, std::uint32_t by) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(&number, by);
+#else
+  return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
+#endif
+}
 /// The same for 64 bits.
 PLIANT_HOST_DEVICE std::uint64_t atomic_add(std::uint64_t& number, std::uint64_t by) {
 #ifdef __CUDA_ARCH__

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include <pliant/backend/atomic.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/topology/cell_set.hpp>
+#include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
@@ -48,18 +50,38 @@ namespace detail {
 
 struct FindLeaves {
   TreeView tree;
-  Index cells;
+  Index cells, first_word;
   std::uint32_t* words;
-  PLIANT_HOST_DEVICE void operator()(Index w) const {
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
     constexpr Index per_word = ElementNumbersView::per_word;
-    Index const first = w * per_word, count = cells - first;
+    Index const w = first_word + k, first = w * per_word, count = cells - first;
     std::uint32_t bits = 0;
     // So many reads in any case, none of which hangs on another: a device waits for memory once.
-    for (Index k = 0; k < per_word; ++k)
-      bits |= std::uint32_t{tree.is_leaf(first + (k < count ? k : count - 1))} << k;
+    for (Index c = 0; c < per_word; ++c)
+      bits |= std::uint32_t{tree.is_leaf(first + (c < count ? c : count - 1))} << c;
     if (count < per_word) bits &= (std::uint32_t{1} << count) - 1;
     words[w] = bits;
   }
+};
+/// Changes the bits of cells in words below `end`, each of one cell.
+struct ChangeLeaves {
+  Index end;
+  std::uint32_t* words;
+  PLIANT_HOST_DEVICE void change(Index cell, bool is_leaf) const {
+    constexpr Index per_word = ElementNumbersView::per_word;
+    std::uint32_t const bit = std::uint32_t{1} << cell % per_word;
+    if (cell / per_word < end) atomic_add(words[cell / per_word], is_leaf ? bit : 0 - bit);
+  }
+};
+struct ChangeRefinedLeaves {
+  ChangeLeaves leaves;
+  CellSplit const* refined;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { leaves.change(refined[i].cell, false); }
+};
+struct ChangeMergedLeaves {
+  ChangeLeaves leaves;
+  Index const* parents;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { leaves.change(parents[i], true); }
 };
 struct CountLeaves {
   std::uint32_t const* words;
@@ -92,7 +114,9 @@ class ElementNumbersOn {
  public:
   ElementNumbersOn() = default;
   /// Of the leaves that there are now.
-  ElementNumbersOn(B const& backend, TreeOn<B> const& tree) { find(backend, tree); }
+  ElementNumbersOn(B const& backend, TreeOn<B> const& tree) {
+    follow(backend, tree, 0, 0, detail::ChangeMergedLeaves{});
+  }
 
   /// `order`: of the elements now.
   [[nodiscard]] ElementNumbersView of(LeafOrderOn<B> const& order) const {
@@ -106,23 +130,43 @@ class ElementNumbersOn {
     return CellSet::of_words(words);
   }
 
-  /// The same after a change.
-  void find(B const& backend, TreeOn<B> const& tree) {
-    constexpr Index per_word = ElementNumbersView::per_word;
-    Index const cells = tree.sizes().cells;
-    count_of_words_ = cells / per_word + (cells % per_word > 0 ? 1 : 0);
-    detail::grow(backend, words_, static_cast<std::size_t>(count_of_words_));
-    detail::grow(backend, before_, static_cast<std::size_t>(count_of_words_) + 1);
-    detail::in_turn(
-        backend,
-        detail::LoopStep{count_of_words_, detail::FindLeaves{tree.view(), cells, words_.data()}},
-        detail::ScanStep{count_of_words_, detail::CountLeaves{words_.data()}, before_.data()});
+  /// The same after a refinement of the tree.
+  void follow(B const& backend, TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
+    Index const first_word = cells_ / per_word;
+    follow(backend, tree, first_word, refined.leaves,
+           detail::ChangeRefinedLeaves{{first_word, nullptr}, refined.cells});
+  }
+  /// And after a coarsening.
+  void follow(B const& backend, TreeOn<B> const& tree, Coarsened const& coarsened) {
+    Index const first_word = coarsened.initial.cells / per_word;
+    follow(backend, tree, first_word, coarsened.merged,
+           detail::ChangeMergedLeaves{{first_word, nullptr}, coarsened.parents});
   }
 
  private:
+  static constexpr Index per_word = ElementNumbersView::per_word;
+
+  /// Of cells in words before `first_word` those change that change(i) is for, i < count; the others' are found.
+  template <class Change>
+  void follow(B const& backend, TreeOn<B> const& tree, Index first_word, Index count,
+              Change change) {
+    auto const words_before = static_cast<std::size_t>(count_of_words_);
+    cells_ = tree.sizes().cells;
+    count_of_words_ = cells_ / per_word + (cells_ % per_word > 0 ? 1 : 0);
+    auto const words = static_cast<std::size_t>(count_of_words_);
+    detail::grow_keeping(backend, words_, words_before, words);
+    detail::grow(backend, before_, words + 1);
+    change.leaves.words = words_.data();
+    detail::in_turn(
+        backend, detail::LoopStep{count, change},
+        detail::LoopStep{count_of_words_ - first_word,
+                         detail::FindLeaves{tree.view(), cells_, first_word, words_.data()}},
+        detail::ScanStep{count_of_words_, detail::CountLeaves{words_.data()}, before_.data()});
+  }
+
   Array<std::uint32_t> words_;
   Array<Index> before_;
-  Index count_of_words_ = 0;
+  Index cells_ = 0, count_of_words_ = 0;
 };
 
 }  // namespace pliant
