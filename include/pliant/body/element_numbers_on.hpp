@@ -63,25 +63,21 @@ struct FindLeaves {
     words[w] = bits;
   }
 };
-/// Changes the bits of cells in words below `end`, each of one cell.
-struct ChangeLeaves {
-  Index end;
-  std::uint32_t* words;
-  PLIANT_HOST_DEVICE void change(Index cell, bool is_leaf) const {
-    constexpr Index per_word = ElementNumbersView::per_word;
-    std::uint32_t const bit = std::uint32_t{1} << cell % per_word;
-    if (cell / per_word < end) atomic_add(words[cell / per_word], is_leaf ? bit : 0 - bit);
-  }
-};
+/// Changes the bit of a cell, which no other call does.
+PLIANT_HOST_DEVICE void change_leaf(std::uint32_t* words, Index cell, bool is_leaf) {
+  constexpr Index per_word = ElementNumbersView::per_word;
+  std::uint32_t const bit = std::uint32_t{1} << cell % per_word;
+  atomic_add(words[cell / per_word], is_leaf ? bit : 0 - bit);
+}
 struct ChangeRefinedLeaves {
-  ChangeLeaves leaves;
   CellSplit const* refined;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { leaves.change(refined[i].cell, false); }
+  std::uint32_t* words;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { change_leaf(words, refined[i].cell, false); }
 };
 struct ChangeMergedLeaves {
-  ChangeLeaves leaves;
   Index const* parents;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { leaves.change(parents[i], true); }
+  std::uint32_t* words;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { change_leaf(words, parents[i], true); }
 };
 struct CountLeaves {
   std::uint32_t const* words;
@@ -132,21 +128,19 @@ class ElementNumbersOn {
 
   /// The same after a refinement of the tree.
   void follow(B const& backend, TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
-    Index const first_word = cells_ / per_word;
-    follow(backend, tree, first_word, refined.leaves,
-           detail::ChangeRefinedLeaves{{first_word, nullptr}, refined.cells});
+    follow(backend, tree, cells_ / per_word, refined.leaves,
+           detail::ChangeRefinedLeaves{refined.cells, nullptr});
   }
   /// And after a coarsening.
   void follow(B const& backend, TreeOn<B> const& tree, Coarsened const& coarsened) {
-    Index const first_word = coarsened.initial.cells / per_word;
-    follow(backend, tree, first_word, coarsened.merged,
-           detail::ChangeMergedLeaves{{first_word, nullptr}, coarsened.parents});
+    follow(backend, tree, coarsened.initial.cells / per_word, coarsened.merged,
+           detail::ChangeMergedLeaves{coarsened.parents, nullptr});
   }
 
  private:
   static constexpr Index per_word = ElementNumbersView::per_word;
 
-  /// Of cells in words before `first_word` those change that change(i) is for, i < count; the others' are found.
+  /// Of cells before word `first_word`, the bits of those change that change(i) is for, i < count; the others' are found.
   template <class Change>
   void follow(B const& backend, TreeOn<B> const& tree, Index first_word, Index count,
               Change change) {
@@ -156,7 +150,7 @@ class ElementNumbersOn {
     auto const words = static_cast<std::size_t>(count_of_words_);
     detail::grow_keeping(backend, words_, words_before, words);
     detail::grow(backend, before_, words + 1);
-    change.leaves.words = words_.data();
+    change.words = words_.data();
     detail::in_turn(
         backend, detail::LoopStep{count, change},
         detail::LoopStep{count_of_words_ - first_word,
