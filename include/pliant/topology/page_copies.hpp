@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include <pliant/config.hpp>
 #include <pliant/topology/pages.hpp>
@@ -18,8 +20,33 @@ struct CopiedPage {
   Page<V>* now;
 };
 
+/// A short list that goes with the loop that reads it, so that none is made in a backend's memory.
+template <class U>
+struct FewValues {
+  static constexpr std::size_t most = 32;
+  U values[most];
+  PLIANT_HOST_DEVICE U const& operator[](Index i) const { return values[i]; }
+};
+/// Calls f with `values` as a FewValues, if that has room for them: whether it has.
+template <class U, class F>
+bool with_few(std::span<U const> values, F const& f) {
+  if (values.size() > FewValues<U>::most) return false;
+  FewValues<U> few{};
+  std::copy(values.begin(), values.end(), few.values);
+  f(few);
+  return true;
+}
+
+/// Puts values at places from `to` on.
+template <class U>
+struct PutFew {
+  FewValues<U> values;
+  U* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = values[i]; }
+};
+
 /// Copies pages, so many bytes at a time, and puts the copies into a table where there is one.
-template <class V>
+template <class V, class List = CopiedPage<V> const*>
 struct CopyPages {
   struct alignas(16) Word {
     std::uint32_t bits[4];
@@ -28,7 +55,7 @@ struct CopyPages {
   static constexpr Index words = sizeof(Page<V>) / sizeof(Word);
   static constexpr Index most_pages = std::numeric_limits<Index>::max() / words;  // in a loop
 
-  CopiedPage<V> const* copied;
+  List copied;
   Page<V>** table;
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {

@@ -212,10 +212,14 @@ class PagedList {
   }
   /// The pages from a place on.
   void put_in_table(B const& backend, std::size_t first) {
-    auto const count = pages_.size() - first;
-    if (count == 0) return;
-    auto const put = upload<Page<V>*>(backend, std::span<Page<V>* const>(pages_).subspan(first));
-    detail::copy_values<B, Page<V>*>(backend, put.data(), table_.data() + first, count);
+    auto const pages = std::span<Page<V>* const>(pages_).subspan(first);
+    auto* const to = table_.data() + first;
+    if (pages.empty() || detail::with_few(pages, [&](auto const& few) {
+          backend.for_each(static_cast<Index>(pages.size()), detail::PutFew<Page<V>*>{few, to});
+        }))
+      return;
+    auto const put = upload<Page<V>*>(backend, pages);
+    detail::copy_values<B, Page<V>*>(backend, put.data(), to, pages.size());
   }
 
   /// Memory for so many pages more, and a table for so many in all, with some for changes to come; and for notes of so many
@@ -240,7 +244,11 @@ class PagedList {
   }
   void copy(B const& backend, std::vector<Copied> const& copied, Page<V>** table) {
     using Copy = detail::CopyPages<V>;
-    if (copied.empty()) return;
+    if (copied.empty() || detail::with_few(std::span<Copied const>(copied), [&](auto const& few) {
+          using CopyFew = detail::CopyPages<V, detail::FewValues<Copied>>;
+          backend.for_each(static_cast<Index>(copied.size()) * Copy::words, CopyFew{few, table});
+        }))
+      return;
     auto const listed = upload(backend, copied);
     for (std::size_t first = 0; first < copied.size(); first += Copy::most_pages) {
       auto const count =

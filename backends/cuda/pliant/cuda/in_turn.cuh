@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <cooperative_groups.h>
+
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/launch.hpp>
@@ -12,22 +14,40 @@
 #include <pliant/cuda/sort.cuh>
 #include <pliant/cuda/tuning.hpp>
 
-// Short loops, scans and sorts that one block does one after the other.
+// Short loops, scans and sorts that one launch does one after the other: a block, or a cluster of blocks that share loops.
 namespace pliant::detail {
+
+/// All threads of the launch: what any wrote before, all see then.
+__device__ inline void meet_in_turn() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  if (gridDim.x > 1) return cooperative_groups::this_cluster().sync();
+#endif
+  __syncthreads();
+}
 
 template <class F>
 __device__ void do_step(LoopStep<F> const& step, std::byte*) {
-  for (Index i = static_cast<Index>(threadIdx.x); i < step.n; i += list_threads) step.f(i);
+  auto const own = static_cast<Index>(blockIdx.x * list_threads + threadIdx.x);
+  for (Index i = own; i < step.n; i += static_cast<Index>(gridDim.x * list_threads)) step.f(i);
 }
 template <class F>
-__device__ void do_step(ScanStep<F> const& step, std::byte*) {
-  Index const sum = store_part(ListPart(step.n, list_threads), step.f, StoreSums{step.to}, 0);
+struct NoteValue {
+  F f;
+  Index* notes;
+  __device__ void operator()(Index i) const { notes[i] = f(i); }
+};
+template <class F>
+__device__ void do_step(ScanStep<F> const& step, std::byte* scratch) {
+  do_step(LoopStep{step.n, NoteValue<F>{step.f, step.to}}, scratch);
+  meet_in_turn();
+  if (blockIdx.x > 0) return;
+  Index const sum = store_part(ListPart(step.n), Noted<Index>{step.to}, StoreSums{step.to}, 0);
   if (threadIdx.x == 0) step.to[step.n] = sum;
 }
 __device__ inline void do_step(SortStep const& step, std::byte* scratch) {
   using List = KeyList<std::uint64_t, Index>;
   auto* const keys = reinterpret_cast<std::uint64_t*>(scratch);
-  if (step.n > 1)
+  if (step.n > 1 && blockIdx.x == 0)
     sort_all(step.n, List{step.keys, step.values},
              List{keys, reinterpret_cast<Index*>(keys + step.n)}, step.bits);
 }
@@ -45,7 +65,7 @@ struct StepList<First, Rest...> {
   __device__ void run(std::byte* scratch) const {
     do_step(first, scratch);
     if constexpr (sizeof...(Rest) > 0) {
-      __syncthreads();
+      meet_in_turn();
       rest.run(scratch);
     }
   }
@@ -65,19 +85,31 @@ __global__ void __launch_bounds__(list_threads)
   steps.run(scratch);
 }
 
-/// Whether one block does all of some steps.
-template <class... Steps>
-bool are_short(Steps const&... steps) {
-  return std::max({steps.n...}) <= short_steps;
+template <class F>
+bool is_short(LoopStep<F> const& step) {
+  return step.n <= short_loops;
 }
+template <class F>
+bool is_short(ScanStep<F> const& step) {
+  return step.n <= short_steps;
+}
+inline bool is_short(SortStep const& step) { return step.n <= short_steps; }
+
+/// Does steps that are short all of them.
 template <class... Steps>
 void do_in_turn(CudaContext& context, Steps const&... steps) {
   auto const device = context.stream()->enter();
-  auto const most = static_cast<std::size_t>(std::max({steps.n...}));
+  Index const most = std::max({steps.n...});
   auto const list = list_of_steps(steps...);
-  launch(Start::early, "in_turn", {1, list_threads}, context.stream()->get(),
-         do_steps<std::remove_const_t<decltype(list)>>, list,
-         context.scratch().take(most * (sizeof(std::uint64_t) + sizeof(Index))));
+  auto* const kernel = do_steps<std::remove_const_t<decltype(list)>>;
+  static bool const can_be_cluster =
+      clusters_can_be_launched(reinterpret_cast<void const*>(kernel), context.stream()->device());
+  int const blocks =
+      can_be_cluster ? std::clamp<Index>((most - 1) / list_threads + 1, 1, step_cluster) : 1;
+  launch(Start::early, "in_turn", {blocks, list_threads, 0, blocks}, context.stream()->get(),
+         kernel, list,
+         context.scratch().take(static_cast<std::size_t>(most) *
+                                (sizeof(std::uint64_t) + sizeof(Index))));
 }
 
 }  // namespace pliant::detail

@@ -11,7 +11,17 @@ struct LaunchShape {
   Index blocks;
   int threads;
   int shared_bytes = 0;  // dynamic shared memory per block
+  int cluster = 1;       // blocks that may wait for each other; see clusters_can_be_launched
 };
+
+/// Whether blocks of a kernel can be a cluster on a device: of compute capability 9, and compiled for it.
+inline bool clusters_can_be_launched(void const* kernel, int device) {
+  int can = 0;
+  check(cudaDeviceGetAttribute(&can, cudaDevAttrClusterLaunch, device), "cudaDeviceGetAttribute");
+  cudaFuncAttributes attributes{};
+  check(cudaFuncGetAttributes(&attributes, kernel), "cudaFuncGetAttributes");
+  return can != 0 && attributes.ptxVersion >= 90;
+}
 
 /// When a kernel may start. One that is launched `early` calls `begin_after_previous_kernel` before
 /// it reads or writes what other kernels do, all of it in every thread.
@@ -67,11 +77,19 @@ void launch(Start start, char const* verb, LaunchShape const& shape, cudaStream_
   config.blockDim = dim3(static_cast<unsigned>(shape.threads));
   config.dynamicSmemBytes = static_cast<std::size_t>(shape.shared_bytes);
   config.stream = stream;
-  cudaLaunchAttribute early{};
-  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  early.val.programmaticStreamSerializationAllowed = 1;
-  config.attrs = &early;
-  config.numAttrs = start == Start::early ? 1 : 0;
+  cudaLaunchAttribute attributes[2] = {};
+  config.attrs = attributes;
+  if (start == Start::early) {
+    auto& early = attributes[config.numAttrs++];
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    early.val.programmaticStreamSerializationAllowed = 1;
+  }
+  if (shape.cluster > 1) {
+    auto& cluster = attributes[config.numAttrs++];
+    cluster.id = cudaLaunchAttributeClusterDimension;
+    cluster.val.clusterDim.x = static_cast<unsigned>(shape.cluster);
+    cluster.val.clusterDim.y = cluster.val.clusterDim.z = 1;
+  }
   check(cudaLaunchKernelEx(&config, kernel, arguments...), verb);
 }
 template <class... Parameters, class... Arguments>

@@ -144,7 +144,7 @@ __global__ void __launch_bounds__(list_threads) copy_list(Index n, List const fr
 /// All digits of a short list, by one block.
 template <class List>
 __device__ void sort_all(Index n, List const& list, List const& other, int bits) {
-  ListPart const part(n, sort_round);
+  ListPart const part(n);
   List from = list, to = other;
   for (int shift = 0; shift < bits; shift += digit_bits) {
     Index total = 0;
@@ -168,7 +168,7 @@ void sort_list(CudaContext& context, Index n, KeyList<Key, Value> const& list, i
   using List = KeyList<Key, Value>;
   auto const device = context.stream()->enter();
   auto const stream = context.stream()->get();
-  LaunchShape const shape{list_blocks(n, sort_round), list_threads};
+  LaunchShape const shape{list_blocks(n, short_sort, sort_round), list_threads};
   auto const size = static_cast<std::size_t>(n);
   auto const parts = static_cast<std::size_t>(shape.blocks);
   std::byte* const memory = context.scratch().take(size * (sizeof(Key) + sizeof(Value)) +
