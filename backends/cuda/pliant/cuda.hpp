@@ -135,7 +135,7 @@ class Cuda {
 
   template <class... Steps>
   void in_turn(Steps const&... steps) const {
-    if ((detail::is_short(steps) && ...))
+    if (detail::are_short(steps...))
       detail::do_in_turn(*context_, steps...);
     else
       (steps.run(*this), ...);

@@ -85,17 +85,11 @@ __global__ void __launch_bounds__(list_threads)
   steps.run(scratch);
 }
 
-template <class F>
-bool is_short(LoopStep<F> const& step) {
-  return step.n <= short_loops;
+/// Whether one launch does all of some steps.
+template <class... Steps>
+bool are_short(Steps const&... steps) {
+  return std::max({steps.n...}) <= short_steps;
 }
-template <class F>
-bool is_short(ScanStep<F> const& step) {
-  return step.n <= short_steps;
-}
-inline bool is_short(SortStep const& step) { return step.n <= short_steps; }
-
-/// Does steps that are short all of them.
 template <class... Steps>
 void do_in_turn(CudaContext& context, Steps const&... steps) {
   auto const device = context.stream()->enter();

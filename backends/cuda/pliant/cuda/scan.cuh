@@ -22,9 +22,9 @@ struct ListPart {
   /// All of it, for a block alone.
   __device__ explicit ListPart(Index n) : first(0), last(n) {}
 };
-/// The blocks that share a list, of which one takes up to `alone` values alone.
-inline Index list_blocks(Index n, Index alone, int round) {
-  if (n <= alone) return 1;
+/// The blocks that share a list.
+inline Index list_blocks(Index n, int round) {
+  if (n <= short_list) return 1;
   return std::min<Index>((n - 1) / round + 1, most_list_blocks);
 }
 
@@ -120,7 +120,7 @@ struct IsWanted {
 template <class F, class Note, class Store>
 void scan_by_notes(CudaContext const& context, char const* verb, Index n, F const& f, Note* notes,
                    Index* sums, Store const& store) {
-  LaunchShape const shape{list_blocks(n, short_scan, list_threads), list_threads};
+  LaunchShape const shape{list_blocks(n, list_threads), list_threads};
   auto const stream = context.stream()->get();
   if (shape.blocks == 1)
     return launch(Start::early, verb, shape, stream, store_sums<F, Store>, n, f, store, sums);
@@ -142,7 +142,7 @@ void select_list(CudaContext& context, Index n, F const& f, Index* to, Index* co
   auto const device = context.stream()->enter();
   constexpr std::size_t bytes_of_sums = most_list_blocks * sizeof(Index);
   std::byte* const memory =
-      context.scratch().take(bytes_of_sums + (n > short_scan ? static_cast<std::size_t>(n) : 0));
+      context.scratch().take(bytes_of_sums + (n > short_list ? static_cast<std::size_t>(n) : 0));
   scan_by_notes(context, "select", n, IsWanted<F>{f},
                 reinterpret_cast<std::uint8_t*>(memory + bytes_of_sums),
                 reinterpret_cast<Index*>(memory), StoreNumbers{to, count});

@@ -168,7 +168,7 @@ void sort_list(CudaContext& context, Index n, KeyList<Key, Value> const& list, i
   using List = KeyList<Key, Value>;
   auto const device = context.stream()->enter();
   auto const stream = context.stream()->get();
-  LaunchShape const shape{list_blocks(n, short_sort, sort_round), list_threads};
+  LaunchShape const shape{list_blocks(n, sort_round), list_threads};
   auto const size = static_cast<std::size_t>(n);
   auto const parts = static_cast<std::size_t>(shape.blocks);
   std::byte* const memory = context.scratch().take(size * (sizeof(Key) + sizeof(Value)) +

@@ -14,10 +14,10 @@ inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 1
 /// Loops over lists (scan.cuh, sort.cuh): threads per block, the most blocks, keys that a thread sorts at once, and how long a
 /// list one block takes alone, in one launch.
 inline constexpr int list_threads = 256, most_list_blocks = 1024, sort_keys = 8;
-inline constexpr Index short_scan = 1024, short_sort = 4096;
-/// The same of scans and sorts that one block does in turn, and of loops between these that a cluster of blocks shares
-/// (in_turn.cuh), with its size: 8 blocks are as many as any GPU with clusters has room for.
-inline constexpr Index short_steps = 2048, short_loops = 4096;
+inline constexpr Index short_list = 4096;
+/// The same of loops, scans and sorts that one launch does in turn (in_turn.cuh), by as many blocks as any GPU with clusters has
+/// room for in one.
+inline constexpr Index short_steps = 2048;
 inline constexpr int step_cluster = 8;
 
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
