@@ -78,20 +78,25 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   constexpr int dim = Parts::dim;
   wake_all(parts);
   enum Sum : std::size_t { kinetic, potential, term, all };  // before, and as many behind
-  Sums<2 * all, typename Parts::backend_type> sums(parts.backend);
-  auto const add = [](Parts& p, double* to) {
+  using SumsOfTimes = Sums<2 * all, typename Parts::backend_type>;
+  // Without a value where there is nothing to add up: reading sums waits for a backend.
+  std::optional<SumsOfTimes> sums;
+  if (!TellsKinetic || parts.add_watched_term != nullptr) sums.emplace(parts.backend);
+  auto const add = [&](Parts& p, std::size_t first) {
+    if (!sums) return;
+    double* const to = sums->data() + first;
     if (!TellsKinetic) add_kinetic_energy(p, to + kinetic);
     if (p.add_watched_term == nullptr) return;
     add_potential_energy(p, to + potential);
     p.add_watched_term(p, to + term);
   };
-  add(parts, sums.data());
+  add(parts, 0);
   auto changed = change();
   auto& next = changed.parts;
-  add(next, sums.data() + all);
+  add(next, all);
   if (changed.changed_rows.marks.size() > 0)  // waits, too
     parts.raise_bounds(parts, next, changed.changed_rows);
-  auto const read = sums.read();
+  auto const read = sums ? sums->read() : std::array<double, 2 * all>{};
   auto const energy_of = [](Parts const& p, double strain, std::optional<double> given,
                             double const* from) {
     return WatchedEnergy{{strain, given.value_or(from[kinetic]), from[potential]},
