@@ -8,6 +8,7 @@
 #include <pliant/cuda/array.hpp>
 #include <pliant/cuda/fan_plan.hpp>
 #include <pliant/cuda/patch_plan.hpp>
+#include <pliant/cuda/plan_capacity.hpp>
 
 // What patches are planned to, and what that tells of their capacity after a change.
 namespace pliant::detail {
@@ -24,12 +25,6 @@ struct PatchPlan {
       changed{};  // the most that any needed where many were planned again; zero: they never were
 };
 
-/// Whether patches of such a capacity have room for so much.
-PLIANT_HOST_DEVICE bool holds(PatchCounts const& capacity, PatchCounts const& counts) {
-  return counts.nodes <= capacity.nodes && counts.diagonals <= capacity.diagonals &&
-         counts.fans <= capacity.fans && counts.slots <= capacity.slots;
-}
-
 /// What a table was planned to before a change, with its patches as PatchRanges::first has them, and by the patch now the patch
 /// there, or −1.
 template <class Planner>
@@ -45,34 +40,12 @@ bool many_change(KnownPatches<Planner> const& known) {
   auto const planned = std::ranges::count(known.patches, Index{-1});
   return known.plan != nullptr && 8 * planned >= std::ssize(known.patches);
 }
-/// The least multiples of four.
-inline PatchCounts in_fours(PatchCounts const& counts) {
-  auto const rounded = [](int n) { return (n + 3) / 4 * 4; };
-  return {rounded(counts.nodes), rounded(counts.diagonals), rounded(counts.fans),
-          rounded(counts.slots)};
-}
-inline PatchCounts larger(PatchCounts const& a, PatchCounts const& b) {
-  return {std::max(a.nodes, b.nodes), std::max(a.diagonals, b.diagonals), std::max(a.fans, b.fans),
-          std::max(a.slots, b.slots)};
-}
-/// What to give patches room for before it is known what they need: as much as before a change, where few are planned again;
-/// else a little more than such patches ever needed, and at first as much as any needs, but for diagonals, so that few have to be
-/// planned twice.
+/// What to give patches room for before it is known what they need.
 template <class Planner>
 PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size) {
-  PatchCounts const usual = Planner::usual(patch_size);
-  if (known.plan == nullptr) return usual;
-  PatchCounts const& before = known.plan->capacity;
-  if (!many_change(known)) return before;
-  auto const& changed = known.plan->changed;
-  auto guess = Planner::most(patch_size);
-  if (changed.slots > 0) {
-    auto const more = [](int n, int most) { return std::min(n + n / 32, most); };
-    guess = in_fours({more(changed.nodes, guess.nodes), 0, more(changed.fans, guess.fans),
-                      more(changed.slots, guess.slots)});
-  }
-  guess.diagonals = 2 * std::max(before.diagonals, usual.diagonals);
-  return guess;
+  if (known.plan == nullptr) return Planner::usual(patch_size);
+  if (!many_change(known)) return known.plan->capacity;
+  return capacity_of_many<Planner>(known.plan->capacity, known.plan->changed, patch_size);
 }
 
 }  // namespace pliant::detail

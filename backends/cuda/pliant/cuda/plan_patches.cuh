@@ -227,11 +227,8 @@ PatchPlan<Planner> end_plan(B const& backend, PlanInWork<Planner> work, PatchCou
   DeviceGuard const device(backend.device());
   auto const changed = work.changes_many ? larger(work.changed, counts) : work.changed;
   PatchCounts const guess = work.plan.capacity;
-  // What a patch stages shares the memory of a multiprocessor with others: there is little room to spare.
-  bool const is_right = holds(guess, counts) && guess.slots <= counts.slots + counts.slots / 16 &&
-                        guess.nodes <= counts.nodes + counts.nodes / 16;
   PatchPlan<Planner> plan;
-  if (is_right && accepts(guess)) {
+  if (may_keep(guess, counts) && accepts(guess)) {
     plan = std::move(work.plan);
   } else {
     plan.capacity = in_fours(counts);
