@@ -202,6 +202,7 @@ inline void add_refinements() {
         change_beside.template operator()<Beside::memory>();
         change_beside.template operator()<Beside::steps>();
         change_beside.template operator()<Beside::sleep>();
+        change.template operator()<Beside::steps>("each ten thousandth", each_of(count, 10000));
       }
     };
     one(Tri3{}, 2e4);
