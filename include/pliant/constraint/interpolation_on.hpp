@@ -17,6 +17,12 @@ namespace detail {
 /// What a row of an interpolation does to its node: sets it to the weighted sum over others, adds that to it, or adds the
 /// sum with the weights' magnitudes.
 enum class RowAction { set, add, add_magnitudes };
+/// What becomes of the node of a row.
+template <class T, int C>
+struct RowValue {
+  Index node;
+  Vector<T, C> value;
+};
 /// One row of an interpolation.
 template <class T, int C, RowAction Action>
 struct WeightedRow {
@@ -24,11 +30,14 @@ struct WeightedRow {
   NodeField<T, C> field;
   Index const *node, *first, *other;
   T const* weight;
-  PLIANT_HOST_DEVICE void operator()(Index k) const {
+  PLIANT_HOST_DEVICE void operator()(Index k) const { write(read(k)); }
+  /// What becomes of the row's node.
+  PLIANT_HOST_DEVICE RowValue<T, C> read(Index k) const {
     auto base = Vector<T, C>::zero();
     if constexpr (!Add) base = field.at(other[first[k]]);
-    field.set(node[k], sum(k, Add ? field.at(node[k]) : base, base));
+    return {node[k], sum(k, Add ? field.at(node[k]) : base, base)};
   }
+  PLIANT_HOST_DEVICE void write(RowValue<T, C> const& row) const { field.set(row.node, row.value); }
   /// A row's sum over the others' differences from a base, begun at `from`.
   PLIANT_HOST_DEVICE Vector<T, C> sum(Index k, Vector<T, C> from, Vector<T, C> const& base) const {
     for (Index j = first[k]; j < first[k + 1]; ++j)
@@ -37,14 +46,23 @@ struct WeightedRow {
     return from;
   }
 };
-/// Two of them for the same row, of different fields.
+/// Two of them for the same row, of different fields. All is read before anything is written, so that a device waits for memory
+/// once.
 template <class First, class Second>
 struct BothRows {
   First first;
   Second second;
-  PLIANT_HOST_DEVICE void operator()(Index k) const {
-    first(k);
-    second(k);
+  PLIANT_HOST_DEVICE void operator()(Index k) const { write(read(k)); }
+  PLIANT_HOST_DEVICE auto read(Index k) const {
+    struct Values {
+      decltype(first.read(k)) of_first;
+      decltype(second.read(k)) of_second;
+    };
+    return Values{first.read(k), second.read(k)};
+  }
+  PLIANT_HOST_DEVICE void write(auto const& values) const {
+    first.write(values.of_first);
+    second.write(values.of_second);
   }
 };
 template <class First, class Second>
@@ -64,7 +82,9 @@ template <class T, int C>
 struct ClearRow {
   NodeField<T, C> field;
   Index const* node;
-  PLIANT_HOST_DEVICE void operator()(Index k) const { field.set(node[k], Vector<T, C>::zero()); }
+  PLIANT_HOST_DEVICE void operator()(Index k) const { write(read(k)); }
+  PLIANT_HOST_DEVICE Index read(Index k) const { return node[k]; }
+  PLIANT_HOST_DEVICE void write(Index row) const { field.set(row, Vector<T, C>::zero()); }
 };
 
 /// What a node is to an interpolation, where it is not the number of its row among masters.
