@@ -129,6 +129,29 @@ TEST_CASE("patches that stay in a change keep their plans", "[cuda]") {
   CHECK(of_elements > 0);
 }
 
+/// The room for diagonals behind changes that had all patches planned again.
+template <class Planner>
+void check_room_behind_changes(TableOf<Planner> const& table, int patch_size) {
+  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patch_size);
+  auto const first = upload(Cuda<double>{}, cuts.first());
+  auto const needed = plan_on_host<Planner>(table, cuts).capacity.diagonals;
+  auto plan = planned<Planner>(table, cuts, {});
+  for (int change = 0; change < 8; ++change) {
+    INFO("change " << change);
+    std::vector<Index> const known(static_cast<std::size_t>(cuts.count()), -1);
+    plan = planned<Planner>(table, cuts, {&plan, first.data(), known});
+    CHECK(plan.capacity.diagonals >= needed);
+    CHECK(plan.capacity.diagonals <= 2 * std::max(needed, Planner::usual(patch_size).diagonals));
+  }
+  check_same(plan, plan_on_host<Planner>(table, cuts, plan.capacity));
+}
+
+TEST_CASE("patches that are planned again and again have room for what they need", "[cuda]") {
+  check_room_behind_changes<detail::FanPlanner>(box(9), 768);
+  check_room_behind_changes<detail::FanPlanner>(random_table<4>(3000), 100);
+  check_room_behind_changes<detail::PatchPlanner<4>>(random_table<4>(3000), 96);
+}
+
 /// Patches of blocks of 40 elements, of which each `distance`-th is planned again beside other work, against what a host thread
 /// plans. Whether they are fans.
 bool compare_plan_beside(std::vector<std::array<Index, 4>> const& table, NodeOrder order,
