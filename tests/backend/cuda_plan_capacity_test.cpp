@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <pliant/cuda/fan_plan.hpp>
 #include <pliant/cuda/patch_plan.hpp>
 #include <pliant/cuda/plan_capacity.hpp>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,9 +80,8 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   constexpr int dim = Parts::dim;
   wake_all(parts);
   enum Sum : std::size_t { kinetic, potential, term, all };  // before, and as many behind
-  using SumsOfTimes = Sums<2 * all, typename Parts::backend_type>;
   // Without a value where there is nothing to add up: reading sums waits for a backend.
-  std::optional<SumsOfTimes> sums;
+  std::optional<Sums<2 * all, typename Parts::backend_type>> sums;
   if (!TellsKinetic || parts.add_watched_term != nullptr) sums.emplace(parts.backend);
   auto const add = [&](Parts& p, std::size_t first) {
     if (!sums) return;
