@@ -324,7 +324,7 @@ TEST_CASE("streams that are no whole saved states are refused and nothing change
     }
     auto later = whole;
     later[8] = static_cast<char>(later[8] + 1);
-    check_refused(body, later, "this is version 21");
+    check_refused(body, later, "this is version 22");
 
     load(body, whole);  // the whole one is good
     CHECK(saved(body) == whole);

@@ -101,6 +101,27 @@ TEST_CASE("a tree whose refinement would exceed a limit is as it was", "[topolog
   });
 }
 
+TEST_CASE("cells are refined as deep as levels go, and no deeper", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<3> host(regular_mesh<Tet4>(2));
+    TreeBeside<B> on(backend, host);
+    RefinementLimits limits{.max_level = most_levels};
+    Index deepest = 0;
+    for (; host.cell(deepest).level < most_levels; deepest = host.cell(deepest).first_child) {
+      on.refine({deepest}, limits);
+      host.refine(std::array{deepest}, limits);
+    }
+    check_same(on.tree, host);
+    CHECK(on.refine({deepest}, limits).leaves == 0);
+    CHECK(host.refine(std::array{deepest}, limits).parents.empty());
+    ++limits.max_level;
+    auto const says_how_many = says("at most 63");
+    CHECK_THROWS_WITH(on.refine({deepest}, limits), says_how_many);
+    CHECK_THROWS_WITH(host.refine(std::array{deepest}, limits), says_how_many);
+    check_same(on.tree, host);
+  });
+}
+
 TEST_CASE("memory of a tree in a backend is used again", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     Hierarchy<3> host(regular_mesh<Tet4>(4));

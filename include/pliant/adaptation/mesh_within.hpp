@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <pliant/adaptation/choice.hpp>
+#include <pliant/topology/refinement_results.hpp>
 
 // A mesh that is as fine as an error asks, or as a budget allows, wherever that is needed at the time, of elements in the
 // groups that it takes.
@@ -52,8 +53,7 @@ inline void check_limits(MeshWithinOptions const& options) {
         "within: there is no limit; give error, evaluations_per_step or milliseconds_per_step");
   if (!(options.release > 0 && options.release <= 1))
     throw Error("within: release is ", options.release, "; give a share above 0, 1 at the most");
-  if (options.max_level < 0)
-    throw Error("within: max_level is ", options.max_level, "; give at least 0");
+  check_max_level("within", options.max_level);
 }
 template <class... Fs>
 constexpr void check_choice_on(TypeList<Fs...>) {

@@ -3,6 +3,7 @@
 #include <pliant/adaptation/criterion/condition.hpp>
 #include <pliant/adaptation/rule.hpp>
 #include <pliant/topology/element_types.hpp>
+#include <pliant/topology/refinement_results.hpp>
 
 // Strategies read as sentences:
 //   when<Linear>(largest(EdgeLengthRatio{}, Rotation{})).above(0.1).become<Nonlinear>()
@@ -66,8 +67,7 @@ class Marked {
     static_assert(Refinable<typename From::element>,
                   "refine: available for the catalogue's elements");
     check_no_stay("refine");
-    if (options.max_level < 0)
-      throw Error("strategy: a max_level of ", options.max_level, "; give at least 0");
+    detail::check_max_level("strategy", options.max_level);
     return RefineRule<From, C>{criterion_, marking_, options};
   }
   /// See CoarsenRule. An element that another rule refines in the same look is not merged.

@@ -18,7 +18,7 @@ namespace pliant {
 namespace detail {
 
 inline constexpr std::string_view archive_magic{"PLIANT\r\n", 8};
-inline constexpr std::uint32_t archive_version = 21;
+inline constexpr std::uint32_t archive_version = 22;
 
 /// Writes members of a state. The first mesh is not written: the body has it.
 template <class M>

@@ -29,7 +29,7 @@ PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
     auto const& child = tree.cells[at(i)];
     if (child.first_child >= 0 || child.has != has) return false;
     for (std::size_t e = 0; !cell.is_split() && e < at(child.pattern().edges); ++e)
-      if (tree.edges[at(child.edges[e])].refined > 0) return false;
+      if (tree.edges[at(child.edges[e])].cells.refined() > 0) return false;
   }
   return true;
 }

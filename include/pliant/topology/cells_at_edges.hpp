@@ -22,10 +22,10 @@ struct CellsAtEdgesView {
   template <class Visit>
   PLIANT_HOST_DEVICE void operator()(Index e, Visit const& visit) const {
     // The edge, the one of which it is a half, and so on: cells that have one have children at the one before.
-    Index chain[most_levels];
+    Index chain[most_levels + 1];
     int top = 0;
-    for (chain[0] = e; chain[top] >= initial_edges && edge(chain[top]).parent >= 0; ++top)
-      chain[top + 1] = edge(chain[top]).parent;
+    for (chain[0] = e; chain[top] >= initial_edges && edge(chain[top]).parent() >= 0; ++top)
+      chain[top + 1] = edge(chain[top]).parent();
     Index const last = chain[top];
     if (last < initial_edges) {
       for (Index k = first[last]; k < first[last + 1]; ++k) descend(cells[k], chain, top, visit);
@@ -36,15 +36,13 @@ struct CellsAtEdgesView {
       Index const count = cell(c).divided().children;
       for (Index k = 0; k < count; ++k) descend(cell(c).first_child + k, chain, top, visit);
     };
-    Index const side = edge(last).side;
-    if (side < 0) return enter(edge(last).cell);
+    Index const side = edge(last).side();
+    if (side < 0) return enter(edge(last).cell());
     enter(tree.sides[static_cast<std::size_t>(side)].cells[0]);
     enter(tree.sides[static_cast<std::size_t>(side)].cells[1]);
   }
 
  private:
-  static constexpr int most_levels = 64;
-
   [[nodiscard]] PLIANT_HOST_DEVICE TreeCell const& cell(Index c) const {
     return tree.cells[static_cast<std::size_t>(c)];
   }

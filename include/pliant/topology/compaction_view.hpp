@@ -29,7 +29,7 @@ struct CompactionView {
     return c < initial.cells || !tree.is_leaf(tree.cells[at(c)].parent);
   }
   [[nodiscard]] static PLIANT_HOST_DEVICE bool is_used(TreeEdge const& edge) {
-    return edge.leaves + edge.refined > 0;
+    return edge.cells.leaves() + edge.cells.refined() > 0;
   }
   [[nodiscard]] static PLIANT_HOST_DEVICE bool is_used(TreeSide const& side) {
     return side.any_cell() >= 0;
@@ -48,7 +48,7 @@ struct CompactionView {
     move(cell.centre, nodes);
   }
   PLIANT_HOST_DEVICE void renumber_within(TreeEdge& edge) const {
-    if (edge.refined == 0) edge.first_half = -1;
+    if (edge.cells.refined() == 0) edge.first_half = -1;
     move(edge.middle, nodes);
     move(edge.first_half, edges);
   }
@@ -72,9 +72,8 @@ struct CompactionView {
   }
   PLIANT_HOST_DEVICE void renumber(TreeEdge& edge) const {
     renumber_within(edge);
-    move(edge.parent, edges);
-    move(edge.side, sides);
-    move(edge.cell, cells);
+    using Home = TreeEdge::Home;
+    move(edge.divided, edge.home == Home::edge ? edges : edge.home == Home::side ? sides : cells);
     move_all(edge.nodes, nodes);
   }
   PLIANT_HOST_DEVICE void renumber(TreeSide& side) const {

@@ -41,8 +41,9 @@ PLIANT_HOST_DEVICE void divide_side(TreeView const& tree, Index s) {
     if (k == 3 && !quad) break;
     // Inner edge k joins the middle of edge k to the centre, or round corner k of a triangle.
     tree.edges[at(inner[k])] = {.nodes = {middle[k], quad ? side.centre : before(middle, k)},
-                                .side = s,
-                                .level = side.level + 1};
+                                .divided = s,
+                                .home = TreeEdge::Home::side,
+                                .level = static_cast<std::int16_t>(side.level + 1)};
     if (quad) {
       part.nodes = {side.nodes[k], middle[k], side.centre, before(middle, k)};
       part.edges = {along[k], inner[k], before(inner, k), before(back, k)};
@@ -63,8 +64,10 @@ PLIANT_HOST_DEVICE void halve_side(TreeView const& tree, Index s, Index corner) 
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };
   auto const& side = tree.sides[at(s)];
   std::size_t const k = side.nodes[0] == corner || side.nodes[2] == corner ? 0 : 1;
-  tree.edges[at(side.first_inner_edge)] = {
-      .nodes = {side.nodes[k], side.nodes[k + 2]}, .side = s, .level = side.level};
+  tree.edges[at(side.first_inner_edge)] = {.nodes = {side.nodes[k], side.nodes[k + 2]},
+                                           .divided = s,
+                                           .home = TreeEdge::Home::side,
+                                           .level = static_cast<std::int16_t>(side.level)};
   for (std::size_t i = 0; i < 2; ++i) {
     std::size_t const a = k + 2 * i;
     tree.sides[at(side.first_child) + i] = {

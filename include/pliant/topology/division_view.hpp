@@ -96,7 +96,7 @@ struct DivisionView {
     }
     if (!has(own.halves, e)) return;
     edge.first_half = own.edge + 2 * rank(own.halves, e);
-    TreeEdge half{.parent = number, .level = edge.level + 1};
+    TreeEdge half{.divided = number, .level = static_cast<std::int16_t>(edge.level + 1)};
     half.nodes = {edge.nodes[0], edge.middle};
     tree.edges[at(edge.first_half)] = half;
     half.nodes = {edge.middle, edge.nodes[1]};
@@ -143,8 +143,9 @@ struct DivisionView {
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
       tree.edges[at(inner_edge) + i] = {
           .nodes = {point(parent, p, p.inner_edge[i][0]), point(parent, p, p.inner_edge[i][1])},
-          .cell = c,
-          .level = level_of_children(parent, p)};
+          .divided = c,
+          .home = TreeEdge::Home::cell,
+          .level = static_cast<std::int16_t>(level_of_children(parent, p))};
     tree.count_leaf(parent, -1);
     if (p.halves) tree.count_refined(parent, 1);
   }

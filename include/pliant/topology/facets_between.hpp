@@ -85,7 +85,7 @@ class FacetsBetween {
     return Dim == 2 ? before_.initial.edges : before_.initial.sides;
   }
   [[nodiscard]] Index parent_of(Index side) const {
-    return Dim == 2 ? before_.edges[at(side)].parent : before_.sides[at(side)].parent;
+    return Dim == 2 ? before_.edges[at(side)].parent() : before_.sides[at(side)].parent;
   }
   static std::size_t corners_of(auto const& nodes) { return nodes.back() < 0 ? 3 : nodes.size(); }
   /// Where a facet begins that the first corner of its side tells apart: in the plane it ends there if it runs backwards.

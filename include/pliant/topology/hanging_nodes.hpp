@@ -41,7 +41,7 @@ class HangingNodes {
       for (auto k = at(from); k < at(to); ++k)
         if (k >= edges.size())
           add_nodes_on_parts(*divided[k - edges.size()].side, divided[k - edges.size()].has, own);
-        else if (edges_[at(edges[k])].leaves > 0)
+        else if (edges_[at(edges[k])].cells.leaves() > 0)
           add_nodes_on(edges[k], own);
     });
     if (mixed()) add_nodes_of_higher_degree(found[0]);
@@ -84,8 +84,8 @@ class HangingNodes {
   /// The nodes on a whole edge of a leaf that is bisected for others, unless it lies on such an edge itself.
   void add_nodes_on(Index e, Found& found) {
     auto const& edge = edges_[at(e)];
-    for (Index above = edge.parent; above >= 0; above = edges_[at(above)].parent)
-      if (edges_[at(above)].leaves > 0) return;
+    for (Index above = edge.parent(); above >= 0; above = edges_[at(above)].parent())
+      if (edges_[at(above)].cells.leaves() > 0) return;
     Index const a = edge.nodes[0], b = edge.nodes[1];
     bool const linear = is_linear(e);
     auto const add_between = [&](auto const& self, Index part, double from, double to) -> void {
@@ -178,7 +178,7 @@ class HangingNodes {
   void add_nodes_of_higher_degree(Found& found) {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       auto const& edge = edges_[e];
-      if (edge.leaves > 0 && edge.first_half < 0 && edge.middle >= 0 &&
+      if (edge.cells.leaves() > 0 && edge.first_half < 0 && edge.middle >= 0 &&
           is_linear(static_cast<Index>(e)))
         add(found, edge.level, false, edge.middle, {{edge.nodes[0], 0.5}, {edge.nodes[1], 0.5}});
     }

@@ -59,9 +59,9 @@ struct HangingView {
   /// Whether an edge is a leaf's and bisected for others, and lies on no such edge itself.
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_hung_on_edge(Index e) const {
     auto const& own = edge(e);
-    if (own.leaves == 0 || own.first_half < 0) return false;
-    for (Index above = own.parent; above >= 0; above = edge(above).parent)
-      if (edge(above).leaves > 0) return false;
+    if (own.cells.leaves() == 0 || own.first_half < 0) return false;
+    for (Index above = own.parent(); above >= 0; above = edge(above).parent())
+      if (edge(above).cells.leaves() > 0) return false;
     return true;
   }
   /// Whether a side is a leaf's on one side, and divided on the other.

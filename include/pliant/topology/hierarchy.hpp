@@ -81,6 +81,7 @@ class Hierarchy {
   /// then as it was.
   Refinement<Dim> refine(std::span<Index const> marked, RefinementLimits const& limits = {},
                          KnownFacets<Dim> const& known = {}) {
+    detail::check_max_level("Hierarchy", limits.max_level);
     std::vector<Index> wanted;
     for (Index const c : marked) {
       check_number("refine", c);

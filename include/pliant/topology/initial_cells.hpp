@@ -27,7 +27,8 @@ class InitialCells {
           return p.edges + (cell.has == CellNodes::all ? sides_of_four(p) + (p.centre >= 0) : 0);
         })) {}
 
-  /// Throws Error where more than two cells share a side, or two lie on the same side of an edge in the plane.
+  /// Throws Error where more than two cells share a side, or two lie on the same side of an edge in the plane, or more share
+  /// an edge than it can count.
   void join() {
     join_edges();
     if constexpr (Dim == 3) join_sides();
@@ -99,9 +100,33 @@ class InitialCells {
         if (Dim == 2 && !is_first && edge.nodes == ends_of(cell, e)) overlap = true;
       }
     });
+    if (count() > most_at_edge && may_be_crowded(groups.size())) refuse_crowd_at_edge();
     if constexpr (Dim == 2) {
-      for (auto const& edge : lists_.edges) overlap = overlap || edge.leaves > 2;
+      for (auto const& edge : lists_.edges) overlap = overlap || edge.cells.leaves() > 2;
       if (overlap) refuse_overlap();
+    }
+  }
+  /// Whether edges have not been counted by as many leaves as there are edges of leaves, or nearly too many.
+  [[nodiscard]] bool may_be_crowded(std::size_t edges_of_leaves) const {
+    std::size_t counted = 0;
+    bool some = false;
+    for (auto const& edge : lists_.edges) {
+      counted += at(edge.cells.leaves());
+      some = some || edge.cells.leaves() > most_at_edge;
+    }
+    return some || counted != edges_of_leaves;
+  }
+  void refuse_crowd_at_edge() const {
+    std::vector<Index> cells_at(lists_.edges.size(), 0);
+    for (Index c = 0; c < count(); ++c) {
+      auto const& cell = lists_.cells[at(c)];
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+        auto const& edge = lists_.edges[at(cell.edges[e])];
+        if (++cells_at[at(cell.edges[e])] > most_at_edge)
+          throw Error("Hierarchy: cell ", c, " shares the edge from node ", edge.nodes[0], " to ",
+                      edge.nodes[1], " with ", most_at_edge,
+                      " others; give each edge that many cells at most");
+      }
     }
   }
   /// Counter-clockwise neighbours run along their common edge in opposite directions.
@@ -177,6 +202,9 @@ class InitialCells {
       }
     }
   }
+
+  static constexpr Index most_at_edge =
+      CellsAtEdge::most / 4;  // split, it may have four times as many
 
   TreeLists& lists_;
   std::vector<Index> const& others_;

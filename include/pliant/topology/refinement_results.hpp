@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <pliant/config.hpp>
+#include <pliant/error.hpp>
 #include <pliant/topology/transfer.hpp>
 #include <pliant/topology/tree_cell.hpp>
 
@@ -48,11 +49,19 @@ struct Coarsened {
   Index const* sides = nullptr;  ///< and sides
 };
 
+namespace detail {
+inline void check_max_level(char const* where, int max_level) {
+  if (max_level < 0 || max_level > most_levels)
+    throw Error(where, ": a max_level of ", max_level, "; give at least 0 and at most ",
+                most_levels);
+}
+}  // namespace detail
+
 /// Beyond what Hierarchy::refine throws Error, or leaves cells alone.
 struct RefinementLimits {
   std::size_t nodes = std::numeric_limits<std::size_t>::max();   ///< most nodes in all
   std::size_t leaves = std::numeric_limits<std::size_t>::max();  ///< most leaves in all
-  /// Marked cells of this level are left alone. Beyond some 40 levels double coordinates of order
+  /// Marked cells of this level, 0 to most_levels, are left alone. Beyond some 40 levels double coordinates of order
   /// one no longer tell nodes apart.
   int max_level = 30;
 };

@@ -11,6 +11,9 @@
 // What a CellTree is made of.
 namespace pliant {
 
+/// The highest level of a cell, which is refined so often at most.
+inline constexpr int most_levels = 63;
+
 /// Which nodes the element on a cell has: its corners; those and one per edge; or one more in each side
 /// with four corners and in the middle too.
 enum class CellNodes : std::uint8_t { corners, edges, all };
@@ -63,37 +66,74 @@ struct alignas(16) TreeCell {
   }
 };
 
+/// How many cells have an edge as a whole one, up to `most` of each sort, in one number, so that a cell is counted by one
+/// addition.
+struct CellsAtEdge {
+  static constexpr int bits = 21;
+  static constexpr Index most = (1 << bits) - 1;
+
+  std::uint64_t all = 0;
+
+  /// What a leaf, or a refined cell, is counted by.
+  static PLIANT_HOST_DEVICE std::uint64_t leaf(CellNodes has) {
+    return has == CellNodes::corners ? 1 : 1 | std::uint64_t{1} << bits;
+  }
+  static constexpr std::uint64_t refined_cell = std::uint64_t{1} << 2 * bits;
+
+  [[nodiscard]] PLIANT_HOST_DEVICE Index leaves() const { return part(0); }
+  /// Leaves that have nodes between their corners.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index raised() const { return part(bits); }
+  /// Split cells count by their children.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index refined() const { return part(2 * bits); }
+
+ private:
+  [[nodiscard]] PLIANT_HOST_DEVICE Index part(int shift) const {
+    return static_cast<Index>(all >> shift) & most;
+  }
+};
+
 /// Copied by 16 bytes at once, as cells are.
 struct alignas(16) TreeEdge {
+  /// What divided made it: the edge of which it is a half, a side between whose parts it lies, or a cell inside of which it
+  /// lies.
+  enum class Home : std::int16_t { edge, side, cell };
+
   std::array<Index, 2> nodes{-1, -1};
   Index middle = -1;      ///< the node in its middle, or -1
-  Index parent = -1;      ///< the edge of which it is a half
   Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
-  Index side = -1;        ///< the divided side between whose parts it lies, if it is no half
-  Index cell = -1;        ///< the divided cell inside of which it lies, if it is none of these
-  int leaves = 0;         ///< of how many leaves it is a whole edge
-  int raised = 0;         ///< of how many of these that have nodes between their corners
-  int refined = 0;        ///< of how many refined cells; split ones count by their children
-  int level = 0;          ///< of the cells of which it is a whole edge
-  int unused = 0;         ///< without it nvcc stores bytes
+  CellsAtEdge cells;
+  Index divided = -1;  ///< its home's number, or -1 for an edge of the initial mesh
+  Home home = Home::edge;
+  std::int16_t level = 0;  ///< of the cells of which it is a whole edge
 
+  /// The edge of which it is a half, or -1.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index parent() const { return in(Home::edge); }
+  /// The divided side between whose parts it lies, or -1.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index side() const { return in(Home::side); }
+  /// The divided cell inside of which it lies, or -1.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index cell() const { return in(Home::cell); }
   /// Whether it is an edge of a leaf that has corners only.
-  [[nodiscard]] PLIANT_HOST_DEVICE bool is_linear() const { return leaves > raised; }
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_linear() const {
+    return cells.leaves() > cells.raised();
+  }
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
     visit("nodes", r.nodes...);
     visit("middle", r.middle...);
-    visit("parent", r.parent...);
     visit("first half", r.first_half...);
-    visit("side", r.side...);
-    visit("cell", r.cell...);
-    visit("leaves", r.leaves...);
-    visit("raised leaves", r.raised...);
-    visit("refined cells", r.refined...);
+    visit("cells at it", r.cells.all...);
+    visit("divided", r.divided...);
+    visit("home", r.home...);
     visit("level", r.level...);
   }
+
+ private:
+  [[nodiscard]] PLIANT_HOST_DEVICE Index in(Home wanted) const {
+    return home == wanted ? divided : -1;
+  }
 };
+static_assert(sizeof(TreeEdge) == 32);
 
 /// The side of solid cells, refined as a triangle or quadrilateral is. Copied by 16 bytes at once, as cells are.
 struct alignas(16) TreeSide {

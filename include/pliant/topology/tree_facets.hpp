@@ -81,7 +81,10 @@ class TreeFacets {
   }
   /// Whether a side has a cell on one side only.
   bool is_outside(Index s) const {
-    if constexpr (Dim == 2) return tree_.edges()[at(s)].leaves + tree_.edges()[at(s)].refined < 2;
+    if constexpr (Dim == 2) {
+      auto const& at_edge = tree_.edges()[at(s)].cells;
+      return at_edge.leaves() + at_edge.refined() < 2;
+    }
     auto const& cells = tree_.sides()[at(s)].cells;
     return cells[0] < 0 || cells[1] < 0;
   }
@@ -99,9 +102,9 @@ class TreeFacets {
     if constexpr (Dim == 2) {
       auto const& edge = edges[at(s)];
       for (Index node : edge.nodes) facet.push_back(node);
-      bool quadratic = edge.raised > 0;
+      bool quadratic = edge.cells.raised() > 0;
       for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
-        quadratic = quadratic || edges[at(half)].raised > 0;
+        quadratic = quadratic || edges[at(half)].cells.raised() > 0;
       if (quadratic) facet.push_back(edge.middle);
     } else {
       auto const& side = tree_.sides()[at(s)];
@@ -131,7 +134,7 @@ class TreeFacets {
     return list;
   }
   int refined_cells_at(Index s) const {
-    if constexpr (Dim == 2) return tree_.edges()[at(s)].refined;
+    if constexpr (Dim == 2) return tree_.edges()[at(s)].cells.refined();
     int count = 0;
     for (Index c : tree_.sides()[at(s)].cells) count += c >= 0 && !tree_.is_leaf(c);
     return count;

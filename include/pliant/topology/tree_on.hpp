@@ -92,6 +92,7 @@ class TreeOn {
   /// sides, and so on. `marked`: in the backend's memory; cells may be marked several times, and what is no leaf is left
   /// alone. Throws Error where a limit would be exceeded; the tree is then what it was when it was kept.
   Refined refine(Index const* marked, Index count, RefinementLimits const& limits = {}) {
+    detail::check_max_level("refine", limits.max_level);
     Index const n = close(marked, count, limits.max_level);
     if (n == 0) return {};
     first_new_node_ = now_.nodes;
@@ -100,12 +101,12 @@ class TreeOn {
     need(keys_, n);
     // Leaves are put in order in the launch that marks their pages.
     lists_.own(backend_, [&](detail::PageMarks const& marks) {
-      constexpr int bits_of_level = 6;
       int const bits_of_cell = detail::key_bits(size(lists_.cells));
       detail::in_turn(
           backend_,
           detail::LoopStep{n, detail::LevelKeys{view(), list_.data(), keys_.data(), bits_of_cell}},
-          detail::SortStep{n, keys_.data(), list_.data(), bits_of_cell + bits_of_level},
+          detail::SortStep{n, keys_.data(), list_.data(),
+                           bits_of_cell + detail::key_bits(most_levels + 1)},
           detail::LoopStep{n, detail::ListLeaves{list_.data(), leaves_.data()}},
           detail::LoopStep{n, detail::MarkDivided{leaves_.data(), marks}});
     });

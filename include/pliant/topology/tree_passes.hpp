@@ -69,11 +69,11 @@ struct ListCoarser {
       Index coarse = cell.edges[at(e)], whole = coarse;
       do {
         whole = coarse;
-        coarse = tree.edges[at(coarse)].parent;
-      } while (coarse >= 0 && tree.edges[at(coarse)].leaves == 0);
+        coarse = tree.edges[at(coarse)].parent();
+      } while (coarse >= 0 && tree.edges[at(coarse)].cells.leaves() == 0);
       if (coarse >= 0) {
         at_edges(coarse, want);
-      } else if (Index const side = tree.edges[at(whole)].side; side >= 0) {
+      } else if (Index const side = tree.edges[at(whole)].side(); side >= 0) {
         // a leaf on the other side of a divided side may have none of it for an edge
         want(tree.sides[at(side)].cells[0]);
         want(tree.sides[at(side)].cells[1]);

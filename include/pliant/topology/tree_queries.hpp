@@ -36,11 +36,11 @@ class TreeQueries {
         Index coarse = cell.edges[e], whole = coarse;
         do {
           whole = coarse;
-          coarse = edges_[at(coarse)].parent;
-        } while (coarse >= 0 && edges_[at(coarse)].leaves == 0);
+          coarse = edges_[at(coarse)].parent();
+        } while (coarse >= 0 && edges_[at(coarse)].cells.leaves() == 0);
         if (coarse >= 0) {
           for (Index const neighbour : cells_at(coarse)) want(neighbour);
-        } else if (Index const side = edges_[at(whole)].side; side >= 0) {
+        } else if (Index const side = edges_[at(whole)].side(); side >= 0) {
           // a leaf on the other side of a divided side may have none of it for an edge
           for (Index const neighbour : sides_[at(side)].cells) want(neighbour);
         }
@@ -60,7 +60,8 @@ class TreeQueries {
     for (Index const e : tree_.edges_of(leaves)) {
       auto const& edge = edges_[at(e)];
       add_leaves_at(e);
-      if (edge.parent >= 0 && edges_[at(edge.parent)].leaves > 0) add_leaves_at(edge.parent);
+      Index const parent = edge.parent();
+      if (parent >= 0 && edges_[at(parent)].cells.leaves() > 0) add_leaves_at(parent);
       for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
         add_leaves_at(half);
     }

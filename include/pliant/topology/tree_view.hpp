@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include <pliant/backend/atomic.hpp>
 #include <pliant/config.hpp>
@@ -77,15 +78,12 @@ struct TreeView {
     constexpr std::size_t n = Cell::edges().size();
     TreeEdge* own[n];  // all of them first, so that a device waits for memory once
     for (std::size_t e = 0; e < n; ++e) own[e] = &edges[at(cell.edges[e])];
-    for (std::size_t e = 0; e < n; ++e) {
-      add(own[e]->leaves, by);
-      if (cell.has != CellNodes::corners) add(own[e]->raised, by);
-    }
+    for (std::size_t e = 0; e < n; ++e) add(*own[e], CellsAtEdge::leaf(cell.has), by);
   }
   /// The same for a refined cell. Split ones count by their children.
   PLIANT_HOST_DEVICE void count_refined(TreeCell const& cell, int by) const {
     for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-      add(edges[at(cell.edges[e])].refined, by);
+      add(edges[at(cell.edges[e])], CellsAtEdge::refined_cell, by);
   }
 
   /// Side s of a cell, as the cell sees it.
@@ -105,11 +103,13 @@ struct TreeView {
   }
 
  private:
-  PLIANT_HOST_DEVICE void add(Index& number, Index by) const {
+  /// Counts a cell by `one` so often at an edge.
+  PLIANT_HOST_DEVICE void add(TreeEdge& edge, std::uint64_t one, int by) const {
+    std::uint64_t const sum = by > 0 ? one : 0 - one;
     if (shared)
-      detail::atomic_add(number, by);
+      detail::atomic_add(edge.cells.all, sum);
     else
-      number += by;
+      edge.cells.all += sum;
   }
   static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 };
