@@ -50,7 +50,7 @@ struct SidesView {
       for (Index const node : tree.edges[at(side)].nodes) visit(node);
     } else {
       auto const& own = tree.sides[at(side)];
-      for (std::size_t k = 0; k < own.corners(); ++k) visit(own.nodes[k]);
+      for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.corner_of(own, k));
     }
   }
 

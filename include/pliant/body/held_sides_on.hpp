@@ -71,18 +71,14 @@ class HeldSidesOn {
       auto const own = known.find(sorted(nodes));
       return own == known.end() ? detail::ConditionBits{0} : own->second;
     };
-    auto const list_all = [&](auto const& sides) {
-      std::vector<detail::ConditionBits> bits;
-      for (auto const& side : sides) bits.push_back(bits_of(side.nodes));
-      return bits;
-    };
+    detail::SidesView<Dim> const sides{tree.tree().lists().view()};
     std::vector<detail::ConditionBits> bits;
     if constexpr (Dim == 2)
-      bits = list_all(tree.tree().edges());
+      for (auto const& edge : tree.tree().edges()) bits.push_back(bits_of(edge.nodes));
     else
-      bits = list_all(tree.tree().sides());
+      for (auto const& side : tree.tree().sides())
+        bits.push_back(bits_of(sides.tree.corners_of(side)));
     // Sides know of their parts, which come behind them.
-    detail::SidesView<Dim> const sides{tree.tree().lists().view()};
     for (auto side = static_cast<Index>(bits.size()) - 1; side >= 0; --side) {
       Index const first = sides.first_part(side);
       if (first < 0) continue;

@@ -152,6 +152,10 @@ class CellTree {
     return renumbered;
   }
 
+  /// The node at corner k of a side.
+  [[nodiscard]] Index corner_of(TreeSide const& side, std::size_t k) const {
+    return lists_.view().corner_of(side, k);
+  }
   /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
   [[nodiscard]] CellNodeList nodes_of(Index c) const { return lists_.nodes_of(c); }
   /// The same as the element has them, whose volume is positive.

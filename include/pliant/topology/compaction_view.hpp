@@ -79,7 +79,6 @@ struct CompactionView {
   PLIANT_HOST_DEVICE void renumber(TreeSide& side) const {
     renumber_within(side);
     move(side.parent, sides);
-    move_all(side.nodes, nodes);
     move_all(side.edges, edges);
   }
 

@@ -178,18 +178,17 @@ struct DivisionView {
                                      first_inner_edge(own, p));
     for (int k = 0; k < sides_of<Cell>; ++k) {
       auto const s = at(k);
-      auto side = TreeView::side_of(child, s, shape);
       auto const& of_parent = p.child_side[i][s];
       auto const there = at(of_parent.number);
       if (of_parent.home == RefinementPattern::Home::side) {
-        Index const whole = parent.sides[there];
-        child.sides[s] = is_divided(p, there) ? part_of_side(p, whole, side.nodes) : whole;
+        child.sides[s] = side_of_child(parent, p, of_parent, child, shape.edges_of_side[s]);
         tree.sides[at(child.sides[s])].cells[has(own.second, there) ? 1 : 0] = number;
         continue;
       }
       child.sides[s] = own.side + own.sides - p.inner_sides + of_parent.number;
       auto const& children = p.children_at_inner_side[there];
       if (at(children[0]) != i) continue;
+      auto side = tree.side_of(child, s, shape);
       side.cells = {own.cell + children[0], own.cell + children[1]};
       tree.sides[at(child.sides[s])] = side;
     }
@@ -263,10 +262,24 @@ struct DivisionView {
     if (!p.halves) return whole;
     return half_at(tree, whole, parent.nodes[at(a < p.corners ? a : b)]);
   }
-  /// The part of a divided side of the parent that has such corners.
-  [[nodiscard]] PLIANT_HOST_DEVICE Index part_of_side(RefinementPattern const& p, Index whole,
-                                                      std::array<Index, 4> const& corners) const {
-    return p.halves ? quarter_of_side(tree, whole, corners) : half_of_side(tree, whole, corners);
+  /// The side of a child that lies on one of the parent's, where the child's own edges have these numbers.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index side_of_child(TreeCell const& parent,
+                                                       RefinementPattern const& p,
+                                                       RefinementPattern::Part part,
+                                                       TreeCell const& child,
+                                                       std::array<int, 4> const& edges) const {
+    auto const there = at(part.number);
+    Index const whole = parent.sides[there];
+    if (!is_divided(p, there)) return whole;
+    if (!p.halves)
+      return half_of_side(
+          tree, whole,
+          {child.edges[at(edges[0])], child.edges[at(edges[1])], child.edges[at(edges[2])]});
+    if (part.corner < 0) return tree.sides[at(whole)].first_child + 3;
+    auto const& around = p.edges_of_side[there];
+    int const k = part.corner, last = k > 0 ? k - 1 : p.corners_of_side(part.number) - 1;
+    return quarter_of_side(tree, whole, parent.edges[at(around[at(k)])],
+                           parent.edges[at(around[at(last)])]);
   }
 };
 

@@ -31,7 +31,7 @@ class FacetsBetween {
         for (std::size_t k = 0; k < facet.corners(); ++k) is_corner[at(facet[k])] = true;
     std::vector<Index> found;
     for (Index s = 0; s < count(before); ++s) {
-      auto const& nodes = nodes_at(before, s);
+      auto const nodes = nodes_at(before, s);
       if (std::ranges::all_of(nodes, [&](Index node) { return node < 0 || is_corner[at(node)]; }))
         found.push_back(s);
     }
@@ -71,11 +71,11 @@ class FacetsBetween {
   static Index count(TreeLists const& of) {
     return static_cast<Index>(Dim == 2 ? of.edges.size() : of.sides.size());
   }
-  static auto const& nodes_at(TreeLists const& of, Index side) {
+  static auto nodes_at(TreeLists const& of, Index side) {
     if constexpr (Dim == 2)
       return of.edges[at(side)].nodes;
     else
-      return of.sides[at(side)].nodes;
+      return of.view().corners_of(of.sides[at(side)]);
   }
   /// Negative: it has none.
   static Index first_part(TreeLists const& of, Index side) {

@@ -140,7 +140,7 @@ class HangingNodes {
   [[nodiscard]] CellNodeList nodes_of(TreeSide const& side, CellNodes has) const {
     auto const n = side.corners();
     CellNodeList nodes;
-    for (std::size_t k = 0; k < n; ++k) nodes.push_back(side.nodes[k]);
+    for (std::size_t k = 0; k < n; ++k) nodes.push_back(tree_.corner_of(side, k));
     if (has == CellNodes::corners) return nodes;
     for (std::size_t k = 0; k < n; ++k) nodes.push_back(edges_[at(side.edges[k])].middle);
     if (has == CellNodes::all && n == 4) nodes.push_back(side.centre);

@@ -115,7 +115,7 @@ struct HangingView {
     auto const n = own.corners();
     bool const quad = n == 4;
     CellNodeList nodes;
-    for (std::size_t k = 0; k < n; ++k) nodes.push_back(own.nodes[k]);
+    for (std::size_t k = 0; k < n; ++k) nodes.push_back(tree.corner_of(own, k));
     if (has != CellNodes::corners)
       for (std::size_t k = 0; k < n; ++k) nodes.push_back(edge(own.edges[k]).middle);
     if (has == CellNodes::all && quad) nodes.push_back(own.centre);

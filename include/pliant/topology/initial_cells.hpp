@@ -145,6 +145,14 @@ class InitialCells {
     }
   }
 
+  /// Of side s of a cell; −1 behind those of a triangle.
+  static std::array<Index, 4> corners_of(TreeCell const& cell, std::size_t s) {
+    std::array<Index, 4> nodes{-1, -1, -1, -1};
+    for (std::size_t k = 0; k < 4; ++k)
+      if (int const corner = cell.pattern().side[s][k]; corner >= 0)
+        nodes[k] = cell.nodes[at(corner)];
+    return nodes;
+  }
   void join_sides() {
     auto const first = starts([](TreeCell const& cell) { return cell.pattern().sides; });
     std::vector<std::array<Index, 4>> groups(at(first.back()));
@@ -152,12 +160,13 @@ class InitialCells {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
         auto& key = groups[at(first[at(c)]) + s];
-        key = TreeView::side_of(cell, s).nodes;
+        key = corners_of(cell, s);
         std::ranges::sort(key);
       }
     });
     auto const numbers = number_groups(groups, lists_.nodes);
     lists_.sides.extend(numbers.first.size());
+    auto const view = lists_.view();
     std::vector<Index> cells_at(numbers.first.size(), 0);
     std::atomic<bool> crowded = false;
     // f(the number of a cell, the cell, which of its sides, that side's number, whether the cell is the first to have it)
@@ -175,7 +184,7 @@ class InitialCells {
       if (atomic_add(cells_at[at(number)], 1) >= 2) crowded = true;
       if (!is_first) return;
       auto& side = lists_.sides.edited(at(number));
-      side = TreeView::side_of(cell, s);
+      side = view.side_of(cell, s);
       side.cells[0] = c;
     });
     if (crowded) refuse_crowd();
@@ -195,9 +204,9 @@ class InitialCells {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
         if (++cells_at[at(cell.sides[s])] <= 2) continue;
-        auto const side = TreeView::side_of(cell, s);
-        throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", side.nodes[0], ", ",
-                    side.nodes[1], " and ", side.nodes[2],
+        auto const nodes = corners_of(cell, s);
+        throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", nodes[0], ", ",
+                    nodes[1], " and ", nodes[2],
                     " with two others; give each side two cells at most");
       }
     }

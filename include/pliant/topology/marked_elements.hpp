@@ -168,8 +168,8 @@ template <int Dim>
 void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit>& splits) {
   Index const other = TreeQueries(tree.tree()).across_base(pyramid);
   if (other < 0 || tree.cell(other).kind != CellKind::pyramid) return;
-  auto const& corners =
-      tree.tree().sides()[static_cast<std::size_t>(tree.cell(pyramid).sides[0])].nodes;
+  auto const& base = tree.tree().sides()[static_cast<std::size_t>(tree.cell(pyramid).sides[0])];
+  auto const corners = tree.tree().lists().view().corners_of(base);
   Index const first = corners[shorter_diagonal(tree, corners)];
   for (Index const c : {pyramid, other}) {
     auto const& nodes = tree.cell(c).nodes;

@@ -230,7 +230,7 @@ class PatternMaker {
     for (int const point : own)
       if (point >= 0) corners |= bit(point);
     for (int s = 0; s < p_.sides; ++s)
-      if ((corners & ~on_side_[at(s)]) == 0) return {Home::side, s};
+      if ((corners & ~on_side_[at(s)]) == 0) return {Home::side, s, corner_in(s, corners)};
     for (int i = 0; i < p_.inner_sides; ++i)
       if (inner_side_[at(i)] == corners) {
         p_.children_at_inner_side[at(i)][1] = child;
@@ -239,6 +239,12 @@ class PatternMaker {
     inner_side_[at(p_.inner_sides)] = corners;
     p_.children_at_inner_side[at(p_.inner_sides)][0] = child;
     return {Home::inside, p_.inner_sides++};
+  }
+  /// Which corner of a side is among points; −1 where none is.
+  constexpr int corner_in(int side, std::uint32_t points) const {
+    for (int k = 0; k < p_.corners_of_side(side); ++k)
+      if ((points & bit(p_.side[at(side)][at(k)])) != 0) return k;
+    return -1;
   }
 
   RefinementPattern p_{};

@@ -54,11 +54,13 @@ struct RefinementPattern {
   static constexpr std::size_t most_corners = 8, most_points = 27, most_children = 10,
                                most_edges = 12, most_sides = 6, most_inner_sides = 13;
   /// Where an edge or a side of a child lies: on an edge or side of the parent, or inside it, and the
-  /// number of that edge, side, or inner edge or side.
+  /// number of that edge, side, or inner edge or side. Of a side on a side that is divided in four: at which of that one's corners,
+  /// or −1 in the middle of a triangle.
   enum class Home : std::uint8_t { edge, side, inside };
   struct Part {
     Home home = Home::inside;
     int number = -1;
+    int corner = -1;
   };
 
   int dim = 0, corners = 0, edges = 0, sides = 0, points = 0, children = 0;  // sides: 0 in 2D

@@ -137,18 +137,21 @@ static_assert(sizeof(TreeEdge) == 32);
 
 /// The side of solid cells, refined as a triangle or quadrilateral is. Copied by 16 bytes at once, as cells are.
 struct alignas(16) TreeSide {
-  std::array<Index, 4> nodes{-1, -1, -1, -1};
-  std::array<Index, 4> edges{-1, -1, -1, -1};  ///< edge k begins at corner k
+  std::array<Index, 4> edges{-1, -1, -1, -1};  ///< edge k joins corner k to the next
   std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side, on either side
   Index centre = -1;                           ///< the node in its middle, or -1
   Index parent = -1;                           ///< the side of which it is a part
   Index first_child = -1;  ///< of four, or of two triangles between two pyramids that are split
   Index first_inner_edge =
       -1;  ///< of three in a triangle, four in a quadrilateral, or the diagonal
-  int level = 0;
-  int unused = 0;  ///< as in TreeEdge
+  std::int16_t level = 0;
+  std::uint16_t backwards = 0;  ///< bit k: the first node of edge k is not corner k, but the next
+  int unused = 0;               ///< without it nvcc stores bytes
 
-  [[nodiscard]] PLIANT_HOST_DEVICE std::size_t corners() const { return nodes[3] < 0 ? 3 : 4; }
+  [[nodiscard]] PLIANT_HOST_DEVICE std::size_t corners() const { return edges[3] < 0 ? 3 : 4; }
+  [[nodiscard]] PLIANT_HOST_DEVICE bool runs_backwards(std::size_t edge) const {
+    return (backwards >> edge & 1) != 0;
+  }
   /// One of its cells; −1 where it has none.
   [[nodiscard]] PLIANT_HOST_DEVICE Index any_cell() const {
     return cells[0] >= 0 ? cells[0] : cells[1];
@@ -164,7 +167,6 @@ struct alignas(16) TreeSide {
 
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
-    visit("nodes", r.nodes...);
     visit("edges", r.edges...);
     visit("cells", r.cells...);
     visit("centre", r.centre...);
@@ -172,8 +174,10 @@ struct alignas(16) TreeSide {
     visit("first child", r.first_child...);
     visit("first inner edge", r.first_inner_edge...);
     visit("level", r.level...);
+    visit("edges that run backwards", r.backwards...);
   }
 };
+static_assert(sizeof(TreeSide) == 48);
 
 /// The nodes of the element on a cell or side, in the element's order.
 struct CellNodeList {

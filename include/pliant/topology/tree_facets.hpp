@@ -73,11 +73,11 @@ class TreeFacets {
       return true;
     });
   }
-  auto const& nodes_at(Index s) const {
+  auto nodes_at(Index s) const {
     if constexpr (Dim == 2)
       return tree_.edges()[at(s)].nodes;
     else
-      return tree_.sides()[at(s)].nodes;
+      return tree_.lists().view().corners_of(tree_.sides()[at(s)]);
   }
   /// Whether a side has a cell on one side only.
   bool is_outside(Index s) const {
@@ -111,7 +111,7 @@ class TreeFacets {
       auto has = CellNodes::corners;
       for (Index const c : side.cells)
         if (c >= 0) has = std::max(has, tree_[c].has);
-      for (std::size_t k = 0; k < side.corners(); ++k) facet.push_back(side.nodes[k]);
+      for (std::size_t k = 0; k < side.corners(); ++k) facet.push_back(tree_.corner_of(side, k));
       if (has == CellNodes::corners) return facet;
       for (std::size_t k = 0; k < side.corners(); ++k)
         facet.push_back(edges[at(side.edges[k])].middle);

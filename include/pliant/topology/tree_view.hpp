@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -41,6 +42,17 @@ struct TreeView {
     auto list = nodes_of(c);
     if (cells[at(c)].mirrored) list.mirror();
     return list;
+  }
+
+  /// The node at corner k of a side.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index corner_of(TreeSide const& side, std::size_t k) const {
+    return edges[at(side.edges[k])].nodes[side.runs_backwards(k) ? 1 : 0];
+  }
+  /// Those of all its corners; −1 behind those of a triangle.
+  [[nodiscard]] PLIANT_HOST_DEVICE std::array<Index, 4> corners_of(TreeSide const& side) const {
+    std::array<Index, 4> nodes{-1, -1, -1, -1};
+    for (std::size_t k = 0; k < side.corners(); ++k) nodes[k] = corner_of(side, k);
+    return nodes;
   }
 
   /// What a change of a cell may edit: cell(c), and edge(e) and side(s) for its edges and sides and the parts that these
@@ -87,18 +99,21 @@ struct TreeView {
   }
 
   /// Side s of a cell, as the cell sees it.
-  static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) {
+  [[nodiscard]] PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) const {
     return side_of(cell, s, cell.pattern());
   }
   /// The same, where it is known as a program is compiled what the cell's pattern is.
-  static PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s,
-                                             RefinementPattern const& p) {
-    TreeSide side{.level = cell.level};
+  [[nodiscard]] PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s,
+                                                    RefinementPattern const& p) const {
+    TreeSide side{.level = static_cast<std::int16_t>(cell.level)};
+    unsigned backwards = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       if (p.side[s][k] < 0) break;
-      side.nodes[k] = cell.nodes[at(p.side[s][k])];
       side.edges[k] = cell.edges[at(p.edges_of_side[s][k])];
+      bool const begins_here = edges[at(side.edges[k])].nodes[0] == cell.nodes[at(p.side[s][k])];
+      backwards |= static_cast<unsigned>(!begins_here) << k;
     }
+    side.backwards = static_cast<std::uint16_t>(backwards);
     return side;
   }
 
