@@ -1,5 +1,7 @@
+#include <cmath>
 #include <map>
 #include <set>
+#include <string>
 
 #include <pliant/constraint/interpolation.hpp>
 #include <pliant/formulation/mass.hpp>
@@ -327,6 +329,23 @@ TEST_CASE("a family stays where a child is not marked or a neighbour is too fine
   auto const done = mesh.coarsen(mesh.leaves());
   CHECK(done.parents == std::vector<Index>{0, 1});
   CHECK(mesh.points().size() == 12);
+}
+
+TEST_CASE("an edge of more cells than can be counted is refused", "[topology]") {
+  constexpr Index most = CellsAtEdge::most / 4;
+  auto const fan = [](Index cells) {
+    Mesh<Tet4> mesh{.nodes = {{0, 0, -1}, {0, 0, 1}}};
+    for (Index k = 0; k < cells; ++k) {
+      double const angle = 6.28 * k / cells;
+      mesh.nodes.push_back({std::cos(angle), std::sin(angle), 0});
+      mesh.elements<Tet4>().push_back({0, 1, 2 + k, 2 + (k + 1) % cells});
+    }
+    return mesh;
+  };
+  Hierarchy<3> const just(fan(most));
+  CHECK(just.tree().edges()[0].cells.leaves() == most);
+  CHECK_THROWS_WITH(Hierarchy<3>(fan(most + 1)),
+                    says("cell " + std::to_string(most)) && says("from node 0 to 1"));
 }
 
 TEST_CASE("a side has two cells at most", "[topology]") {
