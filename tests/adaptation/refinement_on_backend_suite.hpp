@@ -317,6 +317,7 @@ void check_brought_over(B const& backend, Index cells, std::size_t one_in, int r
     CHECK(listed(topology.tree->tree().cells()) == listed(wanted.tree->tree().cells()));
     CHECK(listed(topology.tree->tree().edges()) == listed(wanted.tree->tree().edges()));
     CHECK(listed(topology.tree->tree().sides()) == listed(wanted.tree->tree().sides()));
+    CHECK(listed(topology.tree->tree().lists().rows) == listed(wanted.tree->tree().lists().rows));
     CHECK(topology.tree->leaf_count() == wanted.tree->leaf_count());
     CHECK(topology.tree->points() == wanted.tree->points());
     CHECK(topology.mesh().tables == wanted.mesh().tables);

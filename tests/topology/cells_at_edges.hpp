@@ -15,8 +15,7 @@ int count_edges_with_other_cells(Hierarchy<Dim> const& mesh) {
   std::vector<std::vector<Index>> all(tree.edges().size());
   for (Index c = 0; c < static_cast<Index>(tree.cells().size()); ++c)
     if (!tree[c].is_split())
-      for (std::size_t e = 0; e < at(tree[c].pattern().edges); ++e)
-        all[at(tree[c].edges[e])].push_back(c);
+      for (int e = 0; e < tree[c].pattern().edges; ++e) all[at(tree.row(c).edges[e])].push_back(c);
   auto const by = tree.cells_at_edges();
   int wrong = 0;
   for (std::size_t e = 0; e < all.size(); ++e) {

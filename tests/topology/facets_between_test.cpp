@@ -64,7 +64,7 @@ TEST_CASE("facets of a tree are taken over to another one of the same mesh", "[t
 TEST_CASE("facets inside of divided cells are not taken over", "[topology]") {
   Hierarchy<2> tree(regular_mesh<Tri3>(4));
   tree.refine(std::vector<Index>{0});
-  auto const& child = tree.cell(tree.cell(0).first_child + 3);  // in the middle
+  auto const child = tree.tree().row(tree.cell(0).first_child + 3);  // in the middle
   Facet<2> const inside{child.nodes[0], child.nodes[1]};
   std::vector<Facet<2>> const facets{inside};
   FacetsBetween<2> const between(tree.tree().lists(), tree.tree().lists(), {&facets});

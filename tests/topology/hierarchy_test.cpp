@@ -44,8 +44,9 @@ Hierarchy hierarchy(std::vector<Point> points, std::vector<Nodes3> triangles,
       pliant::Mesh<Tri3, Quad4>{std::move(points), {std::move(triangles), std::move(quads)}});
 }
 
-Nodes4 four_nodes(TreeCell const& cell) {
-  return {cell.nodes[0], cell.nodes[1], cell.nodes[2], cell.nodes[3]};
+Nodes4 four_nodes(Hierarchy const& mesh, Index c) {
+  auto const* const nodes = mesh.tree().row(c).nodes;
+  return {nodes[0], nodes[1], nodes[2], nodes[3]};
 }
 
 // A rectangle whose inner nodes are shifted at random, so that no two cells are alike.
@@ -79,19 +80,22 @@ Refinement refine(Hierarchy& mesh, std::vector<Index> const& cells,
   return mesh.refine(cells, limits);
 }
 
-double cross_at(Hierarchy const& mesh, TreeCell const& cell, std::size_t i) {
-  auto const k = cell.corners();
-  auto const& p = mesh.points()[at(cell.nodes[i])];
-  auto const& next = mesh.points()[at(cell.nodes[(i + 1) % k])];
-  auto const& last = mesh.points()[at(cell.nodes[(i + k - 1) % k])];
+double cross_at(Hierarchy const& mesh, Index c, std::size_t i) {
+  auto const k = mesh.cell(c).corners();
+  auto const* const nodes = mesh.tree().row(c).nodes;
+  auto const& p = mesh.points()[at(nodes[i])];
+  auto const& next = mesh.points()[at(nodes[(i + 1) % k])];
+  auto const& last = mesh.points()[at(nodes[(i + k - 1) % k])];
   return (next[0] - p[0]) * (last[1] - p[1]) - (next[1] - p[1]) * (last[0] - p[0]);
 }
 
-double area(Hierarchy const& mesh, TreeCell const& cell) {
+double area(Hierarchy const& mesh, Index c) {
+  auto const* const nodes = mesh.tree().row(c).nodes;
+  auto const corners = mesh.cell(c).corners();
   double twice = 0;
-  for (std::size_t i = 0; i < cell.corners(); ++i) {
-    auto const& p = mesh.points()[at(cell.nodes[i])];
-    auto const& q = mesh.points()[at(cell.nodes[(i + 1) % cell.corners()])];
+  for (std::size_t i = 0; i < corners; ++i) {
+    auto const& p = mesh.points()[at(nodes[i])];
+    auto const& q = mesh.points()[at(nodes[(i + 1) % corners])];
     twice += p[0] * q[1] - p[1] * q[0];
   }
   return twice / 2;
@@ -102,10 +106,11 @@ std::vector<double> picture(Hierarchy const& mesh) {
   std::vector<double> seen{static_cast<double>(mesh.leaf_count())};
   for (auto const& p : mesh.points()) seen.insert(seen.end(), p.begin(), p.end());
   for (auto const& c : mesh.cells()) {
-    for (Index const n : {static_cast<int>(c.corners()), c.parent, c.first_child, c.level})
+    for (Index const n : {static_cast<int>(c.corners()), c.parent, c.first_child, int{c.level}})
       seen.push_back(n);
-    seen.insert(seen.end(), c.nodes.begin(), c.nodes.end());
   }
+  for (auto const& row : mesh.tree().lists().rows)
+    seen.insert(seen.end(), row.numbers.begin(), row.numbers.end());
   for (auto const& s : mesh.slaves()) {
     seen.push_back(s.node);
     for (auto const& [master, weight] : s.masters) seen.insert(seen.end(), {1. * master, weight});
@@ -156,8 +161,8 @@ void check_leaves(Hierarchy const& mesh) {
   auto const leaves = mesh.leaves();
   for (Index const c : leaves) {
     auto const& cell = mesh.cell(c);
-    total += area(mesh, cell);
-    for (std::size_t i = 0; i < cell.corners(); ++i) bad_corners += !(cross_at(mesh, cell, i) > 0);
+    total += area(mesh, c);
+    for (std::size_t i = 0; i < cell.corners(); ++i) bad_corners += !(cross_at(mesh, c, i) > 0);
     for (Index child = c, up = cell.parent; up >= 0; child = up, up = mesh.cell(up).parent) {
       auto const first = mesh.cell(up).first_child;
       astray += child < first || child >= first + 4;
@@ -214,8 +219,9 @@ std::size_t check_continuity(Hierarchy const& mesh, std::mt19937& random) {
   std::set<Index> hanging;
   for (Index const c : mesh.leaves()) {
     auto const& cell = mesh.cell(c);
+    auto const* const nodes = mesh.tree().row(c).nodes;
     for (std::size_t i = 0; i < cell.corners(); ++i) {
-      Index const a = cell.nodes[i], b = cell.nodes[(i + 1) % cell.corners()];
+      Index const a = nodes[i], b = nodes[(i + 1) % cell.corners()];
       Index const middle = places.between(a, b);
       if (middle < 0) continue;
       hanging.insert(middle);
@@ -269,10 +275,10 @@ TEST_CASE("a triangle becomes three corners and a middle turned by half a turn",
                              std::vector<Point>{{0, 0}, {2, 0}, {0, 2}, {1, 0}, {1, 1}, {0, 1}}));
   REQUIRE(mesh.leaves() == std::vector<Index>{1, 2, 3, 4});
   CHECK(mesh.cell(0).first_child == 1);
-  CHECK(four_nodes(mesh.cell(1)) == Nodes4{0, 3, 5, -1});
-  CHECK(four_nodes(mesh.cell(2)) == Nodes4{3, 1, 4, -1});
-  CHECK(four_nodes(mesh.cell(3)) == Nodes4{5, 4, 2, -1});
-  CHECK(four_nodes(mesh.cell(4)) == Nodes4{4, 5, 3, -1});
+  CHECK(four_nodes(mesh, 1) == Nodes4{0, 3, 5, -1});
+  CHECK(four_nodes(mesh, 2) == Nodes4{3, 1, 4, -1});
+  CHECK(four_nodes(mesh, 3) == Nodes4{5, 4, 2, -1});
+  CHECK(four_nodes(mesh, 4) == Nodes4{4, 5, 3, -1});
 }
 
 TEST_CASE("a quadrilateral becomes four corners numbered like itself", "[hierarchy]") {
@@ -285,10 +291,10 @@ TEST_CASE("a quadrilateral becomes four corners numbered like itself", "[hierarc
   auto const centre = done.new_nodes.back().parents;
   CHECK(std::vector(centre.begin(), centre.end()) ==
         std::vector<std::pair<Index, double>>{{0, 0.25}, {1, 0.25}, {2, 0.25}, {3, 0.25}});
-  CHECK(four_nodes(mesh.cell(1)) == Nodes4{0, 4, 8, 7});
-  CHECK(four_nodes(mesh.cell(2)) == Nodes4{4, 1, 5, 8});
-  CHECK(four_nodes(mesh.cell(3)) == Nodes4{8, 5, 2, 6});
-  CHECK(four_nodes(mesh.cell(4)) == Nodes4{7, 8, 6, 3});
+  CHECK(four_nodes(mesh, 1) == Nodes4{0, 4, 8, 7});
+  CHECK(four_nodes(mesh, 2) == Nodes4{4, 1, 5, 8});
+  CHECK(four_nodes(mesh, 3) == Nodes4{8, 5, 2, 6});
+  CHECK(four_nodes(mesh, 4) == Nodes4{7, 8, 6, 3});
   CHECK(mesh.slaves().empty());
 }
 
@@ -382,7 +388,7 @@ TEST_CASE("random refinement keeps area, orientation, levels, continuity and mar
     }
   }
   int deepest = 0;
-  for (auto const& c : mesh.cells()) deepest = std::max(deepest, c.level);
+  for (auto const& c : mesh.cells()) deepest = std::max(deepest, int{c.level});
   // The trial reached what it is meant to try.
   CHECK(deepest >= 4);
   CHECK(closures > 20);

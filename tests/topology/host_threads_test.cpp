@@ -16,8 +16,9 @@ std::vector<std::vector<Index>> changed(int threads_of_host) {
   Random random(7);
   std::vector<std::vector<Index>> states;
   auto const note = [&](auto const& new_nodes) {
-    auto& own = states.emplace_back(listed(tree.cells(), tree.tree().edges(), tree.tree().sides(),
-                                           tree.tree().divided(), tree.points()));
+    auto& own =
+        states.emplace_back(listed(tree.cells(), tree.tree().edges(), tree.tree().sides(),
+                                   tree.tree().lists().rows, tree.tree().divided(), tree.points()));
     for (NewNode const& node : new_nodes) {
       own.push_back(node.node);
       for (auto const& [parent, weight] : node.parents) own.push_back(parent);
@@ -26,7 +27,7 @@ std::vector<std::vector<Index>> changed(int threads_of_host) {
   auto const any = [](TreeCell const&) { return true; };
   auto const linear = [](TreeCell const& cell) { return cell.has == CellNodes::corners; };
   auto const lists_of = [](Hierarchy<3> const& of) {
-    return listed(of.cells(), of.tree().edges(), of.tree().sides());
+    return listed(of.cells(), of.tree().edges(), of.tree().sides(), of.tree().lists().rows);
   };
   for (int round = 0; round < 2; ++round) {
     Hierarchy<3> const copy = tree;  // shares what does not change
@@ -76,7 +77,7 @@ TEST_CASE("cells beside divided ones are divided while a copy shares what these 
     tree.refine(even);
     Hierarchy<3> const copy = tree;
     auto const lists_of = [](Hierarchy<3> const& of) {
-      return listed(of.cells(), of.tree().edges(), of.tree().sides());
+      return listed(of.cells(), of.tree().edges(), of.tree().sides(), of.tree().lists().rows);
     };
     auto const before = lists_of(copy);
     tree.refine(odd);

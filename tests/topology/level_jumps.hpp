@@ -13,12 +13,13 @@ int count_level_jumps(Hierarchy<Dim> const& mesh) {
   auto const is_bisected = [&](Index e) { return edges[at(e)].first_half >= 0; };
   int jumps = 0;
   for (Index const c : mesh.leaves()) {
-    auto const& cell = mesh.cell(c);
-    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-      if (Index const half = edges[at(cell.edges[e])].first_half; half >= 0)
+    auto const own = mesh.tree().row(c);
+    auto const& p = mesh.cell(c).pattern();
+    for (int e = 0; e < p.edges; ++e)
+      if (Index const half = edges[at(own.edges[e])].first_half; half >= 0)
         jumps += is_bisected(half) || is_bisected(half + 1);
-    for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
-      auto const& side = sides[at(cell.sides[s])];
+    for (int s = 0; s < p.sides; ++s) {
+      auto const& side = sides[at(own.sides[s])];
       if (side.first_child < 0) continue;
       for (Index k = 0; k < 4; ++k) jumps += sides[at(side.first_child + k)].first_child >= 0;
       for (Index k = 0; k < static_cast<Index>(side.corners()); ++k)

@@ -203,7 +203,7 @@ TEMPLATE_TEST_CASE("every element's mesh stays sound under refinement and coarse
       for (std::size_t i = 0; i < done.new_nodes.size(); ++i)
         CHECK(done.new_nodes[i].node == static_cast<Index>(nodes.size() + i));
     }
-    for (auto const& cell : mesh.cells()) deepest = std::max(deepest, cell.level);
+    for (auto const& cell : mesh.cells()) deepest = std::max(deepest, int{cell.level});
     most_hanging = std::max(most_hanging, mesh.slaves().size());
     for (auto const& slave : mesh.slaves()) composed += slave.masters.size() > 9;
     CHECK(count_level_jumps(mesh) == 0);
@@ -268,7 +268,7 @@ TEST_CASE("behind the middle of a tetrahedron's side the coarser neighbour is re
   for (Index c = mesh.cell(0).first_child; c < mesh.cell(0).first_child + 8; ++c) {
     int on_side = 0, corners = 0;
     for (std::size_t a = 0; a < 4; ++a) {
-      auto const& p = mesh.points()[at(mesh.cell(c).nodes[a])];
+      auto const& p = mesh.points()[at(mesh.tree().row(c).nodes[a])];
       on_side += p[0] + p[1] + p[2] == 1;
       corners += p[0] == 1 || p[1] == 1 || p[2] == 1;
     }

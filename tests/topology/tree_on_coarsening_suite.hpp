@@ -14,7 +14,7 @@ template <int Dim>
 auto state(Hierarchy<Dim> const& host) {
   auto const& tree = host.tree();
   return std::tuple(listed(tree.cells()), listed(tree.edges()), listed(tree.sides()),
-                    tree.node_count());
+                    listed(tree.lists().rows), tree.node_count());
 }
 
 /// Leaves of families, of which one in so many is whole, and most of the others lack a child.
@@ -44,7 +44,7 @@ void check_changes(TreeBeside<B>& on, Hierarchy<Dim>& host, int rounds) {
       refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random));
     else
       merged += coarsen_both(on, host, some_families(host, 2, random), random).merged;
-    for (Index const c : host.leaves()) deepest = std::max(deepest, host.cell(c).level);
+    for (Index const c : host.leaves()) deepest = std::max(deepest, int{host.cell(c).level});
     auto const next = random.below(5);
     if (next == 0 && round > 2) {
       on.tree.take_back();
@@ -79,7 +79,7 @@ void check_changes_of(B const& backend, M const& mesh, int rounds) {
   auto const changed = host;
   merge_all(on, host);
   CHECK(std::tuple(listed(on.tree.cells()), listed(on.tree.edges()), listed(on.tree.sides()),
-                   on.tree.sizes().nodes) == first);
+                   listed(on.tree.rows()), on.tree.sizes().nodes) == first);
   on.tree.take_back();
   check_same(on.tree, changed);
 }

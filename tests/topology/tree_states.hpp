@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <vector>
 
@@ -25,7 +27,8 @@ std::vector<Index> listed(Lists const&... lists) {
     if constexpr (std::is_floating_point_v<V>)
       numbers.push_back(static_cast<Index>(1e6 * value));
     else if constexpr (std::is_enum_v<V> || std::is_arithmetic_v<V>)
-      numbers.push_back(static_cast<Index>(value));
+      for (std::size_t byte = 0; byte < sizeof(V); byte += sizeof(Index))
+        numbers.push_back(static_cast<Index>(static_cast<std::uint64_t>(value) >> 8 * byte));
     else if constexpr (requires { V::for_each_member(Ignore{}, value); })
       V::for_each_member([&](char const*, auto const& own) { self(self, own); }, value);
     else

@@ -46,6 +46,7 @@ void check_same(TreeOn<B>& tree, Hierarchy<Dim> const& host) {
   CHECK(listed(tree.cells()) == listed(like.cells()));
   CHECK(listed(tree.edges()) == listed(like.edges()));
   CHECK(listed(tree.sides()) == listed(like.sides()));
+  CHECK(listed(tree.rows()) == listed(like.lists().rows));
   CHECK(tree.sizes().nodes == like.node_count());
   CHECK(tree.leaves() == static_cast<Index>(host.leaf_count()));
 }

@@ -30,8 +30,9 @@ struct SidesInSet {
   ConditionBits set;
 
   /// Of side s of a cell; of an edge in the plane.
-  PLIANT_HOST_DEVICE bool operator()(TreeCell const& cell, Index s) const {
-    Index const side = Dim == 2 ? cell.edges[at(s)] : cell.sides[at(s)];
+  PLIANT_HOST_DEVICE bool operator()(Index c, Index s) const {
+    auto const own = sides.tree.row(c);
+    Index const side = Dim == 2 ? own.edges[s] : own.sides[s];
     return (bits[side] & set) != 0;
   }
   [[nodiscard]] PLIANT_HOST_DEVICE TreeCell const& cell(Index c) const {
@@ -48,10 +49,9 @@ struct HasSideInSet {
   Index const* leaves;
 
   PLIANT_HOST_DEVICE bool operator()(Index place) const {
-    auto const& cell = in_set.cell(leaves[place]);
-    auto const& p = cell.pattern();
+    auto const& p = in_set.cell(leaves[place]).pattern();
     for (Index s = 0; s < (Dim == 2 ? p.edges : p.sides); ++s)
-      if (in_set(cell, s)) return true;
+      if (in_set(leaves[place], s)) return true;
     return false;
   }
 };
@@ -61,9 +61,7 @@ struct SidesOfCells {
   SidesInSet<Dim> in_set;
   Index const* cells;
 
-  PLIANT_HOST_DEVICE bool operator()(Index i) const {
-    return in_set(in_set.cell(cells[i / Sides]), i % Sides);
-  }
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return in_set(cells[i / Sides], i % Sides); }
 };
 /// Puts the rows of the nodes of a listed side, as they are seen from outside of its element.
 template <int Dim, Index Sides, int Width>
@@ -74,14 +72,16 @@ struct PutFacet {
   Index* rows;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell = of_cells.in_set.cell(of_cells.cells[places[k] / Sides]);
+    Index const number = of_cells.cells[places[k] / Sides];
+    auto const& cell = of_cells.in_set.cell(number);
+    auto const* const nodes = of_cells.in_set.sides.tree.row(number).nodes;
     auto const s = static_cast<std::size_t>(places[k] % Sides);
     auto const& p = cell.pattern();
     int const corners = Dim == 2 ? 2 : p.corners_of_side(static_cast<int>(s));
     for (int a = 0; a < corners; ++a) {
       auto const c = static_cast<std::size_t>(cell.mirrored ? corners - 1 - a : a);
       int const corner = Dim == 2 ? p.edge[s][c] : p.side[s][c];
-      rows[std::ptrdiff_t{Width} * k + a] = of_node[cell.nodes[static_cast<std::size_t>(corner)]];
+      rows[std::ptrdiff_t{Width} * k + a] = of_node[nodes[corner]];
     }
   }
 };

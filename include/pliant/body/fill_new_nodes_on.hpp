@@ -50,7 +50,7 @@ struct FillNewNodes {
         rows[a] = weights[static_cast<int>(a)] != 0 ? of_node[parents[a]] : -1;
     };
     if constexpr (E::degree == 1)
-      take(tree.cells[static_cast<std::size_t>(cell)].nodes);
+      take(tree.row(cell).nodes);
     else
       take(tree.nodes_of(cell));
     return rows;

@@ -27,8 +27,8 @@ struct SidesView {
   /// Calls visit(side) for the sides of a cell.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_sides(Index cell, Visit const& visit) const {
-    auto const& own = tree.cells[at(cell)];
-    auto const& p = own.pattern();
+    auto const own = tree.row(cell);
+    auto const& p = tree.cells[at(cell)].pattern();
     if constexpr (Dim == 2) {
       for (std::size_t e = 0; e < at(p.edges); ++e) visit(own.edges[e]);
     } else {

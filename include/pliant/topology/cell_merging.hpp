@@ -28,8 +28,9 @@ PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
   for (Index i = cell.first_child; i < end; ++i) {
     auto const& child = tree.cells[at(i)];
     if (child.first_child >= 0 || child.has != has) return false;
+    auto const own = tree.row(i);
     for (std::size_t e = 0; !cell.is_split() && e < at(child.pattern().edges); ++e)
-      if (tree.edges[at(child.edges[e])].cells.refined() > 0) return false;
+      if (tree.edges[at(own.edges[e])].cells.refined() > 0) return false;
   }
   return true;
 }
@@ -40,23 +41,24 @@ PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) 
   auto const& cell = tree.cells[at(c)];
   auto const& p = cell.divided();
   TreeCell const child = tree.cells[at(cell.first_child + i)];
+  auto const own = tree.row(cell.first_child + i);
   visit_cell(child.kind, [&]<class Cell>(Cell) {
-    tree.count_leaf<Cell>(child, -1);
+    tree.count_leaf<Cell>(own.edges, child.has, -1);
     for (int s = 0; s < sides_of<Cell>; ++s) {
       auto const& of_parent = p.child_side[at(i)][at(s)];
       bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
                             of_parent.number != p.halved_side;
-      replace_at_side(tree, child.sides[at(s)], cell.first_child + i, is_whole ? c : -1);
+      replace_at_side(tree, own.sides[at(s)], cell.first_child + i, is_whole ? c : -1);
     }
   });
 }
 /// Makes a divided cell, whose children were left out, a leaf.
 PLIANT_HOST_DEVICE void merge_cell(TreeView const& tree, Index c) {
   auto& cell = tree.cells[static_cast<std::size_t>(c)];
-  if (cell.divided().halves) tree.count_refined(cell, -1);
+  if (cell.divided().halves) tree.count_refined(c, -1);
   cell.first_child = -1;
   cell.division = Division::refined;
-  tree.count_leaf(cell, 1);
+  tree.count_leaf(c, 1);
 }
 
 /// Makes divided cells of a tree leaves again, all at once, on the threads of the host. Their children, which are leaves of

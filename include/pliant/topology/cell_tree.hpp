@@ -26,7 +26,11 @@ template <int Dim>
 class CellTree {
  public:
   CellTree() = default;
-  explicit CellTree(Index nodes) { lists_.nodes = nodes; }
+  /// Of no cells yet, but of so many nodes.
+  CellTree(Index nodes, RowLayout layout) {
+    lists_.nodes = nodes;
+    lists_.layout = layout;
+  }
   /// Of lists that fit together; `at_edges`: of the same initial mesh, or null.
   CellTree(TreeLists lists, std::shared_ptr<CellsAtEdges const> at_edges)
       : lists_(std::move(lists)), at_edges_(std::move(at_edges)) {}
@@ -38,17 +42,21 @@ class CellTree {
     auto const corners = at(pattern_of(kind).corners);
     auto const others = N - corners, first = lists_.cells.size(),
                first_other = initial_others_.size();
-    lists_.cells.extend(elements.size());
+    lists_.extend_cells(elements.size());
+    auto const view = lists_.view();
     initial_others_.resize(first_other + others * elements.size());
     detail::for_each_on_host(size(elements), detail::few_elements(corners), [&](Index i) {
       auto const& nodes = elements[at(i)];
       auto const middle = nodes.begin() + static_cast<std::ptrdiff_t>(corners);
-      TreeCell cell{.kind = kind, .has = has, .had = has};
-      std::copy(nodes.begin(), middle, cell.nodes.begin());
+      CellNumbers numbers;
+      std::copy(nodes.begin(), middle, numbers.nodes.begin());
       std::copy(
           middle, nodes.end(),
           initial_others_.begin() + static_cast<std::ptrdiff_t>(first_other + others * at(i)));
-      lists_.cells.edited(first + at(i)) = cell;
+      lists_.cells.edited(first + at(i)) = {.kind = kind, .has = has, .had = has};
+      detail::visit_cell(kind, [&]<class Cell>(Cell) {
+        view.template put_row<Cell>(static_cast<Index>(first) + i, numbers);
+      });
     });
     lists_.count_leaves(has, size(elements));
   }
@@ -67,6 +75,8 @@ class CellTree {
   /// The cells that are divided, each once.
   [[nodiscard]] std::vector<Index> const& divided() const { return lists_.divided; }
   [[nodiscard]] TreeCell const& operator[](Index c) const { return lists_.cells[at(c)]; }
+  /// The numbers of a cell's corners, edges and sides, which nobody may change.
+  [[nodiscard]] CellRow row(Index c) const { return lists_.row(c); }
   [[nodiscard]] bool is_leaf(Index c) const { return lists_.is_leaf(c); }
   [[nodiscard]] std::size_t leaf_count() const {
     return at(lists_.linear_leaves) + at(lists_.quadratic_leaves);
@@ -156,7 +166,7 @@ class CellTree {
   [[nodiscard]] Index corner_of(TreeSide const& side, std::size_t k) const {
     return lists_.view().corner_of(side, k);
   }
-  /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
+  /// The nodes of the element on a cell, in the order of an element's whose corners its row has.
   [[nodiscard]] CellNodeList nodes_of(Index c) const { return lists_.nodes_of(c); }
   /// The same as the element has them, whose volume is positive.
   [[nodiscard]] CellNodeList element_nodes(Index c) const {
@@ -177,7 +187,7 @@ class CellTree {
   void convert(CellConversion const& to) {
     auto& cell = lists_.cells.edit(at(to.cell));
     auto const count = [&](int by) {
-      lists_.count_leaf(cell, by);
+      lists_.count_leaf(to.cell, by);
       lists_.count_leaves(cell.has, by);
     };
     count(-1);

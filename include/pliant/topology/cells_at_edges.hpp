@@ -50,8 +50,10 @@ struct CellsAtEdgesView {
     return tree.edges[static_cast<std::size_t>(e)];
   }
   [[nodiscard]] PLIANT_HOST_DEVICE bool has(Index c, Index e) const {
-    for (Index const own : cell(c).edges)
-      if (own == e) return true;
+    auto const own = tree.row(c);
+    int const edges = cell(c).pattern().edges;
+    for (int k = 0; k < edges; ++k)
+      if (own.edges[k] == e) return true;
     return false;
   }
   /// Visits those among a cell and its descendants, of which it may be one that has chain[top].
@@ -96,8 +98,9 @@ class CellsAtEdges {
   explicit CellsAtEdges(TreeLists const& lists) : first_(at(lists.initial.edges) + 1) {
     auto const for_each_edge = [&](auto const& visit) {
       for (Index c = 0; c < lists.initial.cells; ++c) {
-        auto const& cell = lists.cells[at(c)];
-        for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) visit(at(cell.edges[e]), c);
+        auto const own = lists.row(c);
+        for (std::size_t e = 0; e < at(lists.cells[at(c)].pattern().edges); ++e)
+          visit(at(own.edges[e]), c);
       }
     };
     for_each_edge([&](std::size_t e, Index) { ++first_[e + 1]; });

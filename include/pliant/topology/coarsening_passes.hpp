@@ -190,6 +190,23 @@ struct MoveUp {
     now[static_cast<std::size_t>(to)] = own;
   }
 };
+/// The same of the entries of cells' rows, a call each.
+struct MoveRowsUp {
+  CompactionView view;
+  Pages<RowEntry> before, now;
+
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const k = i >> view.tree.layout.shift, to = view.cells.others[k];
+    if (to < 0) return;
+    Index const entry = i - (k << view.tree.layout.shift);
+    auto const at = [&](Index c) {
+      return view.tree.layout.entry(static_cast<std::size_t>(c)) + static_cast<std::size_t>(entry);
+    };
+    RowEntry own = before[at(view.cells.first + k)];
+    view.renumber(own, entry);
+    now[at(to)] = own;
+  }
+};
 /// Tells listed cells of the initial mesh, and each of their edges and sides once, the numbers of what moved.
 struct TellSides {
   CompactionView view;
@@ -199,10 +216,11 @@ struct TellSides {
   Index now;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell = tree.cells[static_cast<std::size_t>(cells[k])];
-    for (std::size_t s = 0; s < static_cast<std::size_t>(cell.pattern().sides); ++s)
-      if (stamps_first(stamps[cell.sides[s]], now))
-        view.renumber_within(tree.sides[static_cast<std::size_t>(cell.sides[s])]);
+    auto const own = tree.row(cells[k]);
+    int const sides = tree.cells[static_cast<std::size_t>(cells[k])].pattern().sides;
+    for (int s = 0; s < sides; ++s)
+      if (stamps_first(stamps[own.sides[s]], now))
+        view.renumber_within(tree.sides[static_cast<std::size_t>(own.sides[s])]);
   }
 };
 struct TellEdges {
@@ -213,10 +231,11 @@ struct TellEdges {
   Index now;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell = tree.cells[static_cast<std::size_t>(cells[k])];
-    for (std::size_t e = 0; e < static_cast<std::size_t>(cell.pattern().edges); ++e)
-      if (stamps_first(stamps[cell.edges[e]], now))
-        view.renumber_within(tree.edges[static_cast<std::size_t>(cell.edges[e])]);
+    auto const own = tree.row(cells[k]);
+    int const edges = tree.cells[static_cast<std::size_t>(cells[k])].pattern().edges;
+    for (int e = 0; e < edges; ++e)
+      if (stamps_first(stamps[own.edges[e]], now))
+        view.renumber_within(tree.edges[static_cast<std::size_t>(own.edges[e])]);
   }
 };
 /// Lists those that know of others still.

@@ -66,9 +66,16 @@ struct CompactionView {
   PLIANT_HOST_DEVICE void renumber(TreeCell& cell) const {
     renumber_within(cell);
     move(cell.parent, cells);
-    move_all(cell.nodes, nodes);
-    move_all(cell.edges, edges);
-    move_all(cell.sides, sides);
+  }
+  /// Entry k of a row.
+  PLIANT_HOST_DEVICE void renumber(RowEntry& entry, Index k) const {
+    auto const& layout = tree.layout;
+    for (std::size_t i = 0; i < RowEntry::count; ++i) {
+      Index const place = static_cast<Index>(RowEntry::count) * k + static_cast<Index>(i);
+      move(entry.numbers[i], place < layout.first_edge   ? nodes
+                             : place < layout.first_side ? edges
+                                                         : sides);
+    }
   }
   PLIANT_HOST_DEVICE void renumber(TreeEdge& edge) const {
     renumber_within(edge);

@@ -69,7 +69,7 @@ class DivisionPlan {
     }
     lists_.edges.extend(new_edges_);
     lists_.sides.extend(new_sides_);
-    lists_.cells.extend(new_cells_);
+    lists_.extend_cells(new_cells_);
     divided_ = true;
   }
 

@@ -34,6 +34,7 @@ struct DivisionView {
 
   [[nodiscard]] PLIANT_HOST_DEVICE Index leaf(Index r) const { return leaves[r].cell; }
   [[nodiscard]] PLIANT_HOST_DEVICE TreeCell& cell(Index r) const { return tree.cells[at(leaf(r))]; }
+  [[nodiscard]] PLIANT_HOST_DEVICE CellRow row(Index r) const { return tree.row(leaf(r)); }
   [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern_at(Index r) const {
     return pattern_of(cell(r).kind, leaves[r].division);
   }
@@ -57,16 +58,16 @@ struct DivisionView {
   }
   /// Finds what the leaf makes; numbers are not known yet.
   PLIANT_HOST_DEVICE void find_parts(Index r) const {
-    auto const& own_cell = cell(r);
+    auto const own_row = row(r);
     auto const& p = pattern_at(r);
     LeafParts own{.edges = p.inner_edges, .sides = p.inner_sides, .cells = p.children};
     for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
-      auto const& edge = tree.edges[at(own_cell.edges[e])];
+      auto const& edge = tree.edges[at(own_row.edges[e])];
       own.middles |= static_cast<std::uint16_t>(makes(r, edge.middle) << e);
       own.halves |= static_cast<std::uint16_t>(makes(r, edge.first_half) << e);
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto const& side = tree.sides[at(own_cell.sides[s])];
+      auto const& side = tree.sides[at(own_row.sides[s])];
       own.second |= static_cast<std::uint8_t>(side.place_of(leaf(r)) << s);
       if (!is_divided(p, s)) continue;
       own.centres |= static_cast<std::uint8_t>(makes(r, side.centre) << s);
@@ -78,17 +79,16 @@ struct DivisionView {
     }
     own.edges += 2 * std::popcount(own.halves);
     own.nodes = std::popcount(own.middles) + std::popcount(own.centres);
-    if (p.centre >= 0 && own_cell.centre < 0) ++own.nodes;
+    if (p.centre >= 0 && cell(r).centre < 0) ++own.nodes;
     parts[r] = own;
   }
 
   /// Middle and halves of edge e.
   PLIANT_HOST_DEVICE void make_on_edge(Index r, std::size_t e) const {
-    auto const& own_cell = cell(r);
     auto const& p = pattern_at(r);
     auto const& own = parts[r];
     if (!has(own.middles, e) && !has(own.halves, e)) return;
-    Index const number = own_cell.edges[e];
+    Index const number = row(r).edges[e];
     auto& edge = tree.edges[at(number)];
     if (has(own.middles, e)) {
       edge.middle = own.node + rank(own.middles, e);
@@ -104,10 +104,10 @@ struct DivisionView {
   }
   /// Centre and parts of side s, whose edges have all of theirs.
   PLIANT_HOST_DEVICE void make_on_side(Index r, std::size_t s) const {
-    auto const& own_cell = cell(r);
+    auto const own_row = row(r);
     auto const& p = pattern_at(r);
     auto const& own = parts[r];
-    auto& side = tree.sides[at(own_cell.sides[s])];
+    auto& side = tree.sides[at(own_row.sides[s])];
     if (has(own.centres, s)) {
       side.centre = own.node + std::popcount(own.middles) + rank(own.centres, s);
       place(r, side.centre, p.side_centre[s]);
@@ -123,9 +123,9 @@ struct DivisionView {
     side.first_child = part;
     side.first_inner_edge = edge;
     if (p.halves)
-      divide_side(tree, own_cell.sides[s]);
+      divide_side(tree, own_row.sides[s]);
     else
-      halve_side(tree, own_cell.sides[s], own_cell.nodes[at(p.child[0][0])]);
+      halve_side(tree, own_row.sides[s], own_row.nodes[at(p.child[0][0])]);
   }
   /// The cell's own node and edges, between what is on its edges and sides. It is no leaf any more.
   PLIANT_HOST_DEVICE void make_inside(Index r) const {
@@ -142,12 +142,12 @@ struct DivisionView {
     Index const inner_edge = first_inner_edge(own, p);
     for (std::size_t i = 0; i < at(p.inner_edges); ++i)
       tree.edges[at(inner_edge) + i] = {
-          .nodes = {point(parent, p, p.inner_edge[i][0]), point(parent, p, p.inner_edge[i][1])},
+          .nodes = {point(c, p, p.inner_edge[i][0]), point(c, p, p.inner_edge[i][1])},
           .divided = c,
           .home = TreeEdge::Home::cell,
-          .level = static_cast<std::int16_t>(level_of_children(parent, p))};
-    tree.count_leaf(parent, -1);
-    if (p.halves) tree.count_refined(parent, 1);
+          .level = level_of_children(parent, p)};
+    tree.count_leaf(c, -1);
+    if (p.halves) tree.count_refined(c, 1);
   }
   /// Child i, which is a leaf, and the sides inside of which it is the first cell.
   PLIANT_HOST_DEVICE void make_child(Index r, std::size_t i) const {
@@ -170,30 +170,32 @@ struct DivisionView {
                    .level = level_of_children(parent, p),
                    .parent = c};
     auto const& shape = pattern_of(kind_of<Cell>);
-    for (std::size_t a = 0; a < Cell::corners; ++a)
-      child.nodes[a] = point(parent, p, p.child[i][a]);
+    CellNumbers numbers;
+    auto const around = tree.row(c);
+    for (std::size_t a = 0; a < Cell::corners; ++a) numbers.nodes[a] = point(c, p, p.child[i][a]);
     for (std::size_t e = 0; e < Cell::edges().size(); ++e)
-      child.edges[e] = edge_of_child(parent, p, p.child[i][at(shape.edge[e][0])],
-                                     p.child[i][at(shape.edge[e][1])], p.child_edge[i][e],
-                                     first_inner_edge(own, p));
+      numbers.edges[e] = edge_of_child(around, p, p.child[i][at(shape.edge[e][0])],
+                                       p.child[i][at(shape.edge[e][1])], p.child_edge[i][e],
+                                       first_inner_edge(own, p));
     for (int k = 0; k < sides_of<Cell>; ++k) {
       auto const s = at(k);
       auto const& of_parent = p.child_side[i][s];
       auto const there = at(of_parent.number);
       if (of_parent.home == RefinementPattern::Home::side) {
-        child.sides[s] = side_of_child(parent, p, of_parent, child, shape.edges_of_side[s]);
-        tree.sides[at(child.sides[s])].cells[has(own.second, there) ? 1 : 0] = number;
+        numbers.sides[s] = side_of_child(around, p, of_parent, numbers, shape.edges_of_side[s]);
+        tree.sides[at(numbers.sides[s])].cells[has(own.second, there) ? 1 : 0] = number;
         continue;
       }
-      child.sides[s] = own.side + own.sides - p.inner_sides + of_parent.number;
+      numbers.sides[s] = own.side + own.sides - p.inner_sides + of_parent.number;
       auto const& children = p.children_at_inner_side[there];
       if (at(children[0]) != i) continue;
-      auto side = tree.side_of(child, s, shape);
+      auto side = tree.side_of(numbers.row(), child.level, s, shape);
       side.cells = {own.cell + children[0], own.cell + children[1]};
-      tree.sides[at(child.sides[s])] = side;
+      tree.sides[at(numbers.sides[s])] = side;
     }
     tree.cells[at(number)] = child;
-    tree.count_leaf<Cell>(child, 1);
+    tree.put_row<Cell>(number, numbers);
+    tree.count_leaf<Cell>(numbers.edges.data(), child.has, 1);
   }
   template <class Bits>
   static PLIANT_HOST_DEVICE bool has(Bits bits, std::size_t k) {
@@ -208,16 +210,16 @@ struct DivisionView {
   /// visit(number) for what a leaf needs on its edges and sides, and others may need too: −1 where it is missing.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_shared(Index r, Visit const& visit) const {
-    auto const& own_cell = cell(r);
+    auto const own_row = row(r);
     auto const& p = pattern_at(r);
     for (std::size_t e = 0; p.halves && e < at(p.edges); ++e) {
-      auto& edge = tree.edges[at(own_cell.edges[e])];
+      auto& edge = tree.edges[at(own_row.edges[e])];
       visit(edge.middle);
       visit(edge.first_half);
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
       if (!is_divided(p, s)) continue;
-      auto& side = tree.sides[at(own_cell.sides[s])];
+      auto& side = tree.sides[at(own_row.sides[s])];
       if (p.halves && p.side_centre[s] >= 0) visit(side.centre);
       visit(side.first_child);
     }
@@ -229,22 +231,22 @@ struct DivisionView {
                                                    RefinementPattern const& p) {
     return own.edge + own.edges - p.inner_edges;
   }
-  static PLIANT_HOST_DEVICE int level_of_children(TreeCell const& parent,
-                                                  RefinementPattern const& p) {
-    return parent.level + (p.halves ? 1 : 0);
+  static PLIANT_HOST_DEVICE std::int16_t level_of_children(TreeCell const& parent,
+                                                           RefinementPattern const& p) {
+    return static_cast<std::int16_t>(parent.level + (p.halves ? 1 : 0));
   }
   /// The node at a point of a leaf's pattern.
-  [[nodiscard]] PLIANT_HOST_DEVICE Index point(TreeCell const& own_cell, RefinementPattern const& p,
-                                               int i) const {
-    if (i < p.corners) return own_cell.nodes[at(i)];
-    if (i == p.centre) return own_cell.centre;
-    if (i < p.corners + p.edges) return tree.edges[at(own_cell.edges[at(i - p.corners)])].middle;
+  [[nodiscard]] PLIANT_HOST_DEVICE Index point(Index c, RefinementPattern const& p, int i) const {
+    auto const own_row = tree.row(c);
+    if (i < p.corners) return own_row.nodes[at(i)];
+    if (i == p.centre) return tree.cells[at(c)].centre;
+    if (i < p.corners + p.edges) return tree.edges[at(own_row.edges[at(i - p.corners)])].middle;
     std::size_t s = 0;
     while (p.side_centre[s] != i) ++s;
-    return tree.sides[at(own_cell.sides[s])].centre;
+    return tree.sides[at(own_row.sides[s])].centre;
   }
   /// The edge of a child between two points.
-  [[nodiscard]] PLIANT_HOST_DEVICE Index edge_of_child(TreeCell const& parent,
+  [[nodiscard]] PLIANT_HOST_DEVICE Index edge_of_child(CellRow const& parent,
                                                        RefinementPattern const& p, int a, int b,
                                                        RefinementPattern::Part part,
                                                        Index first_inner_edge) const {
@@ -263,10 +265,10 @@ struct DivisionView {
     return half_at(tree, whole, parent.nodes[at(a < p.corners ? a : b)]);
   }
   /// The side of a child that lies on one of the parent's, where the child's own edges have these numbers.
-  [[nodiscard]] PLIANT_HOST_DEVICE Index side_of_child(TreeCell const& parent,
+  [[nodiscard]] PLIANT_HOST_DEVICE Index side_of_child(CellRow const& parent,
                                                        RefinementPattern const& p,
                                                        RefinementPattern::Part part,
-                                                       TreeCell const& child,
+                                                       CellNumbers const& child,
                                                        std::array<int, 4> const& edges) const {
     auto const there = at(part.number);
     Index const whole = parent.sides[there];

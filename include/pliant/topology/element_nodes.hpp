@@ -73,14 +73,14 @@ struct ElementNodesView {
   PLIANT_HOST_DEVICE void visit(Index k, Visit const& visit_node) const {
     auto& cell = tree.cells[at(cells[k])];
     auto const& p = cell.pattern();
+    auto const row = tree.row(cells[k]);
     if (cell.has == CellNodes::corners) return;
     int i = 0;
     for (std::size_t e = 0; e < at(p.edges); ++e)
-      visit_node(i++, tree.edges[at(cell.edges[e])].middle, p.edge[e], 2);
+      visit_node(i++, tree.edges[at(row.edges[e])].middle, p.edge[e], 2);
     if (cell.has != CellNodes::all) return;
     for (std::size_t s = 0; s < at(p.sides); ++s)
-      if (p.side_centre[s] >= 0)
-        visit_node(i++, tree.sides[at(cell.sides[s])].centre, p.side[s], 4);
+      if (p.side_centre[s] >= 0) visit_node(i++, tree.sides[at(row.sides[s])].centre, p.side[s], 4);
     std::array<int, RefinementPattern::most_corners> all{0, 1, 2, 3, 4, 5, 6, 7};
     if (p.centre >= 0) visit_node(i, cell.centre, all, p.corners);
   }

@@ -46,8 +46,7 @@ struct ListNewlyHungEdges {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto const e = static_cast<std::size_t>(k % each);
     if ((parts[k / each].halves >> e & 1) == 0) return;
-    Index const edge =
-        is_hung.view.tree.cells[static_cast<std::size_t>(cells[k / each].cell)].edges[e];
+    Index const edge = is_hung.view.tree.row(cells[k / each].cell).edges[e];
     if (is_hung(edge)) list[atomic_add(*count, 1)] = edge;
   }
 };
@@ -63,8 +62,7 @@ struct ListNewlyHungSides {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto const s = static_cast<std::size_t>(k % each);
     if ((parts[k / each].parts >> s & 1) == 0) return;
-    Index const side =
-        is_hung.view.tree.cells[static_cast<std::size_t>(cells[k / each].cell)].sides[s];
+    Index const side = is_hung.view.tree.row(cells[k / each].cell).sides[s];
     if (is_hung(side)) list[atomic_add(*count, 1)] = side;
   }
 };
@@ -89,10 +87,10 @@ struct ListHungEdgesOfMerged {
   NewNumbers numbers;    // of cells
   ListOnce list;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell =
-        is_hung.view.tree.cells[static_cast<std::size_t>(numbers(parents[k / each]))];
-    if (k % each >= cell.pattern().edges) return;
-    Index const edge = cell.edges[static_cast<std::size_t>(k % each)];
+    auto const& tree = is_hung.view.tree;
+    Index const c = numbers(parents[k / each]);
+    if (k % each >= tree.cells[static_cast<std::size_t>(c)].pattern().edges) return;
+    Index const edge = tree.row(c).edges[k % each];
     if (is_hung(edge)) list(edge);
   }
 };
@@ -105,10 +103,10 @@ struct ListHungSidesOfMerged {
   NewNumbers numbers;
   ListOnce list;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const& cell =
-        is_hung.view.tree.cells[static_cast<std::size_t>(numbers(parents[k / each]))];
-    if (k % each >= cell.pattern().sides) return;
-    Index const side = cell.sides[static_cast<std::size_t>(k % each)];
+    auto const& tree = is_hung.view.tree;
+    Index const c = numbers(parents[k / each]);
+    if (k % each >= tree.cells[static_cast<std::size_t>(c)].pattern().sides) return;
+    Index const side = tree.row(c).sides[k % each];
     if (is_hung(side)) list(side);
   }
 };

@@ -46,7 +46,8 @@ class Hierarchy {
   template <Refinable... Es>
     requires(Mesh<Es...>::dim == Dim)
   explicit Hierarchy(Mesh<Es...> const& mesh)
-      : points_(mesh.nodes), tree_(static_cast<Index>(mesh.nodes.size())) {
+      : points_(mesh.nodes),
+        tree_(static_cast<Index>(mesh.nodes.size()), detail::layout_of_rows(mesh)) {
     auto const elements = (mesh.template elements<Es>().size() + ...);
     if (std::max(points_.size(), 12 * elements) > most_)
       throw Error(

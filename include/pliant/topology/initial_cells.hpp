@@ -8,10 +8,21 @@
 
 #include <pliant/backend/atomic.hpp>
 #include <pliant/error.hpp>
+#include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/group_numbers.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
 namespace pliant::detail {
+
+/// Of the cells that a mesh has, and of what they are divided into.
+template <class... Es>
+RowLayout layout_of_rows(Mesh<Es...> const& mesh) {
+  if constexpr (Mesh<Es...>::dim == 2) return RowLayout::of_plane_cells();
+  bool const has_others = ((kind_of<typename Es::cell> != CellKind::tetrahedron &&
+                            !mesh.template elements<Es>().empty()) ||
+                           ...);
+  return has_others ? RowLayout::of_solid_cells() : RowLayout::of_tetrahedra();
+}
 
 /// Finds the edges and sides of the cells of an initial mesh, on the threads of the host. They are numbered in the order in which
 /// cells come to them.
@@ -63,15 +74,17 @@ class InitialCells {
 
   void join_edges() {
     auto const first = starts([](TreeCell const& cell) { return cell.pattern().edges; });
-    auto const ends_of = [](TreeCell const& cell, std::size_t e) {
-      auto const& p = cell.pattern();
-      return std::array{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
+    auto const view = lists_.view();  // which says whether several threads count
+    auto const ends_of = [&](Index c, std::size_t e) {
+      auto const& ends = lists_.cells[at(c)].pattern().edge[e];
+      auto const* const nodes = view.row(c).nodes;
+      return std::array{nodes[at(ends[0])], nodes[at(ends[1])]};
     };
     std::vector<std::array<Index, 2>> groups(at(first.back()));
     for_each_cell([&](Index c) {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-        auto const ends = ends_of(cell, e);
+        auto const ends = ends_of(c, e);
         groups[at(first[at(c)]) + e] = {std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
       }
     });
@@ -79,25 +92,25 @@ class InitialCells {
     lists_.edges.extend(numbers.first.size());
     std::atomic<bool> overlap = false;
     for_each_cell([&](Index c) {
-      auto& cell = lists_.cells.edited(at(c));
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
+      auto* const edges = view.row(c).edges;
+      for (std::size_t e = 0; e < at(lists_.cells[at(c)].pattern().edges); ++e) {
         Index const i = first[at(c)] + static_cast<Index>(e);
-        cell.edges[e] = numbers.number[at(i)];
-        if (numbers.first[at(cell.edges[e])] == i)
-          lists_.edges.edited(at(cell.edges[e])) = {.nodes = ends_of(cell, e)};
+        edges[e] = numbers.number[at(i)];
+        if (numbers.first[at(edges[e])] == i)
+          lists_.edges.edited(at(edges[e])) = {.nodes = ends_of(c, e)};
       }
     });
-    auto const view = lists_.view();  // which says whether several threads count
+    auto const counting = lists_.view();
     for_each_cell([&](Index c) {
       auto const& cell = lists_.cells[at(c)];
-      view.count_leaf(cell, 1);
+      auto const* const edges = view.row(c).edges;
+      counting.count_leaf(c, 1);
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-        auto& edge = lists_.edges.edited(at(cell.edges[e]));
+        auto& edge = lists_.edges.edited(at(edges[e]));
         if (cell.has != CellNodes::corners)
           atomic_store(edge.middle, others_[at(first_other_[at(c)]) + e]);
-        bool const is_first =
-            numbers.first[at(cell.edges[e])] == first[at(c)] + static_cast<Index>(e);
-        if (Dim == 2 && !is_first && edge.nodes == ends_of(cell, e)) overlap = true;
+        bool const is_first = numbers.first[at(edges[e])] == first[at(c)] + static_cast<Index>(e);
+        if (Dim == 2 && !is_first && edge.nodes == ends_of(c, e)) overlap = true;
       }
     });
     if (count() > most_at_edge && may_be_crowded(groups.size())) refuse_crowd_at_edge();
@@ -119,10 +132,10 @@ class InitialCells {
   void refuse_crowd_at_edge() const {
     std::vector<Index> cells_at(lists_.edges.size(), 0);
     for (Index c = 0; c < count(); ++c) {
-      auto const& cell = lists_.cells[at(c)];
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-        auto const& edge = lists_.edges[at(cell.edges[e])];
-        if (++cells_at[at(cell.edges[e])] > most_at_edge)
+      auto const own = lists_.row(c);
+      for (std::size_t e = 0; e < at(lists_.cells[at(c)].pattern().edges); ++e) {
+        auto const& edge = lists_.edges[at(own.edges[e])];
+        if (++cells_at[at(own.edges[e])] > most_at_edge)
           throw Error("Hierarchy: cell ", c, " shares the edge from node ", edge.nodes[0], " to ",
                       edge.nodes[1], " with ", most_at_edge,
                       " others; give each edge that many cells at most");
@@ -133,12 +146,12 @@ class InitialCells {
   void refuse_overlap() const {
     std::vector<int> cells_at(lists_.edges.size(), 0);
     for (Index c = 0; c < count(); ++c) {
-      auto const& cell = lists_.cells[at(c)];
-      auto const& p = cell.pattern();
+      auto const own = lists_.row(c);
+      auto const& p = lists_.cells[at(c)].pattern();
       for (std::size_t e = 0; e < at(p.edges); ++e) {
-        std::array const ends{cell.nodes[at(p.edge[e][0])], cell.nodes[at(p.edge[e][1])]};
-        int const before = cells_at[at(cell.edges[e])]++;
-        if (before > 0 && (before > 1 || lists_.edges[at(cell.edges[e])].nodes == ends))
+        std::array const ends{own.nodes[at(p.edge[e][0])], own.nodes[at(p.edge[e][1])]};
+        int const before = cells_at[at(own.edges[e])]++;
+        if (before > 0 && (before > 1 || lists_.edges[at(own.edges[e])].nodes == ends))
           throw Error("Hierarchy: cell ", c, " overlaps another one at the edge from node ",
                       ends[0], " to ", ends[1], "; give each edge one cell on either side at most");
       }
@@ -146,11 +159,11 @@ class InitialCells {
   }
 
   /// Of side s of a cell; −1 behind those of a triangle.
-  static std::array<Index, 4> corners_of(TreeCell const& cell, std::size_t s) {
+  [[nodiscard]] std::array<Index, 4> corners_of(Index c, std::size_t s) const {
     std::array<Index, 4> nodes{-1, -1, -1, -1};
     for (std::size_t k = 0; k < 4; ++k)
-      if (int const corner = cell.pattern().side[s][k]; corner >= 0)
-        nodes[k] = cell.nodes[at(corner)];
+      if (int const corner = lists_.cells[at(c)].pattern().side[s][k]; corner >= 0)
+        nodes[k] = lists_.row(c).nodes[at(corner)];
     return nodes;
   }
   void join_sides() {
@@ -160,7 +173,7 @@ class InitialCells {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
         auto& key = groups[at(first[at(c)]) + s];
-        key = corners_of(cell, s);
+        key = corners_of(c, s);
         std::ranges::sort(key);
       }
     });
@@ -172,23 +185,23 @@ class InitialCells {
     // f(the number of a cell, the cell, which of its sides, that side's number, whether the cell is the first to have it)
     auto const for_each_side = [&](auto const& f) {
       for_each_cell([&](Index c) {
-        auto& cell = lists_.cells.edited(at(c));
+        auto const& cell = lists_.cells[at(c)];
         for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
           Index const i = first[at(c)] + static_cast<Index>(s), number = numbers.number[at(i)];
           f(c, cell, s, number, numbers.first[at(number)] == i);
         }
       });
     };
-    for_each_side([&](Index c, TreeCell& cell, std::size_t s, Index number, bool is_first) {
-      cell.sides[s] = number;
+    for_each_side([&](Index c, TreeCell const& cell, std::size_t s, Index number, bool is_first) {
+      view.row(c).sides[s] = number;
       if (atomic_add(cells_at[at(number)], 1) >= 2) crowded = true;
       if (!is_first) return;
       auto& side = lists_.sides.edited(at(number));
-      side = view.side_of(cell, s);
+      side = view.side_of(view.row(c), cell.level, s, cell.pattern());
       side.cells[0] = c;
     });
     if (crowded) refuse_crowd();
-    for_each_side([&](Index c, TreeCell& cell, std::size_t s, Index number, bool is_first) {
+    for_each_side([&](Index c, TreeCell const& cell, std::size_t s, Index number, bool is_first) {
       auto& side = lists_.sides.edited(at(number));
       if (!is_first) side.cells[1] = c;
       auto const& p = cell.pattern();
@@ -203,8 +216,8 @@ class InitialCells {
     for (Index c = 0; c < count(); ++c) {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
-        if (++cells_at[at(cell.sides[s])] <= 2) continue;
-        auto const nodes = corners_of(cell, s);
+        if (++cells_at[at(lists_.row(c).sides[s])] <= 2) continue;
+        auto const nodes = corners_of(c, s);
         throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", nodes[0], ", ",
                     nodes[1], " and ", nodes[2],
                     " with two others; give each side two cells at most");

@@ -168,11 +168,12 @@ template <int Dim>
 void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit>& splits) {
   Index const other = TreeQueries(tree.tree()).across_base(pyramid);
   if (other < 0 || tree.cell(other).kind != CellKind::pyramid) return;
-  auto const& base = tree.tree().sides()[static_cast<std::size_t>(tree.cell(pyramid).sides[0])];
+  auto const& base =
+      tree.tree().sides()[static_cast<std::size_t>(tree.tree().row(pyramid).sides[0])];
   auto const corners = tree.tree().lists().view().corners_of(base);
   Index const first = corners[shorter_diagonal(tree, corners)];
   for (Index const c : {pyramid, other}) {
-    auto const& nodes = tree.cell(c).nodes;
+    auto const* const nodes = tree.tree().row(c).nodes;
     splits.push_back(
         {c, nodes[0] == first || nodes[2] == first ? Division::diagonal_0 : Division::diagonal_1});
   }
@@ -211,10 +212,10 @@ std::vector<CellSplit> split_cells(RefinementTree<M> const& old, MarkedElements 
     else if (!std::ranges::binary_search(in_two, c))
       splits.push_back({c, Division::four_triangles});
     else
-      splits.push_back(
-          {c, shorter_diagonal(*old.tree, std::span(cell.nodes).template first<4>()) == 0
-                  ? Division::diagonal_0
-                  : Division::diagonal_1});
+      splits.push_back({c, shorter_diagonal(*old.tree, std::span<Index const, 4>(
+                                                           old.tree->tree().row(c).nodes, 4)) == 0
+                               ? Division::diagonal_0
+                               : Division::diagonal_1});
   }
   // Of pairs that were both marked, each once.
   std::ranges::sort(splits, {}, &CellSplit::cell);

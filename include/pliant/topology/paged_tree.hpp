@@ -20,8 +20,8 @@ struct PageMarks {
   PLIANT_HOST_DEVICE void side(Index s) const { mark<TreeSide>(sides, s); }
   /// A cell, its edges and its sides.
   PLIANT_HOST_DEVICE void whole(Index c) const {
-    auto const& own = tree.cells[static_cast<std::size_t>(c)];
-    auto const& p = own.pattern();
+    auto const own = tree.row(c);
+    auto const& p = tree.cells[static_cast<std::size_t>(c)].pattern();
     cell(c);
     for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) edge(own.edges[e]);
     for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) side(own.sides[s]);
@@ -46,21 +46,33 @@ struct PagedTree {
   PagedList<B, TreeCell> cells;
   PagedList<B, TreeEdge> edges;
   PagedList<B, TreeSide> sides;
+  PagedList<B, RowEntry> rows;  // of cells
+  RowLayout layout;
 
   PagedTree(B const& backend, TreeLists const& lists)
-      : cells(backend, lists.cells), edges(backend, lists.edges), sides(backend, lists.sides) {}
+      : cells(backend, lists.cells),
+        edges(backend, lists.edges),
+        sides(backend, lists.sides),
+        rows(backend, lists.rows),
+        layout(lists.layout) {}
 
-  [[nodiscard]] TreeView view() const { return {cells.pages(), edges.pages(), sides.pages()}; }
-  [[nodiscard]] std::size_t bytes() const { return cells.bytes() + edges.bytes() + sides.bytes(); }
+  [[nodiscard]] TreeView view() const {
+    return {cells.pages(), edges.pages(), sides.pages(), rows.pages(), layout};
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return cells.bytes() + edges.bytes() + sides.bytes() + rows.bytes();
+  }
   void keep() {
     cells.keep();
     edges.keep();
     sides.keep();
+    rows.keep();
   }
   void take_back(B const& backend) {
     cells.take_back(backend);
     edges.take_back(backend);
     sides.take_back(backend);
+    rows.take_back(backend);
   }
   /// Makes pages the tree's own: mark(marks) runs loops that mark them.
   template <class Mark>

@@ -18,9 +18,10 @@ PLIANT_HOST_DEVICE RowsOfElement<E> rows_of_element(TreeView const& tree, Index 
                                                     Index const* of_node) {
   RowsOfElement<E> rows;
   if constexpr (nodes_on_cell<E> == CellNodes::corners) {
-    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
+    bool const mirrored = tree.cells[static_cast<std::size_t>(c)].mirrored;
+    auto const* const nodes = tree.row(c).nodes;
     for (std::size_t a = 0; a < rows.size(); ++a)
-      rows[a] = of_node[cell.nodes[cell.mirrored && (a == 2 || a == 3) ? 5 - a : a]];
+      rows[a] = of_node[nodes[mirrored && (a == 2 || a == 3) ? 5 - a : a]];
   } else {
     auto const nodes = tree.element_nodes(c);
     for (std::size_t a = 0; a < rows.size(); ++a) rows[a] = of_node[nodes[a]];

@@ -90,10 +90,9 @@ class Topology {
   [[nodiscard]] Connectivity<E> nodes_of_cell(Index c) const {
     Connectivity<E> nodes;
     if constexpr (nodes_on_cell<E> == CellNodes::corners) {
-      auto const& cell = tree->cell(c);
-      std::copy_n(cell.nodes.begin(), E::nodes, nodes.begin());
+      std::copy_n(tree->tree().row(c).nodes, E::nodes, nodes.begin());
       if constexpr (E::nodes == 4)  // of tetrahedra alone
-        if (cell.mirrored) std::swap(nodes[2], nodes[3]);
+        if (tree->cell(c).mirrored) std::swap(nodes[2], nodes[3]);
     } else {
       std::ranges::copy(tree->tree().element_nodes(c), nodes.begin());
     }

@@ -18,20 +18,18 @@ inline constexpr int most_levels = 63;
 /// with four corners and in the middle too.
 enum class CellNodes : std::uint8_t { corners, edges, all };
 
-/// A cell of a CellTree. A divided cell has its children at first_child, first_child + 1, ... It is copied by 16 bytes at once.
-struct alignas(16) TreeCell {
+/// A cell of a CellTree, but for its row. A divided cell has its children at first_child, first_child + 1, ...
+struct TreeCell {
   CellKind kind = CellKind::triangle;
   CellNodes has = CellNodes::corners;     ///< of a divided cell: when it was divided
   CellNodes had = CellNodes::corners;     ///< of the initial mesh: what it had there
   Division division = Division::refined;  ///< of a divided cell
   bool mirrored = false;  ///< its element has the last two corners in the other order
-  int level = 0;          ///< how many of its ancestors are refined
+  std::uint8_t unused = 0;
+  std::int16_t level = 0;  ///< how many of its ancestors are refined
   Index parent = -1;
-  Index first_child = -1;                                      ///< -1 for a leaf
-  Index centre = -1;                                           ///< the node in the middle
-  std::array<Index, 8> nodes{-1, -1, -1, -1, -1, -1, -1, -1};  ///< at the corners
-  std::array<Index, 12> edges{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
-  std::array<Index, 6> sides{-1, -1, -1, -1, -1, -1};  ///< in 3D
+  Index first_child = -1;  ///< -1 for a leaf
+  Index centre = -1;       ///< the node in the middle
 
   /// Of its edges and sides, and of refinement.
   [[nodiscard]] PLIANT_HOST_DEVICE RefinementPattern const& pattern() const {
@@ -60,11 +58,9 @@ struct alignas(16) TreeCell {
     visit("parent", r.parent...);
     visit("first child", r.first_child...);
     visit("centre", r.centre...);
-    visit("nodes", r.nodes...);
-    visit("edges", r.edges...);
-    visit("sides", r.sides...);
   }
 };
+static_assert(sizeof(TreeCell) == 20);
 
 /// How many cells have an edge as a whole one, up to `most` of each sort, in one number, so that a cell is counted by one
 /// addition.
@@ -92,7 +88,7 @@ struct CellsAtEdge {
   }
 };
 
-/// Copied by 16 bytes at once, as cells are.
+/// Copied by 16 bytes at once.
 struct alignas(16) TreeEdge {
   /// What divided made it: the edge of which it is a half, a side between whose parts it lies, or a cell inside of which it
   /// lies.
@@ -135,7 +131,7 @@ struct alignas(16) TreeEdge {
 };
 static_assert(sizeof(TreeEdge) == 32);
 
-/// The side of solid cells, refined as a triangle or quadrilateral is. Copied by 16 bytes at once, as cells are.
+/// The side of solid cells, refined as a triangle or quadrilateral is. Copied by 16 bytes at once.
 struct alignas(16) TreeSide {
   std::array<Index, 4> edges{-1, -1, -1, -1};  ///< edge k joins corner k to the next
   std::array<Index, 2> cells{-1, -1};          ///< of which it is a whole side, on either side

@@ -156,8 +156,13 @@ class TreeCoarsening {
             LoopStep{knowing, TellEdges{view, tree.view(), knowing_.data(), edge_stamps_.data(),
                                         edge_stamps_.now()}});
     auto const move_cells = move(tree.cells, view.cells, before.cells, now.cells);
+    auto const entries = [&](Index cells) { return tree.layout.entry(at(cells)); };
+    auto const old_rows =
+        tree.rows.replace_from(backend, entries(first.cells), entries(now.cells - first.cells));
     grow(backend, still_knowing_, at(first.cells));
     in_turn(backend, move_cells,
+            LoopStep{static_cast<Index>(entries(before.cells - first.cells)),
+                     MoveRowsUp{view, old_rows, tree.rows.pages()}},
             LoopStep{knowing, TellCells{view, tree.view(), knowing_.data(), still_knowing_.data(),
                                         counters_.data() + of_knowing}});
     std::swap(knowing_, still_knowing_);

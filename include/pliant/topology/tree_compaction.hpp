@@ -49,6 +49,7 @@ class TreeCompaction {
     move_up(lists_.sides, known_sides, side, view);
     move_up(lists_.edges, known_edges, edge, view);
     move_up(lists_.cells, known, cell, view);
+    move_rows_up(cell, view);
     for (Index& c : lists_.divided) c = view.cells(c);
     lists_.nodes = node.count;
     return {node.list(), cell.list(), i.nodes, i.cells};
@@ -118,6 +119,19 @@ class TreeCompaction {
       view.renumber(own);
       return own;
     });
+  }
+
+  void move_rows_up(Numbers const& cell, CompactionView const& view) {
+    auto const& layout = lists_.layout;
+    std::size_t const per_row = layout.entry(1);
+    lists_.rows.replace_from(layout.entry(at(cell.first)), layout.entry(cell.kept.size()),
+                             [&](std::size_t i) {
+                               auto const old = at(cell.kept[i / per_row]);
+                               auto const k = i % per_row;
+                               RowEntry entry = lists_.rows[layout.entry(old) + k];
+                               view.renumber(entry, static_cast<Index>(k));
+                               return entry;
+                             });
   }
 
   [[nodiscard]] std::vector<Index> initial_of(std::vector<Index> cells) const {

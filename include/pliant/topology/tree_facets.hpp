@@ -127,8 +127,9 @@ class TreeFacets {
   std::vector<Index> sides_of(std::vector<Index> const& cells) const {
     std::vector<Index> list;
     for (Index const c : cells) {
-      auto const& own = tree_[c];
-      for (std::size_t s = 0; s < at(Dim == 2 ? own.pattern().edges : own.pattern().sides); ++s)
+      auto const own = tree_.row(c);
+      auto const& p = tree_[c].pattern();
+      for (std::size_t s = 0; s < at(Dim == 2 ? p.edges : p.sides); ++s)
         list.push_back(Dim == 2 ? own.edges[s] : own.sides[s]);
     }
     return list;

@@ -18,6 +18,8 @@ struct TreeLists {
   SharedList<TreeCell> cells;
   SharedList<TreeEdge> edges;
   SharedList<TreeSide> sides;
+  SharedList<RowEntry> rows;  ///< of cells
+  RowLayout layout;
   std::vector<Index> divided;  ///< cells, each once
   std::vector<Index>
       converted;  ///< cells of the initial mesh that have not what they had there: each once
@@ -31,22 +33,28 @@ struct TreeLists {
   [[nodiscard]] std::vector<Index> edges_of(std::vector<Index> const& chosen) const {
     std::vector<Index> list;
     for (Index const c : chosen)
-      std::copy_n(cells[at(c)].edges.begin(), cells[at(c)].pattern().edges,
-                  std::back_inserter(list));
+      std::copy_n(row(c).edges, cells[at(c)].pattern().edges, std::back_inserter(list));
     return detail::each_once(std::move(list), edges.size());
   }
   /// The sides of solid cells, each once, ascending.
   [[nodiscard]] std::vector<Index> sides_of(std::vector<Index> const& chosen) const {
     std::vector<Index> list;
     for (Index const c : chosen)
-      std::copy_n(cells[at(c)].sides.begin(), cells[at(c)].pattern().sides,
-                  std::back_inserter(list));
+      std::copy_n(row(c).sides, cells[at(c)].pattern().sides, std::back_inserter(list));
     return detail::each_once(std::move(list), sides.size());
   }
 
   /// The lists as loops see them, until one of them changes its size or makes entries its own.
   [[nodiscard]] TreeView view() const {
-    return {cells.pages(), edges.pages(), sides.pages(), HostThreads::now() > 1};
+    return {cells.pages(), edges.pages(), sides.pages(),
+            rows.pages(),  layout,        HostThreads::now() > 1};
+  }
+  /// See TreeView. Nobody may change it.
+  [[nodiscard]] CellRow row(Index c) const { return view().row(c); }
+  /// Appends cells, which have no value until they are edited.
+  void extend_cells(std::size_t count) {
+    cells.extend(count);
+    rows.extend(layout.entry(count));
   }
   /// See TreeView.
   [[nodiscard]] CellNodeList nodes_of(Index c) const { return view().nodes_of(c); }
@@ -78,9 +86,10 @@ struct TreeLists {
   }
 
   /// Counts a leaf at its edges, which become the tree's own, or with `by` = −1 no more.
-  void count_leaf(TreeCell const& cell, int by) {
-    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) edges.edit(at(cell.edges[e]));
-    view().count_leaf(cell, by);
+  void count_leaf(Index c, int by) {
+    for (std::size_t e = 0; e < at(cells[at(c)].pattern().edges); ++e)
+      edges.edit(at(row(c).edges[e]));
+    view().count_leaf(c, by);
   }
   /// Counts so many leaves with these nodes in all.
   void count_leaves(CellNodes has, Index by) {
@@ -92,6 +101,8 @@ struct TreeLists {
     visit("cells", r.cells...);
     visit("edges", r.edges...);
     visit("sides", r.sides...);
+    visit("rows of cells", r.rows...);
+    visit("layout of rows", r.layout...);
     visit("divided cells", r.divided...);
     visit("cells of other degrees", r.converted...);
     visit("leaves with corners only", r.linear_leaves...);

@@ -67,6 +67,7 @@ class TreeOn {
   [[nodiscard]] std::vector<TreeCell> cells() { return lists_.cells.download(backend_); }
   [[nodiscard]] std::vector<TreeEdge> edges() { return lists_.edges.download(backend_); }
   [[nodiscard]] std::vector<TreeSide> sides() { return lists_.sides.download(backend_); }
+  [[nodiscard]] std::vector<RowEntry> rows() { return lists_.rows.download(backend_); }
 
   /// The tree on the host, where it has no leaves of different degrees. `like`: what it was when it was made or began to note
   /// changes, or has been since; what has not changed is shared with that. `leaves`: of it.
@@ -74,6 +75,8 @@ class TreeOn {
     TreeLists lists{.cells = lists_.cells.download(backend_, like.cells),
                     .edges = lists_.edges.download(backend_, like.edges),
                     .sides = lists_.sides.download(backend_, like.sides),
+                    .rows = lists_.rows.download(backend_, like.rows),
+                    .layout = lists_.layout,
                     .initial = initial_,
                     .nodes = now_.nodes};
     (has_quadratic_ ? lists.quadratic_leaves : lists.linear_leaves) = now_.leaves;
@@ -86,6 +89,7 @@ class TreeOn {
     lists_.cells.begin_noting();
     lists_.edges.begin_noting();
     lists_.sides.begin_noting();
+    lists_.rows.begin_noting();
   }
 
   /// Refines marked leaves below the limit of levels and, before each, the leaves that are coarser across one of its edges or
@@ -115,6 +119,7 @@ class TreeOn {
     lists_.edges.extend(backend_, at(totals[1]));
     lists_.sides.extend(backend_, at(totals[2]));
     lists_.cells.extend(backend_, at(totals[3]));
+    lists_.rows.extend(backend_, lists_.layout.entry(at(totals[3])));
     need(made_, totals[0]);
     auto const dividing = division();
     detail::in_turn(backend_, for_each_part(n, detail::MakeOnEdges{dividing}),

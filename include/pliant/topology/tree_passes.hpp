@@ -63,10 +63,10 @@ struct ListCoarser {
     auto const want = [&](Index c) {
       if (c >= 0 && tree.is_leaf(c)) list(c);
     };
-    auto const& cell = tree.cells[at(list.list[from + k])];
-    Index const edges = cell.pattern().edges;
+    Index const c = list.list[from + k], edges = tree.cells[at(c)].pattern().edges;
+    auto const own = tree.row(c);
     for (Index e = 0; e < edges; ++e) {
-      Index coarse = cell.edges[at(e)], whole = coarse;
+      Index coarse = own.edges[at(e)], whole = coarse;
       do {
         whole = coarse;
         coarse = tree.edges[at(coarse)].parent();

@@ -31,9 +31,9 @@ class TreeQueries {
       leaves.push_back(c);
     };
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-      auto const cell = cells_[at(leaves[i])];
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
-        Index coarse = cell.edges[e], whole = coarse;
+      auto const* const edges = tree_.row(leaves[i]).edges;
+      for (std::size_t e = 0; e < at(cells_[at(leaves[i])].pattern().edges); ++e) {
+        Index coarse = edges[e], whole = coarse;
         do {
           whole = coarse;
           coarse = edges_[at(coarse)].parent();
@@ -81,19 +81,20 @@ class TreeQueries {
     };
     for (Index const c : leaves) {
       auto const& cell = cells_[at(c)];
+      auto const own = tree_.row(c);
       auto const& p = cell.pattern();
       bool const quadratic = cell.has != CellNodes::corners, all = cell.has == CellNodes::all;
       for (std::size_t e = 0; e < at(p.edges); ++e) {
-        needs_middle(cell.edges[e]);
-        if (!quadratic || !bisected.insert(cell.edges[e]).second) continue;
-        Index const half = edges_[at(cell.edges[e])].first_half;
+        needs_middle(own.edges[e]);
+        if (!quadratic || !bisected.insert(own.edges[e]).second) continue;
+        Index const half = edges_[at(own.edges[e])].first_half;
         if (half < 0) nodes += 2;
         for (Index h = half; half >= 0 && h < half + 2; ++h) needs_middle(h);
       }
       for (std::size_t s = 0; s < at(p.sides); ++s) {
-        needs_centre(cell.sides[s]);
-        if (!quadratic || !divided.insert(cell.sides[s]).second) continue;
-        auto const& side = sides_[at(cell.sides[s])];
+        needs_centre(own.sides[s]);
+        if (!quadratic || !divided.insert(own.sides[s]).second) continue;
+        auto const& side = sides_[at(own.sides[s])];
         auto const n = static_cast<Index>(side.corners());
         if (side.first_child < 0) nodes += side.corners() + (all && n == 4 ? 4 : 0);
         for (Index k = 0; side.first_child >= 0 && k < n; ++k) {
@@ -115,13 +116,14 @@ class TreeQueries {
     std::unordered_set<Index> edges, sides;
     for (auto const& [c, has] : raised) {
       auto const& cell = cells_[at(c)];
+      auto const own = tree_.row(c);
       auto const& p = cell.pattern();
       for (std::size_t e = 0; e < at(p.edges); ++e)
-        if (edges_[at(cell.edges[e])].middle < 0) edges.insert(cell.edges[e]);
+        if (edges_[at(own.edges[e])].middle < 0) edges.insert(own.edges[e]);
       if (has != CellNodes::all) continue;
       for (std::size_t s = 0; s < at(p.sides); ++s)
-        if (p.side_centre[s] >= 0 && sides_[at(cell.sides[s])].centre < 0)
-          sides.insert(cell.sides[s]);
+        if (p.side_centre[s] >= 0 && sides_[at(own.sides[s])].centre < 0)
+          sides.insert(own.sides[s]);
       nodes += p.centre >= 0 && cell.centre < 0 ? 1 : 0;
     }
     return nodes + edges.size() + sides.size();
@@ -129,7 +131,7 @@ class TreeQueries {
 
   /// The cell on the other side of a pyramid's base; −1 where there is none.
   [[nodiscard]] Index across_base(Index pyramid) const {
-    auto const& cells = sides_[at(cells_[at(pyramid)].sides[0])].cells;
+    auto const& cells = sides_[at(tree_.row(pyramid).sides[0])].cells;
     return cells[0] == pyramid ? cells[1] : cells[0];
   }
 

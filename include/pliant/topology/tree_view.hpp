@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
 #include <pliant/backend/atomic.hpp>
 #include <pliant/config.hpp>
+#include <pliant/topology/cell_row.hpp>
 #include <pliant/topology/pages.hpp>
 #include <pliant/topology/tree_cell.hpp>
 
@@ -16,23 +18,42 @@ struct TreeView {
   Pages<TreeCell> cells;
   Pages<TreeEdge> edges;
   Pages<TreeSide> sides;
+  Pages<RowEntry> rows;
+  RowLayout layout;
   bool shared = true;  ///< whether several threads may change an entry at once
 
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_leaf(Index c) const {
     return cells[at(c)].first_child < 0;
   }
 
-  /// The nodes of the element on a cell, in the order of an element's whose corners are cell.nodes.
+  /// The numbers of a cell's corners, edges and sides.
+  [[nodiscard]] PLIANT_HOST_DEVICE CellRow row(Index c) const {
+    Index* const nodes = rows[layout.entry(at(c))].numbers.data();
+    return {nodes, nodes + layout.first_edge, nodes + layout.first_side};
+  }
+  /// Puts those of a new `Cell`.
+  template <class Cell>
+  PLIANT_HOST_DEVICE void put_row(Index c, CellNumbers const& numbers) const {
+    if constexpr (Cell::dim == 2)
+      put<0>(c, numbers);
+    else if (std::same_as<Cell, Tetrahedron> && layout.shift == 1)
+      put<1>(c, numbers);
+    else
+      put<2>(c, numbers);
+  }
+
+  /// The nodes of the element on a cell, in the order of an element's whose corners its row has.
   [[nodiscard]] PLIANT_HOST_DEVICE CellNodeList nodes_of(Index c) const {
     auto const& cell = cells[at(c)];
     auto const& p = cell.pattern();
     CellNodeList list;
-    for (std::size_t a = 0; a < at(p.corners); ++a) list.push_back(cell.nodes[a]);
+    auto const own = row(c);
+    for (std::size_t a = 0; a < at(p.corners); ++a) list.push_back(own.nodes[a]);
     if (cell.has == CellNodes::corners) return list;
-    for (std::size_t e = 0; e < at(p.edges); ++e) list.push_back(edges[at(cell.edges[e])].middle);
+    for (std::size_t e = 0; e < at(p.edges); ++e) list.push_back(edges[at(own.edges[e])].middle);
     if (cell.has != CellNodes::all) return list;
     for (std::size_t s = 0; s < at(p.sides); ++s)
-      if (p.side_centre[s] >= 0) list.push_back(sides[at(cell.sides[s])].centre);
+      if (p.side_centre[s] >= 0) list.push_back(sides[at(own.sides[s])].centre);
     if (p.centre >= 0) list.push_back(cell.centre);
     return list;
   }
@@ -63,49 +84,49 @@ struct TreeView {
     auto const visit_some = [](auto const& visit, Index first, std::size_t count) {
       for (std::size_t k = 0; first >= 0 && k < count; ++k) visit(first + static_cast<Index>(k));
     };
-    auto const& cell = cells[at(c)];
-    auto const& p = cell.pattern();
+    auto const& p = cells[at(c)].pattern();
+    auto const own = row(c);
     visit_cell(c);
     for (std::size_t e = 0; e < at(p.edges); ++e) {
-      visit_edge(cell.edges[e]);
-      visit_some(visit_edge, edges[at(cell.edges[e])].first_half, 2);
+      visit_edge(own.edges[e]);
+      visit_some(visit_edge, edges[at(own.edges[e])].first_half, 2);
     }
     for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto const& side = sides[at(cell.sides[s])];
+      auto const& side = sides[at(own.sides[s])];
       bool const is_halved =
           side.first_child >= 0 && sides[at(side.first_child)].level == side.level;
-      visit_side(cell.sides[s]);
+      visit_side(own.sides[s]);
       visit_some(visit_side, side.first_child, is_halved ? 2 : 4);
       visit_some(visit_edge, side.first_inner_edge, is_halved ? 1 : side.corners());
     }
   }
 
-  /// Counts a leaf at its edges, or with `by` = −1 no more. `cell`: as it is while it is a leaf.
-  PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
-    detail::visit_cell(cell.kind, [&]<class Cell>(Cell) { count_leaf<Cell>(cell, by); });
+  /// Counts a leaf at its edges, or with `by` = −1 no more.
+  PLIANT_HOST_DEVICE void count_leaf(Index c, int by) const {
+    auto const& cell = cells[at(c)];
+    detail::visit_cell(cell.kind,
+                       [&]<class Cell>(Cell) { count_leaf<Cell>(row(c).edges, cell.has, by); });
   }
-  /// The same of a `Cell`.
+  /// The same of a `Cell` with these edges.
   template <class Cell>
-  PLIANT_HOST_DEVICE void count_leaf(TreeCell const& cell, int by) const {
+  PLIANT_HOST_DEVICE void count_leaf(Index const* of_cell, CellNodes has, int by) const {
     constexpr std::size_t n = Cell::edges().size();
     TreeEdge* own[n];  // all of them first, so that a device waits for memory once
-    for (std::size_t e = 0; e < n; ++e) own[e] = &edges[at(cell.edges[e])];
-    for (std::size_t e = 0; e < n; ++e) add(*own[e], CellsAtEdge::leaf(cell.has), by);
+    for (std::size_t e = 0; e < n; ++e) own[e] = &edges[at(of_cell[e])];
+    for (std::size_t e = 0; e < n; ++e) add(*own[e], CellsAtEdge::leaf(has), by);
   }
   /// The same for a refined cell. Split ones count by their children.
-  PLIANT_HOST_DEVICE void count_refined(TreeCell const& cell, int by) const {
-    for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-      add(edges[at(cell.edges[e])], CellsAtEdge::refined_cell, by);
+  PLIANT_HOST_DEVICE void count_refined(Index c, int by) const {
+    auto const own = row(c);
+    for (std::size_t e = 0; e < at(cells[at(c)].pattern().edges); ++e)
+      add(edges[at(own.edges[e])], CellsAtEdge::refined_cell, by);
   }
 
   /// Side s of a cell, as the cell sees it.
-  [[nodiscard]] PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s) const {
-    return side_of(cell, s, cell.pattern());
-  }
-  /// The same, where it is known as a program is compiled what the cell's pattern is.
-  [[nodiscard]] PLIANT_HOST_DEVICE TreeSide side_of(TreeCell const& cell, std::size_t s,
+  [[nodiscard]] PLIANT_HOST_DEVICE TreeSide side_of(CellRow const& cell, std::int16_t level,
+                                                    std::size_t s,
                                                     RefinementPattern const& p) const {
-    TreeSide side{.level = static_cast<std::int16_t>(cell.level)};
+    TreeSide side{.level = level};
     unsigned backwards = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       if (p.side[s][k] < 0) break;
@@ -125,6 +146,18 @@ struct TreeView {
       detail::atomic_add(edge.cells.all, sum);
     else
       edge.cells.all += sum;
+  }
+  template <int Shift>
+  PLIANT_HOST_DEVICE void put(Index c, CellNumbers const& numbers) const {
+    constexpr auto own = Shift == 0   ? RowLayout::of_plane_cells()
+                         : Shift == 1 ? RowLayout::of_tetrahedra()
+                                      : RowLayout::of_solid_cells();
+    for (std::size_t k = 0; k < std::size_t{1} << Shift; ++k) {
+      RowEntry entry;
+      for (std::size_t i = 0; i < RowEntry::count; ++i)
+        entry.numbers[i] = own.number(numbers, static_cast<Index>(RowEntry::count * k + i));
+      rows[(at(c) << Shift) + k] = entry;
+    }
   }
   static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 };
