@@ -78,6 +78,8 @@ void time_tree(benchmark::State& state, B const& backend, int cells, TreePass pa
     time(TreePass::order, [&] { order.refine(tree, refined); });
     time(TreePass::rows, [&] { rows.refine(tree, order, refined); });
     time(TreePass::hanging, [&] { trees->hanging.rows(tree, rows.of_node()); });
+    state.counters["bytes_per_cell"] =
+        static_cast<double>(tree.bytes()) / static_cast<double>(tree.sizes().cells);
     auto const made = upload(backend, cells_from(trees->host, tree.sizes().cells));
     time(TreePass::coarsen, [&] { tree.coarsen(made.data(), static_cast<Index>(made.size())); });
     state.SetIterationTime(times[static_cast<std::size_t>(pass)]);

@@ -5,6 +5,7 @@
 #include "topology/cells_at_edges.hpp"
 #include "topology/level_jumps.hpp"
 #include "topology/random_changes.hpp"
+#include "topology/side_corners.hpp"
 
 // Elements are refined, coarsened, raised, lowered, split, merged and switched at random, many times.
 // PLIANT_CHANGES in the environment: how many times; 200 unless set.
@@ -31,6 +32,7 @@ void check_body(TheBody& body, Point<TheBody::dim> const& v) {
   CHECK(std::ranges::count(body.velocities(), v) == body.nodes());
   if (auto const& tree = body.parts().state.topology->tree) {
     CHECK(count_level_jumps(*tree) == 0);
+    CHECK(count_other_corners(*tree) == 0);
     CHECK(count_edges_with_other_cells(*tree) == 0);
   }
 }

@@ -12,6 +12,7 @@
 #include "support/meshes.hpp"
 #include "topology/cells_at_edges.hpp"
 #include "topology/level_jumps.hpp"
+#include "topology/side_corners.hpp"
 
 namespace pliant::test::refined_cells_test {
 
@@ -207,6 +208,7 @@ TEMPLATE_TEST_CASE("every element's mesh stays sound under refinement and coarse
     most_hanging = std::max(most_hanging, mesh.slaves().size());
     for (auto const& slave : mesh.slaves()) composed += slave.masters.size() > 9;
     CHECK(count_level_jumps(mesh) == 0);
+    CHECK(count_other_corners(mesh) == 0);
     CHECK(count_edges_with_other_cells(mesh) == 0);
     if (round % 3 > 0) check_mesh<E>(mesh, total, random);
   }
