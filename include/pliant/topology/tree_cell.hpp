@@ -97,7 +97,7 @@ struct alignas(16) TreeEdge {
   std::array<Index, 2> nodes{-1, -1};
   Index middle = -1;      ///< the node in its middle, or -1
   Index first_half = -1;  ///< from nodes[0] to the middle; the other half follows
-  CellsAtEdge cells;
+  CellsAtEdge cells{};
   Index divided = -1;  ///< its home's number, or -1 for an edge of the initial mesh
   Home home = Home::edge;
   std::int16_t level = 0;  ///< of the cells of which it is a whole edge
