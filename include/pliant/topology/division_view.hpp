@@ -85,28 +85,31 @@ struct DivisionView {
 
   /// Middle and halves of edge e.
   PLIANT_HOST_DEVICE void make_on_edge(Index r, std::size_t e) const {
-    auto const& p = pattern_at(r);
     auto const& own = parts[r];
-    if (!has(own.middles, e) && !has(own.halves, e)) return;
+    if (!has(own.middles, e) && !has(own.halves, e)) return;  // as most, by one look at memory
     Index const number = row(r).edges[e];
     auto& edge = tree.edges[at(number)];
+    TreeEdge const whole = edge;  // all of it first, so that a device waits for memory once
+    Index middle = whole.middle;
     if (has(own.middles, e)) {
-      edge.middle = own.node + rank(own.middles, e);
-      place(r, edge.middle, p.corners + static_cast<int>(e));
+      edge.middle = middle = own.node + rank(own.middles, e);
+      place(r, middle, pattern_at(r).corners + static_cast<int>(e));
     }
     if (!has(own.halves, e)) return;
-    edge.first_half = own.edge + 2 * rank(own.halves, e);
-    TreeEdge half{.divided = number, .level = static_cast<std::int16_t>(edge.level + 1)};
-    half.nodes = {edge.nodes[0], edge.middle};
-    tree.edges[at(edge.first_half)] = half;
-    half.nodes = {edge.middle, edge.nodes[1]};
-    tree.edges[at(edge.first_half + 1)] = half;
+    Index const first = own.edge + 2 * rank(own.halves, e);
+    edge.first_half = first;
+    TreeEdge half{.divided = number, .level = static_cast<std::int16_t>(whole.level + 1)};
+    half.nodes = {whole.nodes[0], middle};
+    tree.edges[at(first)] = half;
+    half.nodes = {middle, whole.nodes[1]};
+    tree.edges[at(first + 1)] = half;
   }
   /// Centre and parts of side s, whose edges have all of theirs.
   PLIANT_HOST_DEVICE void make_on_side(Index r, std::size_t s) const {
+    auto const& own = parts[r];
+    if (!has(own.centres, s) && !has(own.parts, s)) return;
     auto const own_row = row(r);
     auto const& p = pattern_at(r);
-    auto const& own = parts[r];
     auto& side = tree.sides[at(own_row.sides[s])];
     if (has(own.centres, s)) {
       side.centre = own.node + std::popcount(own.middles) + rank(own.centres, s);

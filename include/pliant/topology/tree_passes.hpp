@@ -147,21 +147,19 @@ struct MakeInside {
   DivisionView division;
   PLIANT_HOST_DEVICE void operator()(Index r) const { division.make_inside(r); }
 };
-/// The same for each edge, side and child of leaves, of which there are so many.
+/// The same for each edge, side and child of leaves, of which there are so many at most.
 struct MakeOnEdges {
   static constexpr Index each = RefinementPattern::most_edges;
   DivisionView division;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    if (k % each < division.pattern_at(k / each).edges)
-      division.make_on_edge(k / each, static_cast<std::size_t>(k % each));
+    division.make_on_edge(k / each, static_cast<std::size_t>(k % each));
   }
 };
 struct MakeOnSides {
   static constexpr Index each = RefinementPattern::most_sides;
   DivisionView division;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    if (k % each < division.pattern_at(k / each).sides)
-      division.make_on_side(k / each, static_cast<std::size_t>(k % each));
+    division.make_on_side(k / each, static_cast<std::size_t>(k % each));
   }
 };
 struct MakeChildren {
