@@ -176,8 +176,10 @@ struct Tables {
 
   void make(ElementRows const& before, bool changed) {
     Index const node_rows = mesh.rows.count();
-    on = elements_of_rows(backend, rows(before), groups, copy_of_tags(), node_rows, node_order<E>,
-                          blocks, changed ? &on : nullptr);
+    auto next = elements_of_rows(backend, rows(before), groups, copy_of_tags(), node_rows,
+                                 node_order<E>, blocks, changed ? &on : nullptr);
+    settle(backend, next);
+    on = std::move(next);
     if (!changed) numbers = {backend, mesh.tree};
     check_rows(node_rows, changed);
     check_results(node_rows);
