@@ -74,7 +74,7 @@ class InitialCells {
 
   void join_edges() {
     auto const first = starts([](TreeCell const& cell) { return cell.pattern().edges; });
-    auto const view = lists_.view();  // which says whether several threads count
+    auto const view = lists_.view();
     auto const ends_of = [&](Index c, std::size_t e) {
       auto const& ends = lists_.cells[at(c)].pattern().edge[e];
       auto const* const nodes = view.row(c).nodes;
@@ -100,7 +100,7 @@ class InitialCells {
           lists_.edges.edited(at(edges[e])) = {.nodes = ends_of(c, e)};
       }
     });
-    auto const counting = lists_.view();
+    auto const counting = lists_.view();  // of the edges, too, and whether several threads count
     for_each_cell([&](Index c) {
       auto const& cell = lists_.cells[at(c)];
       auto const* const edges = view.row(c).edges;
