@@ -279,7 +279,10 @@ TEST_CASE("thresholds that are no numbers, stays and levels below zero are refus
   CHECK_THROWS_WITH(rule.above(1).floor(NAN), says("floor") && says("not a number"));
   CHECK_THROWS_WITH(rule.above(1).stay(-1), says("stay of -1") && says("at least 0"));
   CHECK_THROWS_WITH(rule.above(1).refine({.max_level = -1}), says("-1") && says("at least 0"));
+  CHECK_THROWS_WITH(rule.above(1).refine({.max_level = most_levels + 1}),
+                    says("64") && says("at most 63"));
   CHECK_NOTHROW(rule.above(INFINITY).floor(-INFINITY).stay(0).refine({.max_level = 0}));
+  CHECK_NOTHROW(rule.above(1).refine({.max_level = most_levels}));
 }
 
 }  // namespace pliant::test::marking_suite

@@ -227,6 +227,7 @@ TEST_CASE("limits of a mesh are in range", "[adaptation]") {
   CHECK_THROWS_WITH(makes({.error = 0}), says("a positive number"));
   CHECK_THROWS_WITH(makes({.error = 1, .release = 2}), says("release"));
   CHECK_THROWS_WITH(makes({.error = 1, .max_level = -1}), says("max_level"));
+  CHECK_THROWS_WITH(makes({.error = 1, .max_level = most_levels + 1}), says("at most 63"));
   CHECK_THROWS_WITH(makes({.milliseconds_per_step = -1}), says("a positive number"));
 }
 

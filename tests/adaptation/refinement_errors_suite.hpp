@@ -75,6 +75,8 @@ TEST_CASE("a mesh that would grow beyond the capacity is an error and leaves the
     CHECK_THROWS_AS(refine(body, all), Error);
     set_mesh_limits(body, {.elements = elements - 1});
     CHECK_THROWS_AS(refine(body, all), Error);
+    for (int const max_level : {-1, most_levels + 1})
+      CHECK_THROWS_WITH(refine(body, all, max_level), says("at most 63"));
 
     CHECK(Portrait(body) == before);
     CentralDifference step{{.step = 1e-3}}, other_step{{.step = 1e-3}};

@@ -430,6 +430,7 @@ TEST_CASE("where a refinement on a backend fails, the body is as it was", "[adap
     set_mesh_limits(body, {});
     CHECK_THROWS_AS(refine(body, {{0, count(body)}}), Error);
     CHECK_THROWS_AS(refine(body, {{-1}}), Error);
+    CHECK_THROWS_WITH(refine(body, {{0}}, most_levels + 1), says("at most 63"));
     check_unchanged();
     // Set past the body's own checks.
     auto const before = download<double>(body.parts().state.v);

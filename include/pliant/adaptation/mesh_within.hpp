@@ -23,7 +23,7 @@ struct MeshWithinOptions {
       none;  // measured from look to look, with all that a caller does between them
   double release =
       0.5;  // what is there is taken to be worth 1/release times as much where it is as elsewhere
-  int max_level = 30;           // elements refined this often are left alone
+  int max_level = 30;           // elements refined this often are left alone; at most most_levels
   double (*clock)() = nullptr;  // s; null: the machine's
 };
 

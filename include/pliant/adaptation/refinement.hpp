@@ -66,8 +66,9 @@ struct MergingReport {
 /// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
 /// exactly. Children inherit groups, conditions on facets, pressures and named boundaries;
 /// conditions and loads on nodes stay with their nodes. What it did to the energy is in ledger(body).
-/// Throws Error, with the body as it was, where an element is unknown, the body's limits would be
-/// exceeded, or a user's force term cannot be made anew. Listeners are told last: the body is refined whatever
+/// Elements that were refined max_level times are left alone.
+/// Throws Error, with the body as it was, where an element is unknown, max_level is negative or above most_levels, the body's
+/// limits would be exceeded, or a user's force term cannot be made anew. Listeners are told last: the body is refined whatever
 /// they throw.
 template <DeformableBody TheBody>
 RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,

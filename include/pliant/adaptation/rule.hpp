@@ -16,7 +16,7 @@ struct SwitchRule {
 };
 
 struct RefineOptions {
-  int max_level = 30;  // elements refined this often are left alone
+  int max_level = 30;  // elements refined this often are left alone; at most most_levels
 };
 
 /// Elements of From that a criterion marks are divided into four, solid ones into eight.
