@@ -20,6 +20,7 @@
 #include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/in_turn.cuh>
 #include <pliant/cuda/launch.hpp>
+#include <pliant/cuda/pinned_array.hpp>
 #include <pliant/cuda/point_rows.cuh>
 #include <pliant/cuda/recording.hpp>
 #include <pliant/cuda/reduce.cuh>
@@ -91,6 +92,10 @@ class Cuda {
   template <class U>
   Array<U> unset_array(std::size_t count) const {
     return Array<U>::unset(context_->stream(), count);
+  }
+  template <class U>
+  PinnedArray<U> pinned_array(std::size_t count) const {
+    return {context_->stream(), count};
   }
 
   template <class F>
@@ -270,11 +275,8 @@ class Cuda {
   void reduce_to(char const* verb, Index n, F const& f, double* result) const {
     Index const count =
         std::min<Index>(blocks(n, detail::reduce_threads), detail::CudaContext::max_partials);
-    double* const partials = context_->partials();
-    launch(verb, {count, detail::reduce_threads}, detail::reduce_to_partials<Reduction, F>, n, f,
-           partials);
-    launch(verb, {1, detail::CudaContext::max_partials}, detail::reduce_partials<Reduction>, count,
-           partials, result);
+    launch(verb, {count, detail::reduce_threads}, detail::reduce_all<Reduction, F>, n, f,
+           context_->partials(), context_->blocks_done(), result);
   }
   template <class Reduction, class F>
   double reduce(char const* verb, Index n, F const& f) const {

@@ -24,6 +24,8 @@
 //                              and `upload(backend, vector)` below call it.
 //   array<U>(span<U const>)    with values, which are read before it returns; for upload, may be left out
 //   unset_array<U>(count)      not set, for unset<U>(backend, count) below; may be left out
+//   pinned_array<U>(count)     not set, in memory that the host and loops both reach, of backends whose Array the host does not;
+//                              may be left out: see backend/read_back.hpp
 //   .data() .size() .upload(span<U const>) .download(span<U>)
 //                              upload and download come after what was asked of the backend before,
 //                              and wait for that

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pliant/cuda/array.hpp>
+#include <pliant/cuda/pinned_array.hpp>
 #include <pliant/cuda/scratch.hpp>
 #include <pliant/cuda/side_stream.hpp>
 
@@ -12,11 +13,9 @@ class CudaContext {
   explicit CudaContext(CudaOptions const& options)
       : stream_(std::make_shared<DeviceStream const>(options)),
         partials_(stream_, max_partials),
-        scratch_(stream_) {
-    auto const device = stream_->enter();
-    check(cudaMallocHost(&result_, sizeof(double)), "cudaMallocHost");
-  }
-  ~CudaContext() { cudaFreeHost(result_); }
+        blocks_done_(stream_, 1),
+        scratch_(stream_),
+        result_(stream_, 1) {}
   CudaContext(CudaContext const&) = delete;
   CudaContext& operator=(CudaContext const&) = delete;
 
@@ -24,6 +23,8 @@ class CudaContext {
 
   SharedStream const& stream() const { return stream_; }
   double* partials() { return partials_.data(); }
+  /// Zero between reductions.
+  unsigned* blocks_done() { return blocks_done_.data(); }
   DeviceScratch& scratch() { return scratch_; }
   /// Made when it is asked for first.
   std::shared_ptr<SideStream> const& side_stream() {
@@ -31,14 +32,15 @@ class CudaContext {
     return side_stream_;
   }
   /// In host memory that kernels can write to.
-  double* result() const { return result_; }
+  double* result() { return result_.data(); }
 
  private:
   SharedStream stream_;
   DeviceArray<double> partials_;
+  DeviceArray<unsigned> blocks_done_;
   DeviceScratch scratch_;
   std::shared_ptr<SideStream> side_stream_;
-  double* result_ = nullptr;
+  PinnedArray<double> result_;
 };
 
 }  // namespace pliant::detail

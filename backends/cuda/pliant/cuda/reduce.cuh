@@ -44,10 +44,12 @@ __device__ double reduce_block(double value) {
                                                                      : Reduction::identity());
 }
 
-/// One partial result per block.
+/// Each block notes what it has; the last one to do so combines what all noted, in the order of blocks. blocks_done: zero before
+/// and after.
 template <class Reduction, class F>
 __global__ void __launch_bounds__(reduce_threads)
-    reduce_to_partials(Index n, __grid_constant__ F const f, double* partials) {
+    reduce_all(Index n, __grid_constant__ F const f, double* partials, unsigned* blocks_done,
+               double* result) {
   begin_after_previous_kernel();
   double value = Reduction::identity();
   // 64 bits: the last step may pass the largest Index.
@@ -55,16 +57,22 @@ __global__ void __launch_bounds__(reduce_threads)
        i += std::int64_t{gridDim.x} * blockDim.x)
     value = Reduction::combine(value, static_cast<double>(f(static_cast<Index>(i))));
   value = reduce_block<Reduction>(value);
-  if (threadIdx.x == 0) partials[blockIdx.x] = value;
-}
-
-/// One block.
-template <class Reduction>
-__global__ void reduce_partials(int count, double const* partials, double* result) {
-  begin_after_previous_kernel();
-  int const i = static_cast<int>(threadIdx.x);
-  double const value = reduce_block<Reduction>(i < count ? partials[i] : Reduction::identity());
-  if (i == 0) Reduction::store(value, result);
+  if (gridDim.x > 1) {
+    __shared__ bool is_last;
+    if (threadIdx.x == 0) {
+      partials[blockIdx.x] = value;
+      __threadfence();
+      is_last = atomicInc(blocks_done, gridDim.x - 1) == gridDim.x - 1;
+    }
+    __syncthreads();
+    if (!is_last) return;
+    __threadfence();
+    value = Reduction::identity();
+    for (unsigned b = threadIdx.x; b < gridDim.x; b += reduce_threads)
+      value = Reduction::combine(value, __ldcg(partials + b));
+    value = reduce_block<Reduction>(value);
+  }
+  if (threadIdx.x == 0) Reduction::store(value, result);
 }
 
 /// A kernel's value of an element, as a function of its number among the active ones.
