@@ -4,19 +4,22 @@
 #include <numeric>
 
 #include <pliant/backend/array_copies.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 
 #include "support/formulations.hpp"
 
-// Loops, scans and sorts that are asked for at once, and copies of several arrays.
+// Loops, scans and sorts that are asked for at once, copies of several arrays, and values that loops write for the host.
 namespace pliant::test::in_turn_suite {
 
 struct PutKeys {
   Index n;
+  int shift;
   std::uint64_t* keys;
   Index* values;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    keys[i] = static_cast<std::uint64_t>((n - i) / 2);
+    keys[i] = static_cast<std::uint64_t>((n - i) / 2) << shift;
     values[i] = i;
   }
 };
@@ -26,11 +29,12 @@ struct Read {
 };
 /// to[i] = before[i] + the i-th key.
 struct AddKeys {
+  int shift;
   Index const* before;
   std::uint64_t const* keys;
   Index* to;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    to[i] = before[i] + static_cast<Index>(keys[i]);
+    to[i] = before[i] + static_cast<Index>(keys[i] >> shift);
   }
 };
 
@@ -38,29 +42,50 @@ TEMPLATE_LIST_TEST_CASE("steps see what those before them wrote, few or many", "
                         Backends<double>) {
   TestType const backend;
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };
-  for (Index const n : {0, 1, 2, 33, 255, 257, 2047, 2048, 2049, 9000}) {
-    CAPTURE(n);
-    auto keys = zeros<std::uint64_t>(backend, at(n) + 1);
-    auto values = zeros<Index>(backend, at(n) + 1), sums = zeros<Index>(backend, at(n) + 2),
-         to = zeros<Index>(backend, at(n) + 1);
-    detail::in_turn(backend, detail::LoopStep{n, PutKeys{n, keys.data(), values.data()}},
-                    detail::SortStep{n, keys.data(), values.data(), detail::key_bits(n)},
-                    detail::ScanStep{n, Read{values.data()}, sums.data()},
-                    detail::LoopStep{n, AddKeys{sums.data(), keys.data(), to.data()}});
-    std::vector<Index> wanted_values(at(n)), wanted(at(n));
-    std::iota(wanted_values.begin(), wanted_values.end(), Index{0});
-    std::ranges::stable_sort(wanted_values, {}, [&](Index i) { return (n - i) / 2; });
-    Index sum = 0;
-    for (Index i = 0; i < n; ++i) {
-      wanted[at(i)] = sum + (n - wanted_values[at(i)]) / 2;
-      sum += wanted_values[at(i)];
+  // Keys of few bits, of many, and of so many that a word has no room for a number beside them.
+  for (int const shift : {0, 30, 48})
+    for (Index const n : {0, 1, 2, 33, 255, 257, 2047, 2048, 2049, 9000}) {
+      CAPTURE(n, shift);
+      auto keys = zeros<std::uint64_t>(backend, at(n) + 1);
+      auto values = zeros<Index>(backend, at(n) + 1), sums = zeros<Index>(backend, at(n) + 2),
+           to = zeros<Index>(backend, at(n) + 1);
+      detail::in_turn(backend, detail::LoopStep{n, PutKeys{n, shift, keys.data(), values.data()}},
+                      detail::SortStep{n, keys.data(), values.data(), detail::key_bits(n) + shift},
+                      detail::ScanStep{n, Read{values.data()}, sums.data()},
+                      detail::LoopStep{n, AddKeys{shift, sums.data(), keys.data(), to.data()}});
+      std::vector<Index> wanted_values(at(n)), wanted(at(n));
+      std::iota(wanted_values.begin(), wanted_values.end(), Index{0});
+      std::ranges::stable_sort(wanted_values, {}, [&](Index i) { return (n - i) / 2; });
+      Index sum = 0;
+      for (Index i = 0; i < n; ++i) {
+        wanted[at(i)] = sum + (n - wanted_values[at(i)]) / 2;
+        sum += wanted_values[at(i)];
+      }
+      wanted_values.push_back(0);
+      wanted.push_back(0);
+      CHECK(download<Index>(values) == wanted_values);
+      CHECK(download<Index>(to) == wanted);
+      CHECK(download<Index>(sums)[at(n)] == sum);
     }
-    wanted_values.push_back(0);
-    wanted.push_back(0);
-    CHECK(download<Index>(values) == wanted_values);
-    CHECK(download<Index>(to) == wanted);
-    CHECK(download<Index>(sums)[at(n)] == sum);
-  }
+}
+
+TEMPLATE_LIST_TEST_CASE("the host reads what loops wrote before it waited", "[backend]",
+                        Backends<double>) {
+  TestType const backend;
+  std::vector<Index> const numbers{5, 7, 11};
+  auto const from = upload(backend, numbers);
+  ReadBack<TestType, Index> none, own(backend, 3);
+  CHECK(none.size() == 0);
+  own.set_all(3);
+  CHECK(own.all() == std::vector<Index>{3, 3, 3});
+  backend.for_each(2, detail::CopyValue<Index>{from.data(), own.data()});
+  backend.synchronize();
+  CHECK(own.all() == std::vector<Index>{5, 7, 3});
+  CHECK(own.template first<2>() == std::array<Index, 2>{5, 7});
+  none = std::move(own);
+  backend.for_each(3, detail::CopyValue<Index>{from.data(), none.data()});
+  backend.synchronize();
+  CHECK(none.all() == numbers);
 }
 
 TEMPLATE_LIST_TEST_CASE("copies of several arrays have their values, and zeros behind them",

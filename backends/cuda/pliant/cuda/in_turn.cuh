@@ -44,12 +44,59 @@ __device__ void do_step(ScanStep<F> const& step, std::byte* scratch) {
   Index const sum = store_part(ListPart(step.n), Noted<Index>{step.to}, StoreSums{step.to}, 0);
   if (threadIdx.x == 0) step.to[step.n] = sum;
 }
+/// Whether keys of so many bits leave room for their numbers in a word.
+template <class Word>
+__device__ constexpr bool holds_numbers(int bits) {
+  return bits + bits_of_short_steps <= 8 * static_cast<int>(sizeof(Word));
+}
+/// A key for each thread, which goes to the place that as many come before. Words of keys and, lowest, of their numbers tell
+/// which do.
+template <class Word>
+__device__ void sort_by_counting(SortStep const& step, KeyList<std::uint64_t, Index> const& other) {
+  constexpr int at_once = 16 / sizeof(Word);  // in one look at memory
+  struct alignas(16) Words {
+    Word word[at_once];
+  };
+  __shared__ Words words[short_steps / at_once];
+  Index const parts = (step.n - 1) / at_once + 1;
+  for (auto i = static_cast<Index>(threadIdx.x); i < at_once * parts; i += list_threads) {
+    Word const key = i < step.n ? static_cast<Word>(step.keys[i]) : 0;
+    words[i / at_once].word[i % at_once] =
+        i < step.n ? (key << bits_of_short_steps | static_cast<Word>(i)) : ~Word{0};
+  }
+  __syncthreads();
+  auto const own = static_cast<Index>(blockIdx.x * list_threads + threadIdx.x);
+  if (own < step.n) {
+    Word const word = words[own / at_once].word[own % at_once];
+    Index before[at_once] = {};
+#pragma unroll 4
+    for (Index i = 0; i < parts; ++i) {
+      Words const some = words[i];
+#pragma unroll
+      for (int k = 0; k < at_once; ++k) before[k] += some.word[k] < word ? 1 : 0;
+    }
+    Index place = 0;
+    for (int k = 0; k < at_once; ++k) place += before[k];
+    other.keys[place] = step.keys[own];
+    other.values[place] = step.values[own];
+  }
+  meet_in_turn();
+  if (own >= step.n) return;
+  step.keys[own] = other.keys[own];
+  step.values[own] = other.values[own];
+}
 __device__ inline void do_step(SortStep const& step, std::byte* scratch) {
   using List = KeyList<std::uint64_t, Index>;
+  if (step.n <= 1) return;
   auto* const keys = reinterpret_cast<std::uint64_t*>(scratch);
-  if (step.n > 1 && blockIdx.x == 0)
-    sort_all(step.n, List{step.keys, step.values},
-             List{keys, reinterpret_cast<Index*>(keys + step.n)}, step.bits);
+  List const other{keys, reinterpret_cast<Index*>(keys + step.n)};
+  bool const has_threads = step.n <= static_cast<Index>(gridDim.x * list_threads);
+  if (has_threads && holds_numbers<std::uint32_t>(step.bits))
+    sort_by_counting<std::uint32_t>(step, other);
+  else if (has_threads && holds_numbers<std::uint64_t>(step.bits))
+    sort_by_counting<std::uint64_t>(step, other);
+  else if (blockIdx.x == 0)
+    sort_all(step.n, List{step.keys, step.values}, other, step.bits);
 }
 
 /// Steps as a kernel takes them.

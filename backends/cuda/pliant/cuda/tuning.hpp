@@ -17,7 +17,8 @@ inline constexpr int list_threads = 256, most_list_blocks = 1024, sort_keys = 8;
 inline constexpr Index short_list = 4096;
 /// The same of loops, scans and sorts that one launch does in turn (in_turn.cuh), by as many blocks as any GPU with clusters has
 /// room for in one.
-inline constexpr Index short_steps = 2048;
+inline constexpr int bits_of_short_steps = 11;
+inline constexpr Index short_steps = 1 << bits_of_short_steps;
 inline constexpr int step_cluster = 8;
 
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
