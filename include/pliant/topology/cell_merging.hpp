@@ -17,22 +17,35 @@ PLIANT_HOST_DEVICE void replace_at_side(TreeView const& tree, Index side, Index 
   atomic_store(cells[atomic_load(cells[0]) == cell ? 0 : 1], other);
 }
 
-/// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, that no neighbour
-/// keeps from being merged.
-PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
-  auto const at = [](Index i) { return static_cast<std::size_t>(i); };
-  auto const& cell = tree.cells[at(c)];
+/// Whether a child of a refined cell may go, which it may not where a cell at one of its edges is refined.
+PLIANT_HOST_DEVICE bool may_go(TreeView const& tree, Index child) {
+  auto const own = tree.row(child);
+  auto const edges =
+      static_cast<std::size_t>(tree.cells[static_cast<std::size_t>(child)].pattern().edges);
+  for (std::size_t e = 0; e < edges; ++e)
+    if (tree.edges[static_cast<std::size_t>(own.edges[e])].cells.refined() > 0) return false;
+  return true;
+}
+/// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, for which
+/// is_child_ready(child).
+template <class IsChildReady>
+PLIANT_HOST_DEVICE bool are_alike(TreeView const& tree, Index c,
+                                  IsChildReady const& is_child_ready) {
+  auto const& cell = tree.cells[static_cast<std::size_t>(c)];
   if (cell.first_child < 0) return false;
-  auto const has = cell.is_split() ? CellNodes::corners : tree.cells[at(cell.first_child)].has;
+  auto const has = cell.is_split() ? CellNodes::corners
+                                   : tree.cells[static_cast<std::size_t>(cell.first_child)].has;
   Index const end = cell.first_child + cell.divided().children;
   for (Index i = cell.first_child; i < end; ++i) {
-    auto const& child = tree.cells[at(i)];
-    if (child.first_child >= 0 || child.has != has) return false;
-    auto const own = tree.row(i);
-    for (std::size_t e = 0; !cell.is_split() && e < at(child.pattern().edges); ++e)
-      if (tree.edges[at(own.edges[e])].cells.refined() > 0) return false;
+    auto const& child = tree.cells[static_cast<std::size_t>(i)];
+    if (child.first_child >= 0 || child.has != has || !is_child_ready(i)) return false;
   }
   return true;
+}
+/// Whether they are so, and no neighbour keeps them from being merged.
+PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
+  bool const is_split = tree.cells[static_cast<std::size_t>(c)].is_split();
+  return are_alike(tree, c, [&](Index child) { return is_split || may_go(tree, child); });
 }
 
 /// Child i of a divided cell, which is merged, is counted nowhere any more.

@@ -13,7 +13,7 @@
 // Passes over cells of a tree that is coarsened, for loops of a backend.
 namespace pliant::detail {
 
-/// Stamps marked leaves, and lists the refined cells of which they are children.
+/// Stamps marked leaves that may go, and lists the refined cells of which they are children.
 struct ListFamilies {
   TreeView tree;
   Index const* marked;
@@ -23,12 +23,13 @@ struct ListFamilies {
     auto const& cell = tree.cells[static_cast<std::size_t>(marked[k])];
     if (cell.first_child >= 0 || cell.parent < 0) return;
     if (tree.cells[static_cast<std::size_t>(cell.parent)].is_split()) return;
+    if (!may_go(tree, marked[k])) return;
     atomic_store(list.stamps[marked[k]], list.now);
     list(cell.parent);
   }
 };
-/// Lists those of them of which all children are marked and can be merged, with their numbers for keys. A call for each that
-/// there may be.
+/// Lists those of them of which all children are stamped and alike, with their numbers for keys. A call for each that there may
+/// be.
 struct ListMergeable {
   TreeView tree;
   Index const* families;
@@ -42,10 +43,7 @@ struct ListMergeable {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     if (k >= *listed) return;
     Index const c = families[k];
-    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
-    for (Index i = 0; i < cell.divided().children; ++i)
-      if (stamps[cell.first_child + i] != now) return;
-    if (!can_be_merged(tree, c)) return;
+    if (!are_alike(tree, c, [&](Index child) { return stamps[child] == now; })) return;
     Index const place = atomic_add(*count, 1);
     list[place] = c;
     keys[place] = static_cast<std::uint64_t>(c);
