@@ -163,8 +163,11 @@ struct MergedNodes {
     masses.read(weights_now, kilograms.data());
     auto rounded = zeros<T>(backend, at(rows));
     masses.round(kilograms.data(), rounded.data());
-    return momentum.give_back(merged, weights_before, weights_now, density, bound, kilograms.data(),
-                              held.data(), node_field<dim>(v));
+    momentum.give_back(merged, weights_before, weights_now, density, bound, kilograms.data(),
+                       held.data(), node_field<dim>(v));
+    backend.synchronize();
+    masses.template check<T>();
+    return momentum.taken();
   }
 
  private:

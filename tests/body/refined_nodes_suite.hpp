@@ -144,12 +144,12 @@ struct RefinedNodes {
     masses.add_come(elements_now);
     masses.read(weights, kilograms.data());
     masses.round(kilograms.data(), mass.data());
-    auto const taken =
-        momentum.give_back(elements_now, before_weights, weights, density, 64 * density,
-                           kilograms.data(), held.data(), node_field<dim>(v));
+    momentum.give_back(elements_now, before_weights, weights, density, 64 * density,
+                       kilograms.data(), held.data(), node_field<dim>(v));
     backend.synchronize();
     slaves = std::move(next);
-    return taken;
+    masses.template check<T>();
+    return momentum.taken();
   }
 
  private:

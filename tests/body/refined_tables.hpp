@@ -54,7 +54,8 @@ struct Tables {
     }
     values = upload(backend, by_column(mesh.first.cells));
     tags = upload(backend, by_place(mesh.first.cells));
-    blocks.first = mesh.order.download_first_of_block();
+    backend.synchronize();
+    blocks.first = mesh.order.told_first_of_block();
     make({nullptr, width}, false);
   }
 
@@ -155,6 +156,7 @@ struct Tables {
     tags = inherited_values(backend, mesh.order, std::as_const(tags).data());
     values =
         inherited_values(backend, mesh.order, std::as_const(values).data(), 2, volumes_on.data());
+    backend.synchronize();
     blocks = blocks_after_refinement(mesh.order, blocks.first);
     make(on.rows_of_nodes(), true);
     auto const made = element_list(backend, on, std::as_const(tags).data(), places.come.data(),

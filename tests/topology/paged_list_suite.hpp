@@ -47,14 +47,14 @@ struct Pair {
               values.begin() + static_cast<std::ptrdiff_t>(first + count), next);
   }
   void extend(std::size_t count) {
-    list.extend(backend, count);
+    list.extend(backend, count).run(backend);
     values.resize(values.size() + count);
     write(values.size() - count, count);
   }
   void change(std::size_t page) {
     std::vector<std::uint8_t> touched(list.page_count(), 0);
     touched[page] = 1;
-    list.change(backend, touched, 0);
+    list.change(backend, touched);
     auto const first = page * Page<Index>::entries;
     write(first, std::min(values.size() - first, Page<Index>::entries));
   }

@@ -53,6 +53,7 @@ class ChangedPartsOn {
     follow_on_host(std::move(cells), false);
     on_->order.refine(on_->tree, done);
     on_->rows.refine(on_->tree, on_->order, done);
+    if (done.new_nodes == 0) backend_.synchronize();  // rows of new nodes were waited for
     rows_ = on_->rows.count();
     Copies copies(backend_);
     auto points = copies.template extended<double>(on_->points, values());
@@ -76,7 +77,7 @@ class ChangedPartsOn {
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
     RefinedPlaces<B> const places(backend_, on_->order, done);
     add_strain(Energies::before, parts_, places.go, places.go_count);
-    auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load), {});
+    auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, come, rows_, false);
     add_strain(Energies::after, changed.parts, places.come, places.come_count);
     read_energies(changed);
@@ -87,8 +88,6 @@ class ChangedPartsOn {
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
     synchronize_velocities(parts_);
     energies_.count_not_finite(parts_);
-    double const speed = backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v));  // m/s
-    if (!is_finite(speed)) check_fields();
     energies_.add_kinetic(Energies::before, parts_);
     add_strain(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
@@ -96,6 +95,8 @@ class ChangedPartsOn {
     follow_on_host(std::move(parents), true);
     on_->order.coarsen(on_->tree, done);
     on_->rows.coarsen(done);
+    double const speed = backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v));  // m/s
+    if (!is_finite(speed)) check_fields();
     rows_ = on_->rows.count();
     Copies copies(backend_);
     auto u = copies.template extended<T>(parts_.state.u, values());
@@ -114,9 +115,8 @@ class ChangedPartsOn {
     on_->masses.add_come(families);
     read_masses(layout, weights);
     double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);
-    auto const taken =
-        on_->momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
-                                kilograms_->data(), layout.held.data(), node_field<dim>(v));
+    on_->momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
+                            kilograms_->data(), layout.held.data(), node_field<dim>(v));
     auto const clear = [&](Array<T>& field) {
       return LoopStep{on_->rows.freed_count(),
                       ClearListed<T, dim>{on_->rows.freed(), node_field<dim>(field)}};
@@ -126,11 +126,11 @@ class ChangedPartsOn {
       InterpolationOn<B>(
           backend_, on_->gone.rows(families, on_->rows.freed(), on_->rows.freed_count(), rows_))
           .apply_transpose(backend_, node_field<dim>(load));
-    auto changed =
-        parts_with(std::move(layout), std::move(u), std::move(v), std::move(load), taken);
+    auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, families, rows_, true);
     add_strain(Energies::after, changed.parts);
     read_energies(changed);
+    changed.taken = on_->momentum.taken();
     return changed;
   }
 
@@ -186,8 +186,6 @@ class ChangedPartsOn {
     auto blocks = blocks_after_refinement(on_->order, before.first_of_block[0]);
     make_table(std::get<0>(layout.tables), blocks);
     layout.first_of_block[0] = std::move(blocks.first);
-    auto const scratch = std::get<0>(layout.tables).elements.scratch_nodes();
-    layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
     layout.mass = unset<T>(backend_, at(rows_));
     layout.interpolation = InterpolationOn<B>(
         backend_, on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()), false, rows_);
@@ -225,11 +223,12 @@ class ChangedPartsOn {
     *own_masses_ = copies.copy_of(on_->masses.own(), at(rows_), at(rows_));
     copies.make();
   }
-  ChangedTopology<Parts> parts_with(Layout layout, Array<T> u, Array<T> v, Array<T> load,
-                                    Point<dim> const& taken) {
-    ChangedTopology<Parts> changed{parts_on(parts_, std::move(layout), topology_, prescribed_),
-                                   taken, 0};
+  ChangedTopology<Parts> parts_with(Layout layout, Array<T> u, Array<T> v, Array<T> load) {
+    ChangedTopology<Parts> changed{
+        parts_on(parts_, std::move(layout), topology_, prescribed_), {}, 0};
     auto& next = changed.parts;
+    auto const scratch = std::get<0>(next.layout.tables).elements.scratch_nodes();
+    next.layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
     next.state.u = std::move(u);
     next.state.v = std::move(v);
     next.state.load = std::move(load);
@@ -273,12 +272,13 @@ class ChangedPartsOn {
           of.layout, of.state.u);
     }
   }
-  /// Waits for what was asked of the backend. Throws Error where a field was not finite.
+  /// Waits for what was asked of the backend. Throws Error where a field was not finite, or a mass cannot be held.
   void read_energies(ChangedTopology<Parts>& changed) {
     energies_.add_kinetic(Energies::after, changed.parts);
     auto const sums = energies_.read();
     settle(backend_, std::get<0>(changed.parts.layout.tables).elements);
     if (sums.not_finite > 0) check_fields();
+    on_->masses.template check<T>();
     changed.strain_energy_before = sums.strain[Energies::before] + energy_of_added_terms(parts_);
     changed.strain_energy = sums.strain[Energies::after] + energy_of_added_terms(changed.parts);
     changed.kinetic_energy_before = sums.kinetic[Energies::before];

@@ -149,11 +149,12 @@ typename B::template Array<Index> element_rows(B const& backend, TreeView const&
 }
 
 /// The blocks of the elements after a refinement or a coarsening; those of which no leaf was divided or merged stay, which are
-/// those with as many leaves as before. `first_before`: the blocks before it. Waits for the backend.
+/// those with as many leaves as before. `first_before`: the blocks before it. The backend has to be waited for since the change of
+/// the order.
 template <Backend B>
 ElementBlocks blocks_after_refinement(LeafOrderOn<B> const& order,
                                       std::vector<Index> first_before) {
-  ElementBlocks blocks{order.download_first_of_block(), {}, std::move(first_before)};
+  ElementBlocks blocks{order.told_first_of_block(), {}, std::move(first_before)};
   auto const &now = blocks.first, &then = blocks.first_before;
   for (std::size_t b = 0; b + 1 < now.size(); ++b)
     blocks.stays.push_back(now[b + 1] - now[b] == then[b + 1] - then[b] ? 1 : 0);

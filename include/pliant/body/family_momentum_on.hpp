@@ -9,6 +9,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/body/exact_sum.hpp>
 #include <pliant/body/family_momentum_passes.hpp>
 #include <pliant/body/nodal_masses_on.hpp>
@@ -29,7 +30,7 @@ class FamilyMomentumOn {
   static constexpr int dim = E::dim;
 
  public:
-  explicit FamilyMomentumOn(B const& backend) : backend_(backend) {}
+  explicit FamilyMomentumOn(B const& backend) : backend_(backend), told_(backend, 1) {}
 
   /// Looks up which nodes a change touches, and what these have of the masses of elements that stay; between
   /// NodalMassesOn::take_gone and add_come. `before`, `now`: of the slaves that there were, and are.
@@ -61,16 +62,16 @@ class FamilyMomentumOn {
                                    staying_mass_.data()}));
   }
 
-  /// Changes the velocities `v`, to which a refinement gave new nodes theirs, so that each family keeps its momentum; returns
-  /// what held nodes took of it, N s. Slaves keep their velocities, and have to follow their masters then; nodes that went keep
-  /// theirs. `kilograms`: masses
-  /// by row, as NodalMassesOn::read gives them. `held`: directions by row; null: none. `bound`: kg m/s, more than the sum of all
-  /// impulses that nodes could be given, 8 times the body's mass at the largest speed, say. Throws Error, with velocities as
-  /// they were, where an impulse exceeds it or is no number.
+  /// Changes the velocities `v`, to which a refinement gave new nodes theirs, so that each family keeps its momentum. Slaves keep
+  /// their velocities, and have to follow their masters then; nodes that went keep theirs. `kilograms`: masses by row, as
+  /// NodalMassesOn::read gives them. `held`: directions by row; null: none. `bound`: kg m/s, more than the sum of all impulses
+  /// that nodes could be given, 8 times the body's mass at the largest speed, say. Where an impulse exceeds it or is no number,
+  /// velocities stay, and `taken` says so.
   template <detail::ChangedFamilies<E> Families>
-  Point<dim> give_back(Families const& families, MassWeightsOn<B> const& before,
-                       MassWeightsOn<B> const& now, double density, double bound,
-                       double const* kilograms, DirectionMask const* held, NodeField<T, dim> v) {
+  void give_back(Families const& families, MassWeightsOn<B> const& before,
+                 MassWeightsOn<B> const& now, double density, double bound, double const* kilograms,
+                 DirectionMask const* held, NodeField<T, dim> v) {
+    bound_ = bound;
     detail::SumUnit const unit(bound);
     auto const values = at(most_) * dim;
     for (auto* array : {&before_, &now_, &impulse_}) detail::grow(backend_, *array, values);
@@ -97,14 +98,20 @@ class FamilyMomentumOn {
     detail::in_turn(backend_, of_listed(detail::CheckImpulses<dim>{unit, impulse_.data(), refused}),
                     of_listed(detail::GiveImpulses<T, dim>{list_.data(), impulse_.data(), kilograms,
                                                            held, unit, v, taken_.data()}),
-                    of_listed(detail::ForgetPlaces{list_.data(), place_.data()}));
+                    of_listed(detail::ForgetPlaces{list_.data(), place_.data()}),
+                    detail::LoopStep{1, detail::CopyValue<detail::TakenMomentum<dim>>{
+                                            taken_.data(), told_.data()}});
     most_ = 0;
-    auto const taken = download<detail::TakenMomentum<dim>>(taken_)[0];
+  }
+  /// What held nodes took of momentum, N s, once the backend was waited for. Throws Error where an impulse was refused.
+  [[nodiscard]] Point<dim> taken() const {
+    auto const taken = told_.template first<1>()[0];
     if (taken.refused != 0)
       throw Error(
           "change of the mesh: the momentum that a node is given is no number, or exceeds the "
           "bound of ",
-          bound, " kg m/s; give one for all nodes together");
+          bound_, " kg m/s; give one for all nodes together");
+    detail::SumUnit const unit(bound_);
     Point<dim> sum{};
     for (std::size_t k = 0; k < dim; ++k) sum[k] = unit.signed_value_of(taken.sums[k]);
     return sum;
@@ -127,6 +134,8 @@ class FamilyMomentumOn {
       impulse_;  // by place; values of components side by side
   Array<detail::ExactSum> sums_;
   Array<detail::TakenMomentum<dim>> taken_;
+  ReadBack<B, detail::TakenMomentum<dim>> told_;
+  double bound_ = 0;  // kg m/s
 };
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/is_marked.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/body/change_passes.hpp>
 #include <pliant/body/facet_passes.hpp>
 #include <pliant/body/held_passes.hpp>
@@ -121,7 +122,8 @@ class HeldSidesOn {
   /// which conditions hold a part only. Then nothing has changed. `tree`: after it; `of_node`: before it.
   bool coarsen(B const& backend, TreeOn<B> const& tree, Coarsened const& done,
                Index const* of_node) {
-    auto found = zeros<Index>(backend, 1);
+    if (found_.size() == 0) found_ = ReadBack<B, Index>(backend, 1);
+    found_.set_all(0);
     Index const first = Dim == 2 ? done.initial.edges : done.initial.sides,
                 now = count_in(done.now);
     detail::grow(backend, moved_, at(now));
@@ -132,11 +134,12 @@ class HeldSidesOn {
                                                             {done.initial.cells, done.cells},
                                                             done.parents,
                                                             moved_.data(),
-                                                            found.data()});
+                                                            found_.data()});
     backend.for_each(done.before.nodes - done.initial.nodes,
                      detail::FindNamedNodes{done.nodes, of_node + done.initial.nodes, named_.data(),
-                                            found.data()});
-    if (download<Index>(found)[0] != 0) return false;
+                                            found_.data()});
+    backend.synchronize();
+    if (found_.template first<1>()[0] != 0) return false;
     std::swap(bits_, moved_);
     count_ = now;
     return true;
@@ -204,6 +207,7 @@ class HeldSidesOn {
   Array<detail::ConditionBits> moved_;  // before a coarsening
   Array<DirectionMask> held_;           // by row: by conditions on nodes
   Array<std::uint8_t> named_;           // by row: whether these name the node
+  ReadBack<B, Index> found_;            // of a coarsening: whether it may not be
   Index count_ = 0, rows_ = 0;
 };
 

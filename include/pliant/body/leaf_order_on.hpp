@@ -7,6 +7,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/body/cell_order.hpp>
 #include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/topology/tree_on.hpp>
@@ -31,9 +32,11 @@ class LeafOrderOn {
       : backend_(backend),
         leaves_(upload(backend, leaves)),
         first_(upload(backend, first_of_block)),
+        told_(backend, first_of_block.size()),
         count_(static_cast<Index>(leaves.size())),
         blocks_(static_cast<Index>(first_of_block.size()) - 1) {
     detail::grow(backend_, places_, static_cast<std::size_t>(cells));
+    detail::copy_values<B, Index>(backend_, first_.data(), told_.data(), first_of_block.size());
     backend_.for_each(count_, detail::PutPlaces{leaves_.data(), places_.data()});
   }
 
@@ -53,12 +56,8 @@ class LeafOrderOn {
   /// The place of the first leaf of each block, and behind the last one.
   [[nodiscard]] Index const* first_of_block() const { return first_.data(); }
   [[nodiscard]] Index blocks() const { return blocks_; }
-  /// A copy of first_of_block on the host.
-  [[nodiscard]] std::vector<Index> download_first_of_block() const {
-    std::vector<Index> first(static_cast<std::size_t>(blocks_) + 1);
-    first_.download(first);
-    return first;
-  }
+  /// A copy of first_of_block on the host, once the backend was waited for since the last change.
+  [[nodiscard]] std::vector<Index> told_first_of_block() const { return told_.all(); }
 
   /// Puts the children of refined leaves in the place of these.
   void refine(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
@@ -76,7 +75,7 @@ class LeafOrderOn {
     backend_.for_each(count_,
                       detail::PutLeaves{tree.view(), into.data(), leaves_.data(), start_.data(),
                                         others_.data(), places_.data(), from_.data()});
-    backend_.for_each(blocks_ + 1, detail::LookUp{start_.data(), first_.data()});
+    backend_.for_each(blocks_ + 1, detail::MoveBlocks{start_.data(), first_.data(), told_.data()});
     std::swap(leaves_, others_);
     count_before_ = std::exchange(count_, after);
     merged_ = 0;
@@ -99,7 +98,7 @@ class LeafOrderOn {
                                    leaves_.data(), others_.data(), places_.data(), from_.data()});
     backend_.for_each(done.merged, detail::PutMerged{families_.data(), start_.data(),
                                                      others_.data(), places_.data(), from_.data()});
-    backend_.for_each(blocks_ + 1, detail::LookUp{start_.data(), first_.data()});
+    backend_.for_each(blocks_ + 1, detail::MoveBlocks{start_.data(), first_.data(), told_.data()});
     std::swap(leaves_, others_);
     count_before_ = std::exchange(count_, after);
     merged_ = done.merged;
@@ -116,6 +115,7 @@ class LeafOrderOn {
   B backend_;
   Array<Index> leaves_, others_;  // others: those before a change, or room
   Array<Index> places_, from_, start_, first_;
+  ReadBack<B, Index> told_;  // first_
   Array<MergedFamily> families_;
   Index count_ = 0, count_before_ = 0, blocks_ = 0, merged_ = 0;
 };

@@ -66,6 +66,15 @@ struct LookUp {
   PLIANT_HOST_DEVICE void operator()(Index k) const { numbers[k] = of[numbers[k]]; }
 };
 
+/// Puts the first place of each block where that has come to, and tells it.
+struct MoveBlocks {
+  Index const* start;  // by the place before
+  Index *first, *told;
+  PLIANT_HOST_DEVICE void operator()(Index block) const {
+    told[block] = first[block] = start[first[block]];
+  }
+};
+
 /// New numbers of the cells of a tree that was coarsened.
 inline NewNumbers new_cells(Coarsened const& of) {
   return {of.merged > 0 ? of.initial.cells : of.before.cells, of.cells};

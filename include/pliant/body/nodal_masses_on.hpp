@@ -8,6 +8,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/body/exact_sum.hpp>
 #include <pliant/constraint/mass_weights_on.hpp>
 #include <pliant/error.hpp>
@@ -83,7 +84,9 @@ class NodalMassesOn {
         rows_(static_cast<Index>(own.size())),
         unit_(unit),
         density_(density),
-        refused_(zeros<Index>(backend, 2)) {}
+        refused_(backend, 2) {
+    refused_.set_all(0);
+  }
 
   [[nodiscard]] Index rows() const { return rows_; }
   [[nodiscard]] double density() const { return density_; }
@@ -122,15 +125,19 @@ class NodalMassesOn {
     backend_.for_each(rows_, detail::ReadMasses{unit_, own_.data(), kilograms});
     slaves.template hand<1>(detail::DoublesByRow<1>{kilograms});
   }
-  /// The same masses in another precision. Throws Error where that cannot hold one, and where the share of a node in the mass
-  /// of an element was no number or too large since the last call: such shares were left out.
+  /// The same masses in another precision.
   template <class T>
   void round(double const* kilograms, T* masses) {
     backend_.for_each(rows_, detail::RoundMasses<T>{kilograms, masses, refused_.data() + 1});
-    auto const refused = download<Index>(refused_);
+  }
+  /// Once the backend was waited for: throws Error where a precision could not hold a mass, and where the share of a node in the
+  /// mass of an element was no number or too large since the last call: such shares were left out.
+  template <class T>
+  void check() {
+    auto const refused = refused_.template first<2>();
     bool const is_held = refused[1] == 0 && std::isfinite(static_cast<T>(density_));
     if (refused[0] == 0 && is_held) return;
-    refused_.upload(std::vector<Index>{0, 0});
+    refused_.set_all(0);
     if (refused[0] != 0)
       throw Error(
           "body: the share of a node in the mass of an element is too large, or no number, under "
@@ -156,7 +163,7 @@ class NodalMassesOn {
   Index rows_;
   detail::SumUnit unit_;
   double density_;
-  Array<Index> refused_;  // shares; masses
+  ReadBack<B, Index> refused_;  // shares; masses
 };
 
 }  // namespace pliant

@@ -12,6 +12,7 @@
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/body/node_row_passes.hpp>
@@ -28,7 +29,7 @@ class NodeRowsOn {
  public:
   /// Of a first mesh, or of any other.
   NodeRowsOn(B const& backend, NodeRows const& rows)
-      : backend_(backend), nodes_(static_cast<Index>(rows.of_node.size())) {
+      : backend_(backend), nodes_(static_cast<Index>(rows.of_node.size())), counts_(backend, 2) {
     auto padded = rows;
     pages_ = (rows.count() + NodeRows::page - 1) / NodeRows::page;
     padded.node.resize(static_cast<std::size_t>(pages_ * NodeRows::page), -1);
@@ -82,12 +83,10 @@ class NodeRowsOn {
     need(found_, n);
     need(partial_, pages_);
     need(free_pages_, pages_);
-    need(counters_, 2);
     backend_.for_each(pages_, detail::FreePages{node_.data(), region_.data()});
-    backend_.select(pages_, detail::IsFreePage{region_.data()}, free_pages_.data(),
-                    counters_.data());
+    backend_.select(pages_, detail::IsFreePage{region_.data()}, free_pages_.data(), counts_.data());
     backend_.select(pages_, detail::HasFreeRows{node_.data(), region_.data()}, partial_.data(),
-                    counters_.data() + 1);
+                    counts_.data() + 1);
     auto const [free, partial] = counted<2>();
     need(page_keys_, partial);
     need(free_before_, partial + 1);
@@ -111,7 +110,7 @@ class NodeRowsOn {
         SortStep{partial, page_keys_.data(), partial_.data(), detail::key_bits(regions)},
         ScanStep{partial, detail::FreeRowsIn{node_.data(), partial_.data()}, free_before_.data()},
         ScanStep{regions, detail::PagesNeeded{rows}, before_.data()},
-        LoopStep{1, detail::CopyValue<Index>{before_.data() + regions, counters_.data()}});
+        LoopStep{1, detail::CopyValue<Index>{before_.data() + regions, counts_.data()}});
     Index const more = counted<1>()[0];
     Index const in_all = std::max(pages_, pages_ + more - free);
     detail::grow_keeping(backend_, node_, at(count()), at(in_all * NodeRows::page));
@@ -137,9 +136,8 @@ class NodeRowsOn {
     Index const n = done.before.nodes - done.initial.nodes;
     Index* const of_node = of_node_.data() + done.initial.nodes;
     need(freed_, freed_count_);
-    need(counters_, 2);
     need(found_, staying);
-    backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counters_.data());
+    backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counts_.data());
     backend_.for_each(freed_count_, detail::LookUp{of_node, freed_.data()});
     backend_.for_each(
         n, detail::MoveRows{
@@ -153,11 +151,11 @@ class NodeRowsOn {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
+  /// Numbers that loops counted, which this waits for.
   template <std::size_t N>
   std::array<Index, N> counted() {
-    std::array<Index, N> counts;
-    counters_.download(counts);
-    return counts;
+    backend_.synchronize();
+    return counts_.template first<N>();
   }
 
   B backend_;
@@ -165,7 +163,8 @@ class NodeRowsOn {
   Index nodes_ = 0, pages_ = 0, freed_count_ = 0;
   // Of a change.
   Array<std::uint64_t> keys_, page_keys_;
-  Array<Index> order_, found_, partial_, free_pages_, counters_, free_before_, before_, freed_;
+  Array<Index> order_, found_, partial_, free_pages_, free_before_, before_, freed_;
+  ReadBack<B, Index> counts_;
 };
 
 }  // namespace pliant

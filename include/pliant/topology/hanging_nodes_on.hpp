@@ -8,6 +8,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/constraint/rows_on.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/hanging_lists.hpp>
@@ -28,7 +29,7 @@ class HangingNodesOn {
  public:
   /// `sides_have_nodes`: whether nodes may hang in the middle of sides; not where all sides are those of linear tetrahedra.
   explicit HangingNodesOn(B const& backend, bool sides_have_nodes = true)
-      : backend_(backend), sides_have_nodes_(sides_have_nodes) {}
+      : backend_(backend), sides_have_nodes_(sides_have_nodes), counts_(backend, 2) {}
 
   /// Every one, ascending by the user's numbers, with its free masters; by row_of_node(the user's number), in the backend's
   /// memory. Throws Error for a tree that mixes degrees.
@@ -64,14 +65,15 @@ class HangingNodesOn {
     Index const sides = sides_have_nodes_ ? sizes.sides : 0;
     need(edges_, sizes.edges);
     need(sides_, sides);
-    counters_ = zeros<Index>(backend_, 2);
-    backend_.select(sizes.edges, detail::IsHungOnEdge<Dim>{view}, edges_.data(), counters_.data());
+    counts_.set_all(0);
+    backend_.select(sizes.edges, detail::IsHungOnEdge<Dim>{view}, edges_.data(), counts_.data());
     if (sides > 0)
-      backend_.select(sides, detail::IsHungOnSide<Dim>{view}, sides_.data(), counters_.data() + 1);
+      backend_.select(sides, detail::IsHungOnSide<Dim>{view}, sides_.data(), counts_.data() + 1);
     count_found();
   }
   void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
-    using detail::LoopStep, detail::IsHungOnEdge, detail::IsHungOnSide, detail::ListStillHung;
+    using detail::LoopStep, detail::CopyValue, detail::IsHungOnEdge, detail::IsHungOnSide,
+        detail::ListStillHung;
     using NewEdges = detail::ListNewlyHungEdges<Dim>;
     using NewSides = detail::ListNewlyHungSides<Dim>;
     detail::HangingView<Dim> const view{tree.view()};
@@ -92,14 +94,15 @@ class HangingNodesOn {
             side_count_,
             ListStillHung<IsHungOnSide<Dim>>{{view}, sides_before_.data(), sides_.data(), sides}},
         LoopStep{new_edges, NewEdges{{view}, refined.cells, refined.parts, edges_.data(), edges}},
-        LoopStep{new_sides, NewSides{{view}, refined.cells, refined.parts, sides_.data(), sides}});
+        LoopStep{new_sides, NewSides{{view}, refined.cells, refined.parts, sides_.data(), sides}},
+        LoopStep{2, CopyValue<Index>{edges, counts_.data()}});
     count_found();
   }
   /// Only leaves that were made of families come to have finer neighbours: what else hangs did so before.
   void find_after(TreeOn<B> const& tree, Coarsened const& coarsened) {
     if (coarsened.merged == 0) return;
-    using detail::LoopStep, detail::IsHungOnEdge, detail::IsHungOnSide, detail::ListStaying,
-        detail::NewNumbers;
+    using detail::LoopStep, detail::CopyValue, detail::IsHungOnEdge, detail::IsHungOnSide,
+        detail::ListStaying, detail::NewNumbers;
     using EdgesOfMerged = detail::ListHungEdgesOfMerged<Dim>;
     using SidesOfMerged = detail::ListHungSidesOfMerged<Dim>;
     detail::HangingView<Dim> const view{tree.view()};
@@ -126,7 +129,8 @@ class HangingNodesOn {
                  ListStaying<IsHungOnSide<Dim>>{
                      {view}, sides_before_.data(), {initial.sides, coarsened.sides}, sides}},
         LoopStep{of_edges, EdgesOfMerged{{view}, coarsened.parents, cells, edges}},
-        LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}});
+        LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}},
+        LoopStep{2, CopyValue<Index>{counters_.data(), counts_.data()}});
     count_found();
   }
   void count_found() {
@@ -143,7 +147,7 @@ class HangingNodesOn {
     need(start_, places + 1);
     detail::in_turn(
         backend_, number_slaves(known_, false), detail::ScanStep{places, hung, start_.data()},
-        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counters_.data()}});
+        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counts_.data()}});
     known_ = 0;
     // One hangs on each edge where all leaves have corners only.
     Index const n = tree.is_linear() && side_count_ == 0 ? places : counted<1>()[0];
@@ -158,16 +162,17 @@ class HangingNodesOn {
     rows.count = n;
     rows.node = unset<Index>(backend_, at(n));
     rows.first = unset<Index>(backend_, at(n) + 1);
-    counters_ = zeros<Index>(backend_, 2);
+    counters_ = zeros<Index>(backend_, 1);
     detail::in_turn(
         backend_,
         detail::LoopStep{places, detail::ListSlaves<Dim>{hung, start_.data(), nodes_.data(),
                                                          order_.data(), places_.data()}},
         detail::SortStep{n, nodes_.data(), order_.data(), detail::key_bits(sizes.nodes)},
         number_slaves(n, true),
-        detail::ScanStep{n, detail::CountMasters<Dim>{masters, counters_.data() + 1},
+        detail::ScanStep{n, detail::CountMasters<Dim>{masters, counters_.data()},
                          rows.first.data()},
-        detail::LoopStep{1, detail::CopyValue<Index>{rows.first.data() + n, counters_.data()}});
+        detail::LoopStep{
+            1, detail::TellEntries{rows.first.data() + n, counters_.data(), counts_.data()}});
     known_ = n;
     auto const [entries, too_many] = counted<2>();
     if (too_many != 0)
@@ -183,11 +188,11 @@ class HangingNodesOn {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
+  /// Numbers that loops counted, which this waits for.
   template <std::size_t N>
   std::array<Index, N> counted() {
-    std::array<Index, N> counts;
-    counters_.download(counts);
-    return counts;
+    backend_.synchronize();
+    return counts_.template first<N>();
   }
   /// Numbers the listed slaves, or forgets their numbers.
   detail::LoopStep<detail::NumberSlaves> number_slaves(Index count, bool are_known) {
@@ -201,6 +206,7 @@ class HangingNodesOn {
   Array<Index> edges_before_, sides_before_;
   detail::Stamps<B> edge_stamps_, side_stamps_;
   Array<Index> start_, order_, counters_;
+  ReadBack<B, Index> counts_;
   Array<std::uint64_t> nodes_;  // slaves
   Array<detail::HangingPlace> places_;
   Array<Index> slave_at_;  // by node: its number among slaves, one more; or zero

@@ -10,6 +10,7 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/topology/page_copies.hpp>
 #include <pliant/topology/pages.hpp>
 #include <pliant/topology/shared_list.hpp>
@@ -21,11 +22,15 @@ namespace pliant {
 /// nothing uses any more wait for others.
 template <Backend B, class V>
 class PagedList {
+  template <class U>
+  using Array = typename B::template Array<U>;
+  using PutPages = detail::LoopStep<detail::PutFew<Page<V>*>>;
+
  public:
   PagedList() = default;
   /// With the entries of a list on the host.
   PagedList(B const& backend, SharedList<V> const& list) {
-    extend(backend, list.size());
+    extend(backend, list.size()).run(backend);
     for_each_batch(
         backend, [&](std::size_t first, std::span<Page<V>* const> pages, Array<V>& batch) {
           std::vector<V> values(std::min(size_ - first, pages.size() * per_page));
@@ -91,31 +96,42 @@ class PagedList {
   /// Notes which pages change from now on, for that.
   void begin_noting() { is_noted_.assign(pages_.size(), 0); }
 
-  /// Makes pages of which the byte is not zero the list's own, and room for `count` entries more, which have no value.
-  void change(B const& backend, std::span<std::uint8_t const> touched, std::size_t count) {
+  /// Makes pages of which the byte is not zero the list's own.
+  void change(B const& backend, std::span<std::uint8_t const> touched) {
     copied_.clear();
     for (std::size_t p = 0; p < touched.size(); ++p) {
       if (touched[p] == 0) continue;
       is_noted_[p] = 1;
       if (!is_own(p)) copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
     }
-    auto const needed = std::max(pages_.size(), pages_for(size_ + count));
-    reserve(backend, copied_.size() + needed - pages_.size(), needed, copied_.size());
+    reserve(backend, copied_.size(), pages_.size(), copied_.size());
     for (Copied& page : copied_) {
       auto const p = static_cast<std::size_t>(page.place);
       page.now = free_.back();
       free_.pop_back();
       leave(p, std::exchange(pages_[p], page.now));
     }
-    auto const before = pages_.size();
+    copy(backend, copied_, table_.data());
+  }
+  /// Makes room for so many entries more, which have no value, beside those of the last page if that is shared with what was
+  /// kept. Loops see it behind the step that this returns.
+  [[nodiscard]] PutPages extend(B const& backend, std::size_t count) {
+    auto const before = pages_.size(), needed = std::max(before, pages_for(size_ + count));
+    reserve(backend, needed - before, needed, 0);
     take_pages(needed);
     size_ += count;
     if (count > 0) note_from((size_ - count) / per_page);
-    copy(backend, copied_, table_.data());
-    put_in_table(backend, before);
+    auto const pages = std::span<Page<V>* const>(pages_).subspan(before);
+    auto* const to = table_.data() + before;
+    PutPages step{};
+    if (detail::with_few(pages, [&](auto const& few) {
+          step = {static_cast<Index>(pages.size()), {few, to}};
+        }))
+      return step;
+    auto const put = upload<Page<V>*>(backend, pages);
+    detail::copy_values<B, Page<V>*>(backend, put.data(), to, pages.size());
+    return step;
   }
-  /// Makes room for so many entries more, beside those of the last page if that is shared with what was kept.
-  void extend(B const& backend, std::size_t count) { change(backend, {}, count); }
   /// Puts `count` entries, which have no value, in the place of those from `first` on; those before stay. Gives the list as
   /// it was from there on, for loops that are asked for until it changes again.
   [[nodiscard]] Pages<V> replace_from(B const& backend, std::size_t first, std::size_t count) {
@@ -177,8 +193,6 @@ class PagedList {
   }
 
  private:
-  template <class U>
-  using Array = typename B::template Array<U>;
   using Copied = detail::CopiedPage<V>;
   /// A page that was kept, and that the list has not any more.
   struct Left {
@@ -210,18 +224,6 @@ class PagedList {
     pages_.insert(pages_.end(), free_.rbegin(), free_.rbegin() + more);
     free_.resize(free_.size() - static_cast<std::size_t>(more));
   }
-  /// The pages from a place on.
-  void put_in_table(B const& backend, std::size_t first) {
-    auto const pages = std::span<Page<V>* const>(pages_).subspan(first);
-    auto* const to = table_.data() + first;
-    if (pages.empty() || detail::with_few(pages, [&](auto const& few) {
-          backend.for_each(static_cast<Index>(pages.size()), detail::PutFew<Page<V>*>{few, to});
-        }))
-      return;
-    auto const put = upload<Page<V>*>(backend, pages);
-    detail::copy_values<B, Page<V>*>(backend, put.data(), to, pages.size());
-  }
-
   /// Memory for so many pages more, and a table for so many in all, with some for changes to come; and for notes of so many
   /// that are left, so that nothing is lost where memory runs out.
   void reserve(B const& backend, std::size_t more, std::size_t in_all, std::size_t left) {

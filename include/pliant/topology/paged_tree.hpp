@@ -83,9 +83,9 @@ struct PagedTree {
     mark(PageMarks{view(), first, first + c, first + c + e});
     auto const bytes = download<std::uint8_t>(touched);
     std::span const all(bytes);
-    cells.change(backend, all.subspan(0, c), 0);
-    edges.change(backend, all.subspan(c, e), 0);
-    sides.change(backend, all.subspan(c + e, s), 0);
+    cells.change(backend, all.subspan(0, c));
+    edges.change(backend, all.subspan(c, e));
+    sides.change(backend, all.subspan(c + e, s));
   }
 };
 

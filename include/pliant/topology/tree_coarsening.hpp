@@ -10,6 +10,7 @@
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/topology/coarsening_passes.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
@@ -28,7 +29,7 @@ class TreeCoarsening {
                        Index count) {
     Coarsened done{.initial = initial, .before = sizes, .now = sizes};
     find_families(backend, tree.view(), done, stamps, marked, count);
-    auto const found = counted();
+    auto const found = counted(backend);
     Index const merged = found[1], knowing = found[2];
     if (merged == 0) {
       std::swap(counters_, counters_before_);
@@ -69,14 +70,14 @@ class TreeCoarsening {
  private:
   template <class U>
   using Array = typename B::template Array<U>;
-  /// Counters: four of a call's lists, in turn; and of cells that know of others, until the next call.
-  static constexpr std::size_t of_knowing = 4, counters = 5;
+  /// Counters: three of a call's lists; and of cells that know of others, until the next call.
+  static constexpr std::size_t of_knowing = 3, counters = 4;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  std::array<Index, 4> counted() {
-    std::array<Index, 4> counts;
-    counters_.download(counts);
-    return counts;
+  /// Numbers that loops counted, which this waits for.
+  std::array<Index, 4> counted(B const& backend) {
+    backend.synchronize();
+    return counts_.template first<4>();
   }
 
   /// Lists the parents of families that are merged, and the cells of the initial mesh that know of what came later. Counts
@@ -88,6 +89,7 @@ class TreeCoarsening {
     std::swap(counters_, counters_before_);
     counters_ = zeros<Index>(backend, counters);
     auto* const counts = counters_.data();
+    if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
     grow(backend, families_, at(most));
     grow(backend, parents_, at(most));
     grow(backend, keys_, at(most));
@@ -100,7 +102,8 @@ class TreeCoarsening {
             LoopStep{most, ListMergeable{tree, families_.data(), counts, stamps.data(),
                                          stamps.now(), parents_.data(), counts + 1, keys_.data()}},
             LoopStep{knows_ ? 1 : 0,
-                     CopyValue<Index>{counters_before_.data() + of_knowing, counts + 2}});
+                     CopyValue<Index>{counters_before_.data() + of_knowing, counts + 2}},
+            LoopStep{3, CopyValue<Index>{counts, counts_.data()}});
   }
 
   /// Numbers what stays. Notes how many of each that are.
@@ -120,7 +123,7 @@ class TreeCoarsening {
     };
     auto const number_staying = [&](std::size_t k) {
       return LoopStep{counts[k] + 1, NumberStaying{before_.data(), counts[k], first[k],
-                                                   numbers_[k].data(), counters_.data() + k}};
+                                                   numbers_[k].data(), counts_.data() + k}};
     };
     in_turn(backend, LoopStep{counts[1], use},
             LoopStep{knowing, UseNodes{view, use.stamps, use.now, knowing_.data()}},
@@ -128,7 +131,7 @@ class TreeCoarsening {
             number_staying(1), sum(2, CountUsed<TreeEdge>{view.tree.edges, first[2]}),
             number_staying(2), sum(3, CountUsed<TreeSide>{view.tree.sides, first[3]}),
             number_staying(3));
-    auto const staying = counted();
+    auto const staying = counted(backend);
     of.now = {.cells = first[1] + staying[1],
               .edges = first[2] + staying[2],
               .sides = first[3] + staying[3],
@@ -171,6 +174,7 @@ class TreeCoarsening {
 
   Array<Index> families_, parents_, first_children_, before_;
   Array<Index> counters_, counters_before_;
+  ReadBack<B, Index> counts_;
   // Cells of the initial mesh that know of what came later, each once, from one call to the next: (initial cells).
   Array<Index> knowing_, still_knowing_;
   bool knows_ = false;

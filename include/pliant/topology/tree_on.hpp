@@ -8,13 +8,16 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/stamps.hpp>
+#include <pliant/topology/tree_closure.hpp>
 #include <pliant/topology/tree_coarsening.hpp>
 #include <pliant/topology/tree_lists.hpp>
 #include <pliant/topology/tree_passes.hpp>
@@ -46,8 +49,8 @@ class TreeOn {
         kept_(now_),
         has_quadratic_(lists.quadratic_leaves > 0),
         mixes_degrees_((has_quadratic_ && lists.linear_leaves > 0) || !lists.converted.empty()),
-        first_at_edge_(upload(backend, at_edges.first())),
-        cells_at_edge_(upload(backend, at_edges.cells())) {}
+        closure_(backend, at_edges),
+        counts_(backend, 4) {}
 
   [[nodiscard]] TreeView view() const { return lists_.view(); }
   [[nodiscard]] TreeSizes sizes() const {
@@ -97,32 +100,34 @@ class TreeOn {
   /// alone. Throws Error where a limit would be exceeded; the tree is then what it was when it was kept.
   Refined refine(Index const* marked, Index count, RefinementLimits const& limits = {}) {
     detail::check_max_level("refine", limits.max_level);
-    Index const n = close(marked, count, limits.max_level);
+    Index const n = closure_(backend_, view(), size(lists_.cells), initial_, stamps_, marked, count,
+                             limits.max_level);
     if (n == 0) return {};
     first_new_node_ = now_.nodes;
     need(leaves_, n);
     need(parts_, n);
     need(keys_, n);
+    Index* const list = closure_.list();
     // Leaves are put in order in the launch that marks their pages.
     lists_.own(backend_, [&](detail::PageMarks const& marks) {
       int const bits_of_cell = detail::key_bits(size(lists_.cells));
       detail::in_turn(
           backend_,
-          detail::LoopStep{n, detail::LevelKeys{view(), list_.data(), keys_.data(), bits_of_cell}},
-          detail::SortStep{n, keys_.data(), list_.data(),
-                           bits_of_cell + detail::key_bits(most_levels + 1)},
-          detail::LoopStep{n, detail::ListLeaves{list_.data(), leaves_.data()}},
+          detail::LoopStep{n, detail::LevelKeys{view(), list, keys_.data(), bits_of_cell}},
+          detail::SortStep{n, keys_.data(), list, bits_of_cell + detail::key_bits(most_levels + 1)},
+          detail::LoopStep{n, detail::ListLeaves{list, leaves_.data()}},
           detail::LoopStep{n, detail::MarkDivided{leaves_.data(), marks}});
     });
     auto const totals = number_parts(n);
     check(n, totals, limits);
-    lists_.edges.extend(backend_, at(totals[1]));
-    lists_.sides.extend(backend_, at(totals[2]));
-    lists_.cells.extend(backend_, at(totals[3]));
-    lists_.rows.extend(backend_, lists_.layout.entry(at(totals[3])));
+    auto const edges = lists_.edges.extend(backend_, at(totals[1]));
+    auto const sides = lists_.sides.extend(backend_, at(totals[2]));
+    auto const cells = lists_.cells.extend(backend_, at(totals[3]));
+    auto const rows = lists_.rows.extend(backend_, lists_.layout.entry(at(totals[3])));
     need(made_, totals[0]);
     auto const dividing = division();
-    detail::in_turn(backend_, for_each_part(n, detail::MakeOnEdges{dividing}),
+    detail::in_turn(backend_, edges, sides, cells, rows,
+                    for_each_part(n, detail::MakeOnEdges{dividing}),
                     for_each_part(n, detail::MakeOnSides{dividing}),
                     detail::LoopStep{n, detail::MakeInside{dividing}},
                     for_each_part(n, detail::MakeChildren{dividing}),
@@ -175,45 +180,18 @@ class TreeOn {
   static detail::LoopStep<Make> for_each_part(Index n, Make const& make) {
     return {n * Make::each, make};
   }
-  /// Numbers that loops counted.
+  /// Numbers that loops counted, which this waits for.
   template <std::size_t N>
   std::array<Index, N> counted() {
-    std::array<Index, N> counts;
-    counters_.download(counts);
-    return counts;
+    backend_.synchronize();
+    return counts_.template first<N>();
   }
-
   /// An entry of an array of numbers.
   Index entry(Array<Index> const& numbers, Index i) {
-    backend_.for_each(1, detail::CopyValue<Index>{numbers.data() + i, counters_.data()});
+    backend_.for_each(1, detail::CopyValue<Index>{numbers.data() + i, counts_.data()});
     return counted<1>()[0];
   }
 
-  /// Lists the marked leaves and those to be refined before them, in no order. Returns how many.
-  Index close(Index const* marked, Index count, int max_level) {
-    stamps_.begin(backend_, lists_.cells.size());
-    need(list_, size(lists_.cells));
-    counters_ = zeros<Index>(backend_, 4);
-    detail::ListOnce const once{stamps_.data(), stamps_.now(), list_.data(), counters_.data()};
-    backend_.for_each(count, detail::ListMarked{view(), marked, max_level, once});
-    Index n = 0, from = 0;
-    if (size(lists_.cells) > initial_.cells) {  // some may have coarser neighbours
-      detail::CellsAtEdgesView const at_edges{view(), initial_.edges, first_at_edge_.data(),
-                                              cells_at_edge_.data()};
-      Index* const listed = counters_.data() + 1;
-      for (Index most = count; most > 0; most = n - from) {
-        detail::in_turn(backend_,
-                        detail::LoopStep{1, detail::CopyValue<Index>{counters_.data(), listed}},
-                        detail::LoopStep{most, detail::ListCoarser{at_edges, from, listed, once}});
-        auto const counts = counted<2>();
-        n = counts[0];
-        from = counts[1];
-      }
-    } else {
-      n = counted<1>()[0];
-    }
-    return n;
-  }
   /// Finds and numbers what leaves make; returns how many nodes, edges, sides and cells that are.
   std::array<Index, 4> number_parts(Index n) {
     using detail::LeafParts, detail::CountOf, detail::ScanStep;
@@ -233,7 +211,7 @@ class TreeOn {
         ScanStep{n, CountOf<&LeafParts::cells>{parts}, cells},
         detail::LoopStep{
             n + 1, detail::NumberParts{
-                       parts, {nodes, edges, sides_before, cells}, sizes(), n, counters_.data()}});
+                       parts, {nodes, edges, sides_before, cells}, sizes(), n, counts_.data()}});
     return counted<4>();
   }
   /// Throws Error, with the tree as it was, where there would be more than a limit.
@@ -282,11 +260,11 @@ class TreeOn {
   TreeSizes initial_;
   Counts now_, kept_;
   bool has_quadratic_, mixes_degrees_;
-  Array<Index> first_at_edge_, cells_at_edge_;  // see CellsAtEdges
   // Of a change.
   detail::Stamps<B> stamps_;  // by cell
   Index first_new_node_ = 0;
-  Array<Index> list_, counters_;
+  detail::TreeClosure<B> closure_;
+  ReadBack<B, Index> counts_;
   Array<std::uint64_t> keys_;
   Array<CellSplit> leaves_;
   Array<detail::LeafParts> parts_;
