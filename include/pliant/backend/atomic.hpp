@@ -60,12 +60,13 @@ PLIANT_HOST_DEVICE std::uint64_t atomic_add(std::uint64_t& number, std::uint64_t
   return std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
 #endif
 }
-PLIANT_HOST_DEVICE void atomic_min(Index& number, Index value) {
+template <class U>
+PLIANT_HOST_DEVICE void atomic_min(U& number, std::type_identity_t<U> value) {
 #ifdef __CUDA_ARCH__
   atomicMin(&number, value);
 #else
   std::atomic_ref const own(number);
-  Index seen = own.load(std::memory_order_relaxed);
+  U seen = own.load(std::memory_order_relaxed);
   while (value < seen && !own.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
   }
 #endif

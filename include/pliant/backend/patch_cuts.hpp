@@ -42,13 +42,24 @@ class PatchCuts {
       return;
     }
     auto const count = blocks.first.size() - 1;
-    of_chapter_ = {0};
+    first_.reserve(static_cast<std::size_t>(elements / size) + count / blocks_of_chapter_ + 2);
+    of_chapter_.reserve(count / blocks_of_chapter_ + 2);
+    of_chapter_.push_back(0);
     for (std::size_t b = 0; b < count; b += blocks_of_chapter_) {
       Index const begin = blocks.first[b],
                   own = blocks.first[std::min(b + blocks_of_chapter_, count)] - begin,
                   parts = own / size + (own % size != 0);
-      for (Index k = 1; k <= parts; ++k)
-        first_.push_back(begin + static_cast<Index>(std::int64_t{own} * k / parts));
+      // Patch k ends with own k / parts, rounded down, without a division for each.
+      Index const each = parts > 0 ? own / parts : 0, rest = parts > 0 ? own % parts : 0;
+      for (Index k = 0, end = begin, over = 0; k < parts; ++k) {
+        end += each;
+        over += rest;
+        if (over >= parts) {
+          over -= parts;
+          ++end;
+        }
+        first_.push_back(end);
+      }
       of_chapter_.push_back(static_cast<Index>(first_.size()) - 1);
     }
   }

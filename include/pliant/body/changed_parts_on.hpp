@@ -217,18 +217,14 @@ class ChangedPartsOn {
         });
   }
   void read_masses(Layout& layout, MassWeightsOn<B> const& weights) {
-    on_->masses.read(weights, kilograms_->data());
+    *own_masses_ = unset<ExactSum>(backend_, at(rows_));
+    on_->masses.read(weights, kilograms_->data(), own_masses_->data());
     on_->masses.round(kilograms_->data(), layout.mass.data());
-    Copies copies(backend_);
-    *own_masses_ = copies.copy_of(on_->masses.own(), at(rows_), at(rows_));
-    copies.make();
   }
   ChangedTopology<Parts> parts_with(Layout layout, Array<T> u, Array<T> v, Array<T> load) {
     ChangedTopology<Parts> changed{
         parts_on(parts_, std::move(layout), topology_, prescribed_), {}, 0};
     auto& next = changed.parts;
-    auto const scratch = std::get<0>(next.layout.tables).elements.scratch_nodes();
-    next.layout.f = zeros<T>(backend_, values() + node_stride * at(scratch));
     next.state.u = std::move(u);
     next.state.v = std::move(v);
     next.state.load = std::move(load);

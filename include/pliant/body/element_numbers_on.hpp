@@ -154,8 +154,8 @@ class ElementNumbersOn {
     detail::in_turn(
         backend, detail::LoopStep{count, change},
         detail::LoopStep{count_of_words_ - first_word,
-                         detail::FindLeaves{tree.view(), cells_, first_word, words_.data()}},
-        detail::ScanStep{count_of_words_, detail::CountLeaves{words_.data()}, before_.data()});
+                         detail::FindLeaves{tree.view(), cells_, first_word, words_.data()}});
+    backend.scan(count_of_words_, detail::CountLeaves{words_.data()}, before_.data());
   }
 
   Array<std::uint32_t> words_;

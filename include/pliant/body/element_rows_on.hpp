@@ -156,8 +156,9 @@ ElementBlocks blocks_after_refinement(LeafOrderOn<B> const& order,
                                       std::vector<Index> first_before) {
   ElementBlocks blocks{order.told_first_of_block(), {}, std::move(first_before)};
   auto const &now = blocks.first, &then = blocks.first_before;
+  blocks.stays.resize(now.size() - 1);
   for (std::size_t b = 0; b + 1 < now.size(); ++b)
-    blocks.stays.push_back(now[b + 1] - now[b] == then[b + 1] - then[b] ? 1 : 0);
+    blocks.stays[b] = now[b + 1] - now[b] == then[b + 1] - then[b];
   return blocks;
 }
 

@@ -78,7 +78,7 @@ struct PutWeights {
   T* weight;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     if (gone.entries[k] == 0) return;
-    auto const parent = gone.families.rows_come(-2 - gone.claims[k], 0);
+    auto const parent = gone.families.rows_come(claimant(gone.claims[k]), 0);
     auto const weights = weights_between<E>(gone.pair[k] / GoneBetween<E>::nodes,
                                             gone.pair[k] % GoneBetween<E>::nodes);
     Index to = first[k];

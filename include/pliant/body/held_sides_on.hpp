@@ -108,10 +108,10 @@ class HeldSidesOn {
           detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
                                  is_there ? in_turn_[k] : DirectionMask{0}, of_node, held}};
     };
+    backend.for_each(count_ - first_new, detail::ClearBits{bits_.data() + first_new});
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       detail::in_turn(
           backend,
-          detail::LoopStep{count_ - first_new, detail::ClearBits{bits_.data() + first_new}},
           detail::LoopStep{refined.leaves,
                            detail::InheritConditions<Dim>{sides, refined.cells, bits_.data()}},
           hold(K)...);

@@ -48,7 +48,12 @@ struct ReadMasses {
   SumUnit unit;
   ExactSum const* own;
   double* kilograms;
-  PLIANT_HOST_DEVICE void operator()(Index row) const { kilograms[row] = unit.value_of(own[row]); }
+  ExactSum* copy;  // null: none
+  PLIANT_HOST_DEVICE void operator()(Index row) const {
+    ExactSum const sum = own[row];
+    kilograms[row] = unit.value_of(sum);
+    if (copy != nullptr) copy[row] = sum;
+  }
 };
 
 /// Masses in a body's precision, as checked_mass has them.
@@ -120,9 +125,10 @@ class NodalMassesOn {
   void take_back(Families const& families) {
     detail::in_turn(backend_, shares<true>(families, true), shares<false>(families, false));
   }
-  /// Masses in kg by row, of which slaves have handed theirs to their masters. `kilograms`: (rows).
-  void read(MassWeightsOn<B> const& slaves, double* kilograms) const {
-    backend_.for_each(rows_, detail::ReadMasses{unit_, own_.data(), kilograms});
+  /// Masses in kg by row, of which slaves have handed theirs to their masters; and a copy of `own`, or null. Both: (rows).
+  void read(MassWeightsOn<B> const& slaves, double* kilograms,
+            detail::ExactSum* own_copy = nullptr) const {
+    backend_.for_each(rows_, detail::ReadMasses{unit_, own_.data(), kilograms, own_copy});
     slaves.template hand<1>(detail::DoublesByRow<1>{kilograms});
   }
   /// The same masses in another precision.

@@ -42,20 +42,17 @@ struct KeysOfNodes {
   }
 };
 
-/// Frees pages of regions that have no node any more.
-struct FreePages {
+/// Whether a page is free: frees one of a region that has no node any more.
+struct FreesPage {
   Index const* node;
   Index* region;
-  PLIANT_HOST_DEVICE void operator()(Index page) const {
-    if (region[page] < 0) return;
+  PLIANT_HOST_DEVICE bool operator()(Index page) const {
+    if (region[page] < 0) return region[page] == -1;
     for (Index k = 0; k < NodeRows::page; ++k)
-      if (node[NodeRows::page * page + k] >= 0) return;
+      if (node[NodeRows::page * page + k] >= 0) return false;
     region[page] = -1;
+    return true;
   }
-};
-struct IsFreePage {
-  Index const* region;
-  PLIANT_HOST_DEVICE bool operator()(Index page) const { return region[page] == -1; }
 };
 /// Whether a page of a region has free rows.
 struct HasFreeRows {

@@ -83,8 +83,8 @@ class NodeRowsOn {
     need(found_, n);
     need(partial_, pages_);
     need(free_pages_, pages_);
-    backend_.for_each(pages_, detail::FreePages{node_.data(), region_.data()});
-    backend_.select(pages_, detail::IsFreePage{region_.data()}, free_pages_.data(), counts_.data());
+    backend_.select(pages_, detail::FreesPage{node_.data(), region_.data()}, free_pages_.data(),
+                    counts_.data());
     backend_.select(pages_, detail::HasFreeRows{node_.data(), region_.data()}, partial_.data(),
                     counts_.data() + 1);
     auto const [free, partial] = counted<2>();

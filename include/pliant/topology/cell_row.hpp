@@ -44,6 +44,8 @@ struct RowLayout {
   static constexpr PLIANT_HOST_DEVICE RowLayout of_tetrahedra() { return {1, 4, 10}; }
   static constexpr PLIANT_HOST_DEVICE RowLayout of_solid_cells() { return {2, 8, 20}; }
 
+  /// How many edges a cell has at most.
+  [[nodiscard]] Index most_edges() const { return first_side - first_edge; }
   /// The first entry of a cell's row.
   [[nodiscard]] PLIANT_HOST_DEVICE std::size_t entry(std::size_t cell) const {
     return cell << shift;

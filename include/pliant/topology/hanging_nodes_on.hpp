@@ -144,19 +144,22 @@ class HangingNodesOn {
     auto const sizes = tree.sizes();
     Index const places = edge_count_ + side_count_;
     detail::HungOn<Dim> const hung{{tree.view()}, edges_.data(), sides_.data(), edge_count_};
-    need(start_, places + 1);
-    detail::in_turn(
-        backend_, number_slaves(known_, false), detail::ScanStep{places, hung, start_.data()},
-        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counts_.data()}});
-    known_ = 0;
+    std::swap(nodes_, nodes_before_);
+    if (slave_at_.size() < at(sizes.nodes)) {
+      slave_at_ = zeros<Index>(backend_, at(sizes.nodes) + at(sizes.nodes) / 2);
+      known_ = 0;
+    }
+    auto const forget = number_slaves(nodes_before_, std::exchange(known_, 0), false);
     // One hangs on each edge where all leaves have corners only.
-    Index const n = tree.is_linear() && side_count_ == 0 ? places : counted<1>()[0];
-    if (n == 0) return {};
+    bool const is_one_each = tree.is_linear() && side_count_ == 0;
+    Index const n = is_one_each ? places : count_on(hung, places);
+    if (n == 0) {
+      forget.run(backend_);
+      return {};
+    }
     need(nodes_, n);
     need(order_, n);
     need(places_, n);
-    if (slave_at_.size() < at(sizes.nodes))
-      slave_at_ = zeros<Index>(backend_, at(sizes.nodes) + at(sizes.nodes) / 2);
     detail::FreeMasters<Dim> const masters{hung, order_.data(), places_.data(), slave_at_.data()};
     RowsOn<B> rows;
     rows.count = n;
@@ -164,11 +167,12 @@ class HangingNodesOn {
     rows.first = unset<Index>(backend_, at(n) + 1);
     counters_ = zeros<Index>(backend_, 1);
     detail::in_turn(
-        backend_,
-        detail::LoopStep{places, detail::ListSlaves<Dim>{hung, start_.data(), nodes_.data(),
-                                                         order_.data(), places_.data()}},
+        backend_, forget,
+        detail::LoopStep{places,
+                         detail::ListSlaves<Dim>{hung, is_one_each ? nullptr : start_.data(),
+                                                 nodes_.data(), order_.data(), places_.data()}},
         detail::SortStep{n, nodes_.data(), order_.data(), detail::key_bits(sizes.nodes)},
-        number_slaves(n, true),
+        number_slaves(nodes_, n, true),
         detail::ScanStep{n, detail::CountMasters<Dim>{masters, counters_.data()},
                          rows.first.data()},
         detail::LoopStep{
@@ -194,9 +198,18 @@ class HangingNodesOn {
     backend_.synchronize();
     return counts_.template first<N>();
   }
-  /// Numbers the listed slaves, or forgets their numbers.
-  detail::LoopStep<detail::NumberSlaves> number_slaves(Index count, bool are_known) {
-    return {count, {nodes_.data(), slave_at_.data(), are_known}};
+  /// Numbers listed slaves, or forgets their numbers.
+  detail::LoopStep<detail::NumberSlaves> number_slaves(Array<std::uint64_t> const& nodes,
+                                                       Index count, bool are_known) {
+    return {count, {nodes.data(), slave_at_.data(), are_known}};
+  }
+  /// How many nodes hang on edges and sides, and before each of these.
+  Index count_on(detail::HungOn<Dim> const& hung, Index places) {
+    need(start_, places + 1);
+    detail::in_turn(
+        backend_, detail::ScanStep{places, hung, start_.data()},
+        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counts_.data()}});
+    return counted<1>()[0];
   }
 
   B backend_;
@@ -207,7 +220,7 @@ class HangingNodesOn {
   detail::Stamps<B> edge_stamps_, side_stamps_;
   Array<Index> start_, order_, counters_;
   ReadBack<B, Index> counts_;
-  Array<std::uint64_t> nodes_;  // slaves
+  Array<std::uint64_t> nodes_, nodes_before_;  // slaves, and those before
   Array<detail::HangingPlace> places_;
   Array<Index> slave_at_;  // by node: its number among slaves, one more; or zero
   Index known_ = 0;        // slaves that are numbered there

@@ -180,13 +180,13 @@ struct HangingPlace {
 template <int Dim>
 struct ListSlaves {
   HungOn<Dim> hung;
-  Index const* start;
+  Index const* start;  // by the edge or side; null: one hangs on each
   std::uint64_t* nodes;
   Index* order;
   HangingPlace* places;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    Index next = start[k];
+    Index next = start == nullptr ? k : start[k];
     hung.visit(k, [&](Index node, int which) {
       nodes[next] = static_cast<std::uint64_t>(node);
       order[next] = next;

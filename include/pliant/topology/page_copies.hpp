@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -19,6 +20,19 @@ struct CopiedPage {
   Page<V> const* before;
   Page<V>* now;
 };
+
+/// Calls visit(p) for the bytes p that are not zero; passes over several at a time where they are.
+template <class Visit>
+void for_each_marked(std::span<std::uint8_t const> bytes, Visit const& visit) {
+  for (std::size_t first = 0; first < bytes.size(); first += sizeof(std::uint64_t)) {
+    std::uint64_t some = 0;
+    auto const count = std::min(sizeof(some), bytes.size() - first);
+    std::memcpy(&some, bytes.data() + first, count);
+    if (some == 0) continue;
+    for (std::size_t p = first; p < first + count; ++p)
+      if (bytes[p] != 0) visit(p);
+  }
+}
 
 /// A short list that goes with the loop that reads it, so that none is made in a backend's memory.
 template <class U>

@@ -99,11 +99,10 @@ class PagedList {
   /// Makes pages of which the byte is not zero the list's own.
   void change(B const& backend, std::span<std::uint8_t const> touched) {
     copied_.clear();
-    for (std::size_t p = 0; p < touched.size(); ++p) {
-      if (touched[p] == 0) continue;
+    detail::for_each_marked(touched, [&](std::size_t p) {
       is_noted_[p] = 1;
       if (!is_own(p)) copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
-    }
+    });
     reserve(backend, copied_.size(), pages_.size(), copied_.size());
     for (Copied& page : copied_) {
       auto const p = static_cast<std::size_t>(page.place);

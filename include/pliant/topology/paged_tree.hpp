@@ -26,11 +26,17 @@ struct PageMarks {
     for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) edge(own.edges[e]);
     for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) side(own.sides[s]);
   }
-  /// See TreeView::visit_parts.
-  PLIANT_HOST_DEVICE void parts_of(Index c) const {
-    tree.visit_parts(
-        c, [&](Index own) { cell(own); }, [&](Index own) { edge(own); },
-        [&](Index own) { side(own); });
+  /// A cell, one of its edges or, behind the most that a cell has of these, of its sides, and what that is divided into.
+  PLIANT_HOST_DEVICE void part_of(Index c, Index part) const {
+    auto const own = tree.row(c);
+    auto const& p = tree.cells[static_cast<std::size_t>(c)].pattern();
+    constexpr Index edges = RefinementPattern::most_edges;
+    if (part == 0) cell(c);
+    auto const mark_edge = [&](Index e) { edge(e); };
+    if (part < static_cast<Index>(p.edges))
+      tree.visit_edge(own.edges[part], mark_edge);
+    else if (part >= edges && part - edges < static_cast<Index>(p.sides))
+      tree.visit_side(own.sides[part - edges], mark_edge, [&](Index s) { side(s); });
   }
 
  private:

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
@@ -41,13 +43,15 @@ class TreeClosure {
     }
     CellsAtEdgesView const at_edges{tree, initial.edges, first_at_edge_.data(),
                                     cells_at_edge_.data()};
+    Index const each = tree.layout.most_edges();
     Index n = 0, from = 0;
     for (Index most = count; most > 0; most = n - from) {
+      most = std::min(most, std::numeric_limits<Index>::max() / each);
       in_turn(backend, list_marked, LoopStep{1, CopyValue<Index>{all, listed}},
-              LoopStep{most, ListCoarser{at_edges, from, listed, once}}, tell);
+              LoopStep{most * each, ListCoarser{at_edges, each, from, listed, once}}, tell);
       auto const counts = told(backend);
       n = counts[0];
-      from = counts[1];
+      from = std::min(counts[1], from + most);
       list_marked.n = 0;
     }
     return n;

@@ -49,35 +49,34 @@ struct ListMarked {
 };
 
 /// Lists the leaves that are coarser across one of the edges or sides of a cell of the list. Each part of a side has an
-/// edge that lies between parts, so that edges tell of coarser neighbours across sides too.
+/// edge that lies between parts, so that edges tell of coarser neighbours across sides too. A call for each edge of a cell.
 struct ListCoarser {
   CellsAtEdgesView at_edges;
+  Index each;           // edges that a cell has at most
   Index from;           // of the list: those before were looked at
   Index const* listed;  // how many there are when the loop begins
   ListOnce list;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    if (from + k >= *listed) return;
+    if (from + k / each >= *listed) return;
     TreeView const& tree = at_edges.tree;
     auto const at = [](Index i) { return static_cast<std::size_t>(i); };
     auto const want = [&](Index c) {
       if (c >= 0 && tree.is_leaf(c)) list(c);
     };
-    Index const c = list.list[from + k], edges = tree.cells[at(c)].pattern().edges;
-    auto const own = tree.row(c);
-    for (Index e = 0; e < edges; ++e) {
-      Index coarse = own.edges[at(e)], whole = coarse;
-      do {
-        whole = coarse;
-        coarse = tree.edges[at(coarse)].parent();
-      } while (coarse >= 0 && tree.edges[at(coarse)].cells.leaves() == 0);
-      if (coarse >= 0) {
-        at_edges(coarse, want);
-      } else if (Index const side = tree.edges[at(whole)].side(); side >= 0) {
-        // a leaf on the other side of a divided side may have none of it for an edge
-        want(tree.sides[at(side)].cells[0]);
-        want(tree.sides[at(side)].cells[1]);
-      }
+    Index const c = list.list[from + k / each], e = k % each;
+    if (e >= tree.cells[at(c)].pattern().edges) return;
+    Index coarse = tree.row(c).edges[at(e)], whole = coarse;
+    do {
+      whole = coarse;
+      coarse = tree.edges[at(coarse)].parent();
+    } while (coarse >= 0 && tree.edges[at(coarse)].cells.leaves() == 0);
+    if (coarse >= 0) {
+      at_edges(coarse, want);
+    } else if (Index const side = tree.edges[at(whole)].side(); side >= 0) {
+      // a leaf on the other side of a divided side may have none of it for an edge
+      want(tree.sides[at(side)].cells[0]);
+      want(tree.sides[at(side)].cells[1]);
     }
   }
 };
@@ -101,11 +100,14 @@ struct ListLeaves {
   PLIANT_HOST_DEVICE void operator()(Index k) const { leaves[k] = {list[k], Division::refined}; }
 };
 
-/// Marks the pages that a division of leaves edits.
+/// Marks the pages that a division of leaves edits. A call for each edge and side of a leaf.
 struct MarkDivided {
+  static constexpr Index each = RefinementPattern::most_edges + RefinementPattern::most_sides;
   CellSplit const* leaves;
   PageMarks marks;
-  PLIANT_HOST_DEVICE void operator()(Index r) const { marks.parts_of(leaves[r].cell); }
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    marks.part_of(leaves[k / each].cell, k % each);
+  }
 };
 
 /// How much of one sort each leaf makes.

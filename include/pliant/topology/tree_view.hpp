@@ -76,29 +76,32 @@ struct TreeView {
     return nodes;
   }
 
+  /// An edge, and its halves.
+  template <class Visit>
+  PLIANT_HOST_DEVICE void visit_edge(Index e, Visit const& visit) const {
+    visit(e);
+    visit_some(visit, edges[at(e)].first_half, 2);
+  }
+  /// A side, its parts, and the edges between these.
+  template <class Edge, class Side>
+  PLIANT_HOST_DEVICE void visit_side(Index s, Edge const& visit_edge,
+                                     Side const& visit_side) const {
+    auto const& side = sides[at(s)];
+    bool const is_halved = side.first_child >= 0 && sides[at(side.first_child)].level == side.level;
+    visit_side(s);
+    visit_some(visit_side, side.first_child, is_halved ? 2 : 4);
+    visit_some(visit_edge, side.first_inner_edge, is_halved ? 1 : side.corners());
+  }
   /// What a change of a cell may edit: cell(c), and edge(e) and side(s) for its edges and sides and the parts that these
   /// have, which children of the cell use.
   template <class Cell, class Edge, class Side>
-  PLIANT_HOST_DEVICE void visit_parts(Index c, Cell const& visit_cell, Edge const& visit_edge,
-                                      Side const& visit_side) const {
-    auto const visit_some = [](auto const& visit, Index first, std::size_t count) {
-      for (std::size_t k = 0; first >= 0 && k < count; ++k) visit(first + static_cast<Index>(k));
-    };
+  PLIANT_HOST_DEVICE void visit_parts(Index c, Cell const& visit_cell, Edge const& edge,
+                                      Side const& side) const {
     auto const& p = cells[at(c)].pattern();
     auto const own = row(c);
     visit_cell(c);
-    for (std::size_t e = 0; e < at(p.edges); ++e) {
-      visit_edge(own.edges[e]);
-      visit_some(visit_edge, edges[at(own.edges[e])].first_half, 2);
-    }
-    for (std::size_t s = 0; s < at(p.sides); ++s) {
-      auto const& side = sides[at(own.sides[s])];
-      bool const is_halved =
-          side.first_child >= 0 && sides[at(side.first_child)].level == side.level;
-      visit_side(own.sides[s]);
-      visit_some(visit_side, side.first_child, is_halved ? 2 : 4);
-      visit_some(visit_edge, side.first_inner_edge, is_halved ? 1 : side.corners());
-    }
+    for (std::size_t e = 0; e < at(p.edges); ++e) visit_edge(own.edges[e], edge);
+    for (std::size_t s = 0; s < at(p.sides); ++s) visit_side(own.sides[s], edge, side);
   }
 
   /// Counts a leaf at its edges, or with `by` = −1 no more.
@@ -139,6 +142,11 @@ struct TreeView {
   }
 
  private:
+  /// visit(number) for `count` numbers from `first` on; for none where that is negative.
+  template <class Visit>
+  static PLIANT_HOST_DEVICE void visit_some(Visit const& visit, Index first, std::size_t count) {
+    for (std::size_t k = 0; first >= 0 && k < count; ++k) visit(first + static_cast<Index>(k));
+  }
   /// Counts a cell by `one` so often at an edge.
   PLIANT_HOST_DEVICE void add(TreeEdge& edge, std::uint64_t one, int by) const {
     std::uint64_t const sum = by > 0 ? one : 0 - one;

@@ -127,7 +127,7 @@ class ElementPatches {
     cuts_ = PatchCuts(count_, size, blocks);
     first_ = backend.array(std::span<Index const>(cuts_.first()));
     auto const runs = PatchRanges::runs(count_);
-    of_run_ = backend.template array<Index>(static_cast<std::size_t>(runs));
+    of_run_ = backend.template unset_array<Index>(static_cast<std::size_t>(runs));
     backend.for_each(runs, PatchOfRun{first_.data(), cuts_.count(), of_run_.data()});
   }
 

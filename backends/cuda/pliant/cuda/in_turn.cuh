@@ -30,19 +30,27 @@ __device__ void do_step(LoopStep<F> const& step, std::byte*) {
   auto const own = static_cast<Index>(blockIdx.x * list_threads + threadIdx.x);
   for (Index i = own; i < step.n; i += static_cast<Index>(gridDim.x * list_threads)) step.f(i);
 }
-template <class F>
-struct NoteValue {
-  F f;
-  Index* notes;
-  __device__ void operator()(Index i) const { notes[i] = f(i); }
-};
+/// A value for each thread, and the sums of blocks for those behind them; or all by one block.
 template <class F>
 __device__ void do_step(ScanStep<F> const& step, std::byte* scratch) {
-  do_step(LoopStep{step.n, NoteValue<F>{step.f, step.to}}, scratch);
-  meet_in_turn();
-  if (blockIdx.x > 0) return;
-  Index const sum = store_part(ListPart(step.n), Noted<Index>{step.to}, StoreSums{step.to}, 0);
-  if (threadIdx.x == 0) step.to[step.n] = sum;
+  if (step.n > static_cast<Index>(gridDim.x * list_threads)) {
+    if (blockIdx.x > 0) return;
+    Index const sum = store_part(ListPart(step.n), step.f, StoreSums{step.to}, 0);
+    if (threadIdx.x == 0) step.to[step.n] = sum;
+    return;
+  }
+  auto const own = static_cast<Index>(blockIdx.x * list_threads + threadIdx.x);
+  Index const value = own < step.n ? step.f(own) : 0;
+  Index of_block = 0;
+  Index sum = scan_block(value, of_block);
+  if (gridDim.x > 1) {
+    auto* const sums = reinterpret_cast<Index*>(scratch);
+    if (threadIdx.x == 0) sums[blockIdx.x] = of_block;
+    meet_in_turn();
+    for (unsigned b = 0; b < blockIdx.x; ++b) sum += sums[b];
+  }
+  if (own < step.n) step.to[own] = sum;
+  if (own == max(step.n, Index{1}) - 1) step.to[step.n] = sum + value;
 }
 /// Whether keys of so many bits leave room for their numbers in a word.
 template <class Word>
@@ -69,7 +77,7 @@ __device__ void sort_by_counting(SortStep const& step, KeyList<std::uint64_t, In
   if (own < step.n) {
     Word const word = words[own / at_once].word[own % at_once];
     Index before[at_once] = {};
-#pragma unroll 4
+#pragma unroll 8
     for (Index i = 0; i < parts; ++i) {
       Words const some = words[i];
 #pragma unroll
@@ -149,7 +157,7 @@ void do_in_turn(CudaContext& context, Steps const&... steps) {
       can_be_cluster ? std::clamp<Index>((most - 1) / list_threads + 1, 1, step_cluster) : 1;
   launch(Start::early, "in_turn", {blocks, list_threads, 0, blocks}, context.stream()->get(),
          kernel, list,
-         context.scratch().take(static_cast<std::size_t>(most) *
+         context.scratch().take(static_cast<std::size_t>(std::max<Index>(most, step_cluster)) *
                                 (sizeof(std::uint64_t) + sizeof(Index))));
 }
 
