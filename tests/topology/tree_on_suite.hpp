@@ -122,6 +122,21 @@ TEST_CASE("cells are refined as deep as levels go, and no deeper", "[topology]")
   });
 }
 
+TEST_CASE("a tree with more leaves than threads share is refined, and taken back", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Hierarchy<2> const before(regular_mesh<Tri3>(96));
+    std::vector<Index> all(before.leaf_count());
+    std::iota(all.begin(), all.end(), Index{0});
+    TreeBeside<B> on(backend, before);
+    CHECK(on.refine(all).leaves == 18432);
+    auto host = before;
+    host.refine(all);
+    check_same(on.tree, host);
+    on.tree.take_back();
+    check_same(on.tree, before);
+  });
+}
+
 TEST_CASE("memory of a tree in a backend is used again", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     Hierarchy<3> host(regular_mesh<Tet4>(4));

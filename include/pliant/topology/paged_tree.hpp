@@ -26,7 +26,13 @@ struct PageMarks {
     for (std::size_t e = 0; e < static_cast<std::size_t>(p.edges); ++e) edge(own.edges[e]);
     for (std::size_t s = 0; s < static_cast<std::size_t>(p.sides); ++s) side(own.sides[s]);
   }
-  /// A cell, one of its edges or, behind the most that a cell has of these, of its sides, and what that is divided into.
+  /// See TreeView::visit_parts.
+  PLIANT_HOST_DEVICE void parts_of(Index c) const {
+    tree.visit_parts(
+        c, [&](Index own) { cell(own); }, [&](Index own) { edge(own); },
+        [&](Index own) { side(own); });
+  }
+  /// The same by parts: with the cell the first one of its edges and, behind the most that cells have of these, sides.
   PLIANT_HOST_DEVICE void part_of(Index c, Index part) const {
     auto const own = tree.row(c);
     auto const& p = tree.cells[static_cast<std::size_t>(c)].pattern();

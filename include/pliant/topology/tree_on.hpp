@@ -103,8 +103,6 @@ class TreeOn {
     Index const n = closure_(backend_, view(), size(lists_.cells), initial_, stamps_, marked, count,
                              limits.max_level);
     if (n == 0) return {};
-    constexpr Index most = std::numeric_limits<Index>::max() / detail::MarkDivided::each;
-    if (n > most) throw Error("refine: at once ", most, " cells can be, not ", n, "; mark fewer");
     first_new_node_ = now_.nodes;
     need(leaves_, n);
     need(parts_, n);
@@ -117,7 +115,9 @@ class TreeOn {
           detail::LoopStep{n, detail::LevelKeys{view(), list, keys_.data(), bits_of_cell}},
           detail::SortStep{n, keys_.data(), list, bits_of_cell + detail::key_bits(most_levels + 1)},
           detail::LoopStep{n, detail::ListLeaves{list, leaves_.data()}});
-      for_each_part(n, detail::MarkDivided{leaves_.data(), marks}).run(backend_);
+      // Few leaves leave threads to share them.
+      Index const each = n <= few_leaves ? detail::MarkDivided::parts : 1;
+      backend_.for_each(n * each, detail::MarkDivided{leaves_.data(), marks, each});
     });
     auto const totals = number_parts(n);
     check(n, totals, limits);
@@ -164,6 +164,8 @@ class TreeOn {
   }
 
  private:
+  static constexpr Index few_leaves = 16384;
+
   struct Counts {
     Index nodes = 0, leaves = 0;
   };
@@ -231,6 +233,7 @@ class TreeOn {
     check_one("cells", size(lists_.cells), more[3], most);
     check_one("edges", size(lists_.edges), more[1], most);
     check_one("sides", size(lists_.sides), more[2], most);
+    check_one("edges of cells", 0, n, most / detail::MakeOnEdges::each);
   }
   /// Makes the nodes that children's elements have between their corners.
   void make_quadratic(Index n, RefinementLimits const& limits) {

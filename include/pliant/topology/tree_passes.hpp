@@ -100,13 +100,18 @@ struct ListLeaves {
   PLIANT_HOST_DEVICE void operator()(Index k) const { leaves[k] = {list[k], Division::refined}; }
 };
 
-/// Marks the pages that a division of leaves edits. A call for each edge and side of a leaf.
+/// Marks the pages that a division of leaves edits. A call for each leaf, or for each edge and side of one.
 struct MarkDivided {
-  static constexpr Index each = RefinementPattern::most_edges + RefinementPattern::most_sides;
+  static constexpr Index parts = RefinementPattern::most_edges + RefinementPattern::most_sides;
   CellSplit const* leaves;
   PageMarks marks;
+  Index each;  // calls: 1, or `parts`
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    marks.part_of(leaves[k / each].cell, k % each);
+    Index const c = leaves[k / each].cell;
+    if (each == 1)
+      marks.parts_of(c);
+    else
+      marks.part_of(c, k % each);
   }
 };
 
