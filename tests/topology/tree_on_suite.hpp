@@ -128,7 +128,8 @@ TEST_CASE("a tree with more leaves than threads share is refined, and taken back
     std::vector<Index> all(before.leaf_count());
     std::iota(all.begin(), all.end(), Index{0});
     TreeBeside<B> on(backend, before);
-    CHECK(on.refine(all).leaves == 18432);
+    REQUIRE(all.size() > 16384);
+    CHECK(on.refine(all).leaves == static_cast<Index>(all.size()));
     auto host = before;
     host.refine(all);
     check_same(on.tree, host);
