@@ -65,27 +65,43 @@ struct HasFreeRows {
     return false;
   }
 };
+/// Keys by which listed pages are sorted: their regions; behind the list, so many as there are of these.
 struct KeysOfPages {
   Index const* region;
   Index const* pages;
+  Index const* listed;  // how many
+  Index regions;
   std::uint64_t* keys;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    keys[i] = static_cast<std::uint64_t>(region[pages[i]]);
+    keys[i] = static_cast<std::uint64_t>(i < *listed ? region[pages[i]] : regions);
   }
 };
+/// How many rows of a page are free; none behind the list.
 struct FreeRowsIn {
   Index const* node;
   Index const* pages;
+  Index const* listed;
   PLIANT_HOST_DEVICE Index operator()(Index i) const {
+    if (i >= *listed) return 0;
     Index count = 0;
     for (Index k = 0; k < NodeRows::page; ++k) count += node[NodeRows::page * pages[i] + k] < 0;
     return count;
   }
 };
 
+/// Tells how many pages more all regions need, and how many have free rows.
+struct TellPages {
+  Index const *more, *partial;
+  Index* told;  // (2)
+  PLIANT_HOST_DEVICE void operator()(Index) const {
+    told[0] = *more;
+    told[1] = *partial;
+  }
+};
+
 /// New nodes and pages with free rows, both in the order of regions.
 struct NewRows {
-  Index nodes, pages;
+  Index nodes, pages;                     // pages: at most
   std::uint64_t const* places;            // (nodes): see KeysOfNodes
   std::uint64_t const* regions_of_pages;  // (pages)
   Index const* free_before;               // (pages + 1): free rows of the pages before

@@ -29,7 +29,7 @@ class NodeRowsOn {
  public:
   /// Of a first mesh, or of any other.
   NodeRowsOn(B const& backend, NodeRows const& rows)
-      : backend_(backend), nodes_(static_cast<Index>(rows.of_node.size())), counts_(backend, 2) {
+      : backend_(backend), nodes_(static_cast<Index>(rows.of_node.size())), counts_(backend, 3) {
     auto padded = rows;
     pages_ = (rows.count() + NodeRows::page - 1) / NodeRows::page;
     padded.node.resize(static_cast<std::size_t>(pages_ * NodeRows::page), -1);
@@ -37,6 +37,10 @@ class NodeRowsOn {
     of_node_ = upload(backend, padded.of_node);
     node_ = upload(backend, padded.node);
     region_ = upload(backend, padded.region);
+    for (Index page = 0; page < pages_; ++page) {
+      auto const first = padded.node.begin() + NodeRows::page * page;
+      most_partial_ += std::find(first, first + NodeRows::page, -1) != first + NodeRows::page;
+    }
   }
 
   [[nodiscard]] Index nodes() const { return nodes_; }
@@ -84,10 +88,12 @@ class NodeRowsOn {
     need(partial_, pages_);
     need(free_pages_, pages_);
     backend_.select(pages_, detail::FreesPage{node_.data(), region_.data()}, free_pages_.data(),
-                    counts_.data());
+                    counts_.data() + 2);
+    Index* const listed = counter_.data();
     backend_.select(pages_, detail::HasFreeRows{node_.data(), region_.data()}, partial_.data(),
-                    counts_.data() + 1);
-    auto const [free, partial] = counted<2>();
+                    listed);
+    // So many at most: how many there are is not waited for.
+    Index const partial = std::min(most_partial_, pages_);
     need(page_keys_, partial);
     need(free_before_, partial + 1);
     Index const regions = (order.blocks() + blocks_of_region - 1) / blocks_of_region;
@@ -106,12 +112,17 @@ class NodeRowsOn {
         LoopStep{n, detail::KeysOfNodes{tree.view(), refined.nodes, order.places(), keys_.data(),
                                         order_.data()}},
         SortStep{n, keys_.data(), order_.data(), detail::key_bits(tree.leaves())},
-        LoopStep{partial, detail::KeysOfPages{region_.data(), partial_.data(), page_keys_.data()}},
-        SortStep{partial, page_keys_.data(), partial_.data(), detail::key_bits(regions)},
-        ScanStep{partial, detail::FreeRowsIn{node_.data(), partial_.data()}, free_before_.data()},
+        LoopStep{partial, detail::KeysOfPages{region_.data(), partial_.data(), listed, regions,
+                                              page_keys_.data()}},
+        SortStep{partial, page_keys_.data(), partial_.data(), detail::key_bits(regions + 1)},
+        ScanStep{partial, detail::FreeRowsIn{node_.data(), partial_.data(), listed},
+                 free_before_.data()},
         ScanStep{regions, detail::PagesNeeded{rows}, before_.data()},
-        LoopStep{1, detail::CopyValue<Index>{before_.data() + regions, counts_.data()}});
-    Index const more = counted<1>()[0];
+        LoopStep{1, detail::TellPages{before_.data() + regions, listed, counts_.data()}});
+    backend_.synchronize();
+    auto const [more, partial_before, free] = counts_.template first<3>();
+    // A region has one page at most that it fills partly now.
+    most_partial_ = partial_before + std::min(n, regions);
     Index const in_all = std::max(pages_, pages_ + more - free);
     detail::grow_keeping(backend_, node_, at(count()), at(in_all * NodeRows::page));
     detail::grow_keeping(backend_, region_, at(pages_), at(in_all));
@@ -137,13 +148,14 @@ class NodeRowsOn {
     Index* const of_node = of_node_.data() + done.initial.nodes;
     need(freed_, freed_count_);
     need(found_, staying);
-    backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counts_.data());
+    backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counter_.data());
     backend_.for_each(freed_count_, detail::LookUp{of_node, freed_.data()});
     backend_.for_each(
         n, detail::MoveRows{
                {done.initial.nodes, done.nodes}, of_node_.data(), node_.data(), found_.data()});
     detail::copy_values<B, Index>(backend_, found_.data(), of_node, at(staying));
     nodes_ = done.now.nodes;
+    most_partial_ += freed_count_;
   }
 
  private:
@@ -151,19 +163,15 @@ class NodeRowsOn {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
-  /// Numbers that loops counted, which this waits for.
-  template <std::size_t N>
-  std::array<Index, N> counted() {
-    backend_.synchronize();
-    return counts_.template first<N>();
-  }
 
   B backend_;
   Array<Index> of_node_, node_, region_;
   Index nodes_ = 0, pages_ = 0, freed_count_ = 0;
+  Index most_partial_ = 0;  // pages with free rows, at most
   // Of a change.
   Array<std::uint64_t> keys_, page_keys_;
   Array<Index> order_, found_, partial_, free_pages_, free_before_, before_, freed_;
+  Array<Index> counter_ = zeros<Index>(backend_, 1);
   ReadBack<B, Index> counts_;
 };
 
