@@ -40,24 +40,18 @@ struct WeightedSquares {
   }
 };
 
-struct CountByGroup {
-  static constexpr int counters = 2;
+/// 1 for an element of a group, and 0 for others.
+template <int Wanted>
+struct IsInGroup {
   template <int G, class V>
-  PLIANT_HOST_DEVICE auto evaluate(GroupNumber<G>, V const& x) const {
-    Vector<std::remove_cvref_t<decltype(x(0, 0))>, 1> first;
-    first[0] = x(0, 0);
-    return first;
-  }
-  template <int G, class Values, class Again, class Tally>
-  PLIANT_HOST_DEVICE void finish(GroupNumber<G>, Index, Values const&, Again const&,
-                                 Tally const& tally) const {
-    tally(G, 1.0);
+  PLIANT_HOST_DEVICE auto operator()(GroupNumber<G>, V const& x) const {
+    using S = std::remove_cvref_t<decltype(x(0, 0))>;
+    return S(G == Wanted ? 1 : 0);
   }
 };
 
 #if defined(__CUDACC__)
 static_assert(TakesRows<CudaElements<double, 10>, Cuda<double>>);
-static_assert(std::same_as<ElementListOn<Cuda<double>, 4>, CudaElementList<double, 4>>);
 
 template <class B, class View>
 bool same_patches(B const& backend, View const& one, View const& other, Index patches,

@@ -16,7 +16,6 @@
 #include <pliant/cuda/accumulate.cuh>
 #include <pliant/cuda/accumulate_fans.cuh>
 #include <pliant/cuda/context.hpp>
-#include <pliant/cuda/element_list.hpp>
 #include <pliant/cuda/histogram.cuh>
 #include <pliant/cuda/in_turn.cuh>
 #include <pliant/cuda/launch.hpp>
@@ -63,12 +62,11 @@ class Cuda {
   using Array = DeviceArray<U>;
   template <int Nodes>
   using Elements = CudaElements<T, Nodes>;
-  template <int Nodes>
-  using ElementList = CudaElementList<T, Nodes>;
   using Recording = CudaRecording;
   using Timer = CudaTimer;
   static constexpr bool orders_by_group = false;
-  static constexpr bool keeps_trees = true;  // see TopologyOn
+  static constexpr bool keeps_trees = true;     // see TopologyOn
+  static constexpr bool sums_at_places = true;  // see add_sum_elements_at
   static constexpr char const* name() { return "Cuda"; }
 
   Cuda(CudaOptions const& options = {})
@@ -201,6 +199,15 @@ class Cuda {
     if (active.most > 0)
       reduce_to<detail::AddedSum>("add_sum_elements", element_count(active),
                                   element_term<Groups>(active, kernel, fields...), to);
+  }
+  template <int Groups, class Table, class Kernel, class... Fields>
+  void add_sum_elements_at(Table const& table, Index const* places, Index count,
+                           Kernel const& kernel, double* to, Fields const&... fields) const {
+    constexpr int nodes = detail::table_nodes<Table>;
+    require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();
+    auto const term = element_term<Groups>(detail::active(table), kernel, fields...);
+    if (count > 0)
+      reduce_to<detail::AddedSum>("add_sum_elements_at", count, detail::TermAt{term, places}, to);
   }
   template <int Groups, class Table, class Visitor, class... Fields>
   void visit(Table const& table, Visitor const& visitor, DeviceArray<double>& counters,

@@ -36,16 +36,6 @@ inline constexpr int row_width<Elements> = Elements::row_width;
 
 namespace detail {
 
-template <class B, int Nodes>
-struct ElementListOf {
-  using type = typename B::template Elements<Nodes>;
-};
-template <class B, int Nodes>
-  requires requires { typename B::template ElementList<Nodes>; }
-struct ElementListOf<B, Nodes> {
-  using type = typename B::template ElementList<Nodes>;
-};
-
 /// Takes rows of nodes, and tags, from their places in a table.
 template <int Width>
 struct TakeElements {
@@ -76,11 +66,6 @@ std::vector<std::array<Index, Nodes>> taken_rows(Index const* rows,
 }
 
 }  // namespace detail
-
-/// Elements for sum_elements and visit alone, of which no patches have to be planned where a backend has such a type, its
-/// ElementList.
-template <class B, int Nodes>
-using ElementListOn = typename detail::ElementListOf<B, Nodes>::type;
 
 /// A table of elements whose rows of nodes, (elements, row_width<Elements>), and tags, (elements) or none, are in the backend's
 /// memory: taken over where Elements is one that TakesRows, else copied. `nodes`: how many rows fields have. `before`: null, or
@@ -118,29 +103,17 @@ void settle(B const& backend, Elements& elements) {
   if constexpr (requires { elements.settle(backend); }) elements.settle(backend);
 }
 
-/// A table as of elements_of_rows, for sum_elements and visit alone, of all elements that have rows of row_width<ElementListOn>
-/// entries.
-template <int Nodes, Backend B>
-ElementListOn<B, Nodes> element_list(B const& backend, typename B::template Array<Index> rows,
-                                     int groups, typename B::template Array<Tag> tags,
-                                     Index nodes) {
-  using List = ElementListOn<B, Nodes>;
-  if constexpr (std::same_as<List, typename B::template Elements<Nodes>>)
-    return elements_of_rows<List>(backend, std::move(rows), groups, std::move(tags), nodes);
-  else
-    return {backend, std::move(rows), std::move(tags)};
-}
-/// Of the elements of a table at some places, (count). Places, and the tags of the table, are in the backend's memory.
+/// A table as of elements_of_rows of the elements of another one at some places, (count). Places, and the tags of that, are in the
+/// backend's memory.
 template <class Elements, Backend B>
-auto element_list(B const& backend, Elements const& table, Tag const* tags, Index const* places,
-                  Index count, int groups, Index nodes) {
-  constexpr int n = Elements::nodes_per_element, width = row_width<ElementListOn<B, n>>;
-  static_assert(width <= row_width<Elements>);
+Elements element_list(B const& backend, Elements const& table, Tag const* tags, Index const* places,
+                      Index count, int groups, Index nodes) {
+  constexpr int width = row_width<Elements>;
   auto rows = unset<Index>(backend, static_cast<std::size_t>(count) * width);
   auto own_tags = unset<Tag>(backend, static_cast<std::size_t>(count));
   backend.for_each(count, detail::TakeElements<width>{table.rows_of_nodes(), tags, places,
                                                       rows.data(), own_tags.data()});
-  return element_list<n>(backend, std::move(rows), groups, std::move(own_tags), nodes);
+  return elements_of_rows<Elements>(backend, std::move(rows), groups, std::move(own_tags), nodes);
 }
 
 }  // namespace pliant

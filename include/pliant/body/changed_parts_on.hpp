@@ -253,20 +253,16 @@ class ChangedPartsOn {
   /// The strain energy of all elements.
   void add_strain(Time time, Parts const& of) {
     auto const& table = std::get<0>(of.layout.tables);
-    energies_.add_strain(time, table, table.elements, of.layout, of.state.u);
+    energies_.add_strain(time, table, of.layout, of.state.u);
   }
-  /// Of elements at some places; of all where laws read what is kept per element, by its number.
+  /// Of elements at some places; or of all, where laws read what is kept by an element's number and sums know that of none.
   void add_strain(Time time, Parts const& of, Array<Index> const& places, Index count) {
-    if constexpr (Table::Laws::reads_elements) {
+    if constexpr (Table::Laws::reads_elements && !sums_at_places<B>)
       add_strain(time, of);
-    } else {
-      auto const& table = std::get<0>(of.layout.tables);
-      energies_.add_strain(
-          time, table,
-          element_list(backend_, table.elements, std::get<0>(of.state.elements).tags.data(),
-                       places.data(), count, Table::groups, of.layout.rows),
-          of.layout, of.state.u);
-    }
+    else
+      energies_.add_strain_at(time, std::get<0>(of.layout.tables),
+                              std::get<0>(of.state.elements).tags.data(), places.data(), count,
+                              of.layout, of.state.u);
   }
   /// Waits for what was asked of the backend. Throws Error where a field was not finite, or a mass cannot be held.
   void read_energies(ChangedTopology<Parts>& changed) {

@@ -36,14 +36,24 @@ class EnergySumsOn {
 
   explicit EnergySumsOn(B const& backend) : backend_(backend), sums_(zeros<double>(backend, 5)) {}
 
-  /// Of elements of a table, or some of them.
-  template <class Table, class Elements, class Layout>
-  void add_strain(Time time, Table const& table, Elements const& elements, Layout const& layout,
-                  Field const& u) {
+  /// Of all elements of a table.
+  template <class Table, class Layout>
+  void add_strain(Time time, Table const& table, Layout const& layout, Field const& u) {
     table.with_geometry([&](auto geometry) {
       add_sum_elements<Table::groups>(
-          backend_, elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
+          backend_, table.elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
           sums_.data() + time, node_field<dim>(layout.rest), node_field<dim>(u));
+    });
+  }
+  /// Of those at some places, (count).
+  template <class Table, class Layout>
+  void add_strain_at(Time time, Table const& table, Tag const* tags, Index const* places,
+                     Index count, Layout const& layout, Field const& u) {
+    table.with_geometry([&](auto geometry) {
+      add_sum_elements_at<Table::groups>(
+          backend_, table.elements, tags, places, count, layout.rows,
+          EnergyKernel<typename Table::Laws, geometry.value>{table.laws}, sums_.data() + time,
+          node_field<dim>(layout.rest), node_field<dim>(u));
     });
   }
   /// Velocities have to be of the present time.

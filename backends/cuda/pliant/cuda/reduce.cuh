@@ -84,7 +84,9 @@ struct ElementTerm {
 
   __device__ double operator()(Index i) const {
     Index const e = elements.element(i);
-    if (e < 0) return 0;
+    return e < 0 ? 0 : of(e);
+  }
+  __device__ double of(Index e) const {
     double value = 0;
     Index const* const row =
         elements.connectivity + static_cast<std::ptrdiff_t>(elements.width) * e;
@@ -98,6 +100,13 @@ struct ElementTerm {
     });
     return value;
   }
+};
+/// The same of the element at a place.
+template <class Term>
+struct TermAt {
+  Term term;
+  Index const* places;
+  __device__ double operator()(Index i) const { return term.of(places[i]); }
 };
 
 }  // namespace pliant::detail
