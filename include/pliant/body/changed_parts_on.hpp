@@ -60,7 +60,9 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout = new_layout(copies, done);
+    auto layout = new_layout(copies, done, [&](DirectionMask* held) {
+      on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, held);
+    });
     on_->points = std::move(points);
     in_turn(backend_,
             filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), on_->point_field(),
@@ -70,7 +72,6 @@ class ChangedPartsOn {
                                                          {on_->points.data()},
                                                          layout.middle,
                                                          node_field<dim>(layout.rest)}});
-    on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, layout.held.data());
     on_->masses.extend(rows_);
     auto const come = refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest());
     on_->masses.exchange(come);
@@ -80,6 +81,7 @@ class ChangedPartsOn {
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, come, rows_, false);
     add_strain(Energies::after, changed.parts, places.come, places.come_count);
+    on_->numbers.follow(backend_, on_->tree, done);
     read_energies(changed);
     return changed;
   }
@@ -102,8 +104,9 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout = new_layout(copies, done);
-    on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, layout.held.data());
+    auto layout = new_layout(copies, done, [&](DirectionMask* held) {
+      on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, held);
+    });
     MergedElements<E> const families{on_->order.merged_families(), on_->order.merged_count(),
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
                                      std::get<0>(layout.tables).elements.rows_of_nodes(),
@@ -129,6 +132,7 @@ class ChangedPartsOn {
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, families, rows_, true);
     add_strain(Energies::after, changed.parts);
+    on_->numbers.follow(backend_, on_->tree, done);
     read_energies(changed);
     changed.taken = on_->momentum.taken();
     return changed;
@@ -162,9 +166,10 @@ class ChangedPartsOn {
     return copies.template extended<T>(parts_.state.load, values());
   }
 
-  /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies.
-  template <class Change>
-  Layout new_layout(Copies& copies, Change const& done) {
+  /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
+  /// of what was held before): holds what is held now, before patches are planned, beside which loops over all take longer.
+  template <class Change, class Hold>
+  Layout new_layout(Copies& copies, Change const& done, Hold const& hold) {
     auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_->rows.lists(copies));
     WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
         [snapshot] { return std::make_shared<NodeRows>(snapshot->download_all()); });
@@ -183,6 +188,7 @@ class ChangedPartsOn {
     layout.rest = copies.template extended<T>(before.rest, values());
     layout.held = copies.template extended<DirectionMask>(before.held, at(rows_));
     copies.make();
+    hold(layout.held.data());
     auto blocks = blocks_after_refinement(on_->order, before.first_of_block[0]);
     make_table(std::get<0>(layout.tables), blocks);
     layout.first_of_block[0] = std::move(blocks.first);

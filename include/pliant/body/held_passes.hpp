@@ -143,13 +143,14 @@ struct ClearBits {
   ConditionBits* bits;
   PLIANT_HOST_DEVICE void operator()(Index side) const { bits[side] = 0; }
 };
-/// to[new number] = from[old number] of sides that stay.
+/// Of sides from numbers.first on: to[new number] = from[old number] of those that stay.
 struct MoveBits {
   NewNumbers numbers;
-  ConditionBits const* from;
-  ConditionBits* to;
-  PLIANT_HOST_DEVICE void operator()(Index side) const {
-    if (Index const now = numbers(side); now >= 0) to[now] = from[side];
+  ConditionBits const* from;  // by side
+  ConditionBits* to;          // from that on
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const side = numbers.first + k;
+    if (Index const now = numbers(side); now >= 0) to[now - numbers.first] = from[side];
   }
 };
 /// Notes where a merged side would have parts that are held otherwise than others.
@@ -158,11 +159,13 @@ struct FindCutSides {
   SidesView<Dim> sides;
   NewNumbers cells;
   Index const* parents;  // old numbers of merged cells
-  ConditionBits const* bits;
+  ConditionBits const *bits, *moved;
+  Index first;  // of sides, those from here on are moved
   Index* found;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     sides.visit_sides(cells(parents[r]), [&](Index side) {
-      if (bits[side] == differs && sides.first_part(side) < 0) atomic_store(*found, 1);
+      ConditionBits const own = side < first ? bits[side] : moved[side - first];
+      if (own == differs && sides.first_part(side) < 0) atomic_store(*found, 1);
     });
   }
 };

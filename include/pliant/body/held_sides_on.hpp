@@ -126,21 +126,24 @@ class HeldSidesOn {
     found_.set_all(0);
     Index const first = Dim == 2 ? done.initial.edges : done.initial.sides,
                 now = count_in(done.now);
-    detail::grow(backend, moved_, at(now));
+    detail::grow(backend, moved_, at(now - first));
     backend.for_each(
-        count_,
+        count_ - first,
         detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()});
     backend.for_each(done.merged, detail::FindCutSides<Dim>{{tree.view()},
                                                             {done.initial.cells, done.cells},
                                                             done.parents,
+                                                            bits_.data(),
                                                             moved_.data(),
+                                                            first,
                                                             found_.data()});
     backend.for_each(done.before.nodes - done.initial.nodes,
                      detail::FindNamedNodes{done.nodes, of_node + done.initial.nodes, named_.data(),
                                             found_.data()});
     backend.synchronize();
     if (found_.template first<1>()[0] != 0) return false;
-    std::swap(bits_, moved_);
+    detail::copy_values<B, detail::ConditionBits>(backend, moved_.data(), bits_.data() + first,
+                                                  at(now - first));
     count_ = now;
     return true;
   }
@@ -204,7 +207,7 @@ class HeldSidesOn {
   detail::DirectionsOf directions_;
   std::vector<DirectionMask> in_turn_;  // see DirectionsOf
   Array<detail::ConditionBits> bits_;   // by side
-  Array<detail::ConditionBits> moved_;  // before a coarsening
+  Array<detail::ConditionBits> moved_;  // of a coarsening: by side behind the initial mesh's
   Array<DirectionMask> held_;           // by row: by conditions on nodes
   Array<std::uint8_t> named_;           // by row: whether these name the node
   ReadBack<B, Index> found_;            // of a coarsening: whether it may not be

@@ -205,33 +205,40 @@ struct MoveRowsUp {
     now[at(to)] = own;
   }
 };
-/// Tells listed cells of the initial mesh, and each of their edges and sides once, the numbers of what moved.
+/// Tells listed cells of the initial mesh, and each of their edges and sides once, the numbers of what moved. So many calls for
+/// each of these cells share its sides or edges.
 struct TellSides {
+  static constexpr Index most = RefinementPattern::most_sides;
   CompactionView view;
   TreeView tree;  // as it is then
   Index const* cells;
+  Index each;     // calls
   Index* stamps;  // by side of the initial mesh
   Index now;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const own = tree.row(cells[k]);
-    int const sides = tree.cells[static_cast<std::size_t>(cells[k])].pattern().sides;
-    for (int s = 0; s < sides; ++s)
+    Index const c = cells[k / each];
+    auto const own = tree.row(c);
+    Index const sides = tree.cells[static_cast<std::size_t>(c)].pattern().sides;
+    for (Index s = k % each; s < sides; s += each)
       if (stamps_first(stamps[own.sides[s]], now))
         view.renumber_within(tree.sides[static_cast<std::size_t>(own.sides[s])]);
   }
 };
 struct TellEdges {
+  static constexpr Index most = RefinementPattern::most_edges;
   CompactionView view;
   TreeView tree;
   Index const* cells;
+  Index each;
   Index* stamps;  // by edge of the initial mesh
   Index now;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    auto const own = tree.row(cells[k]);
-    int const edges = tree.cells[static_cast<std::size_t>(cells[k])].pattern().edges;
-    for (int e = 0; e < edges; ++e)
+    Index const c = cells[k / each];
+    auto const own = tree.row(c);
+    Index const edges = tree.cells[static_cast<std::size_t>(c)].pattern().edges;
+    for (Index e = k % each; e < edges; e += each)
       if (stamps_first(stamps[own.edges[e]], now))
         view.renumber_within(tree.edges[static_cast<std::size_t>(own.edges[e])]);
   }

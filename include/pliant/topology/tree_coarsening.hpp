@@ -152,12 +152,15 @@ class TreeCoarsening {
     edge_stamps_.begin(backend, at(first.edges));
     auto const move_sides = move(tree.sides, view.sides, before.sides, now.sides);
     auto const move_edges = move(tree.edges, view.edges, before.edges, now.edges);
+    // Few cells leave threads to share them.
+    bool const are_few = knowing <= TreeView::few;
+    Index const sides = are_few ? TellSides::most : 1, edges = are_few ? TellEdges::most : 1;
     in_turn(backend, move_sides,
-            LoopStep{knowing, TellSides{view, tree.view(), knowing_.data(), side_stamps_.data(),
-                                        side_stamps_.now()}},
+            LoopStep{knowing * sides, TellSides{view, tree.view(), knowing_.data(), sides,
+                                                side_stamps_.data(), side_stamps_.now()}},
             move_edges,
-            LoopStep{knowing, TellEdges{view, tree.view(), knowing_.data(), edge_stamps_.data(),
-                                        edge_stamps_.now()}});
+            LoopStep{knowing * edges, TellEdges{view, tree.view(), knowing_.data(), edges,
+                                                edge_stamps_.data(), edge_stamps_.now()}});
     auto const move_cells = move(tree.cells, view.cells, before.cells, now.cells);
     auto const entries = [&](Index cells) { return tree.layout.entry(at(cells)); };
     auto const old_rows =

@@ -116,7 +116,7 @@ class TreeOn {
           detail::SortStep{n, keys_.data(), list, bits_of_cell + detail::key_bits(most_levels + 1)},
           detail::LoopStep{n, detail::ListLeaves{list, leaves_.data()}});
       // Few leaves leave threads to share them.
-      Index const each = n <= few_leaves ? detail::MarkDivided::parts : 1;
+      Index const each = n <= TreeView::few ? detail::MarkDivided::parts : 1;
       backend_.for_each(n * each, detail::MarkDivided{leaves_.data(), marks, each});
     });
     auto const totals = number_parts(n);
@@ -164,8 +164,6 @@ class TreeOn {
   }
 
  private:
-  static constexpr Index few_leaves = 16384;
-
   struct Counts {
     Index nodes = 0, leaves = 0;
   };

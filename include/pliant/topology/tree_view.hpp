@@ -20,6 +20,8 @@ struct TreeView {
   Pages<TreeSide> sides;
   Pages<RowEntry> rows;
   RowLayout layout;
+  /// Of so many cells, each may be shared by threads: more are enough for a backend.
+  static constexpr Index few = 16384;
   bool shared = true;  ///< whether several threads may change an entry at once
 
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_leaf(Index c) const {
