@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <cooperative_groups.h>
-
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/cuda/context.hpp>
 #include <pliant/cuda/launch.hpp>
@@ -16,14 +14,6 @@
 
 // Short loops, scans and sorts that one launch does one after the other: a block, or a cluster of blocks that share loops.
 namespace pliant::detail {
-
-/// All threads of the launch: what any wrote before, all see then.
-__device__ inline void meet_in_turn() {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
-  if (gridDim.x > 1) return cooperative_groups::this_cluster().sync();
-#endif
-  __syncthreads();
-}
 
 template <class F>
 __device__ void do_step(LoopStep<F> const& step, std::byte*) {
@@ -46,7 +36,7 @@ __device__ void do_step(ScanStep<F> const& step, std::byte* scratch) {
   if (gridDim.x > 1) {
     auto* const sums = reinterpret_cast<Index*>(scratch);
     if (threadIdx.x == 0) sums[blockIdx.x] = of_block;
-    meet_in_turn();
+    wait_for_cluster();
     for (unsigned b = 0; b < blockIdx.x; ++b) sum += sums[b];
   }
   if (own < step.n) step.to[own] = sum;
@@ -88,7 +78,7 @@ __device__ void sort_by_counting(SortStep const& step, KeyList<std::uint64_t, In
     other.keys[place] = step.keys[own];
     other.values[place] = step.values[own];
   }
-  meet_in_turn();
+  wait_for_cluster();
   if (own >= step.n) return;
   step.keys[own] = other.keys[own];
   step.values[own] = other.values[own];
@@ -120,7 +110,7 @@ struct StepList<First, Rest...> {
   __device__ void run(std::byte* scratch) const {
     do_step(first, scratch);
     if constexpr (sizeof...(Rest) > 0) {
-      meet_in_turn();
+      wait_for_cluster();
       rest.run(scratch);
     }
   }

@@ -2,6 +2,8 @@
 
 #include <mutex>
 
+#include <cooperative_groups.h>
+
 #include <pliant/config.hpp>
 #include <pliant/cuda/check.hpp>
 
@@ -37,6 +39,14 @@ __device__ __forceinline__ void begin_after_previous_kernel() {
   if constexpr (next == Next::early) cudaTriggerProgrammaticLaunchCompletion();
   cudaGridDependencySynchronize();
 #endif
+}
+
+/// In every thread of a launch of one block, or of one cluster: what any wrote before, all see then.
+__device__ __forceinline__ void wait_for_cluster() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  if (gridDim.x > 1) return cooperative_groups::this_cluster().sync();
+#endif
+  __syncthreads();
 }
 
 /// The dynamic shared memory, in bytes, that a block may ask for on a device.

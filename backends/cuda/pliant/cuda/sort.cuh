@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -163,6 +164,32 @@ __global__ void __launch_bounds__(list_threads)
   sort_all(n, list, other, bits);
 }
 
+/// The same by a cluster of blocks, each of which has a part. counts: (digits, blocks).
+template <class List>
+__global__ void __launch_bounds__(list_threads)
+    sort_in_cluster(Index n, List const list, List const other, int bits, Index* counts) {
+  begin_after_previous_kernel();
+  ListPart const part(n, list_threads);
+  Index* const of_digit = counts + threadIdx.x * gridDim.x;
+  List from = list, to = other;
+  for (int shift = 0; shift < bits; shift += digit_bits) {
+    of_digit[blockIdx.x] = count_digits(part, from.keys, shift);
+    wait_for_cluster();
+    Index before = 0, of_all = 0, total = 0;
+    for (unsigned b = 0; b < gridDim.x; ++b) {
+      Index const count = of_digit[b];
+      before += b < blockIdx.x ? count : 0;
+      of_all += count;
+    }
+    move_keys(part, from, to, shift, scan_block(of_all, total) + before);
+    wait_for_cluster();  // until all keys are there, and counts are read
+    List const moved = to;
+    to = from;
+    from = moved;
+  }
+  if (from.keys != list.keys) copy_keys(part, from, list);
+}
+
 template <class Key, class Value>
 void sort_list(CudaContext& context, Index n, KeyList<Key, Value> const& list, int bits) {
   using List = KeyList<Key, Value>;
@@ -170,15 +197,23 @@ void sort_list(CudaContext& context, Index n, KeyList<Key, Value> const& list, i
   auto const stream = context.stream()->get();
   LaunchShape const shape{list_blocks(n, sort_round), list_threads};
   auto const size = static_cast<std::size_t>(n);
-  auto const parts = static_cast<std::size_t>(shape.blocks);
+  auto const parts = static_cast<std::size_t>(std::max(shape.blocks, Index{step_cluster}));
   std::byte* const memory = context.scratch().take(size * (sizeof(Key) + sizeof(Value)) +
                                                    digits * (parts + 1) * sizeof(Index));
   auto* const keys = reinterpret_cast<Key*>(memory);
   List const other{keys, reinterpret_cast<Value*>(keys + size)};
-  if (shape.blocks == 1)
-    return launch(Start::early, "sort", shape, stream, sort_in_block<List>, n, list, other, bits);
   auto* const totals = reinterpret_cast<Index*>(other.values + size);
   Index* const counts = totals + digits;
+  if (n > list_threads && n <= most_cluster_keys) {
+    auto* const kernel = sort_in_cluster<List>;
+    static bool const can_be_cluster =
+        clusters_can_be_launched(reinterpret_cast<void const*>(kernel), context.stream()->device());
+    if (can_be_cluster)
+      return launch(Start::early, "sort", {step_cluster, list_threads, 0, step_cluster}, stream,
+                    kernel, n, list, other, bits, counts);
+  }
+  if (shape.blocks == 1)
+    return launch(Start::early, "sort", shape, stream, sort_in_block<List>, n, list, other, bits);
   List from = list, to = other;
   for (int shift = 0; shift < bits; shift += digit_bits) {
     launch(Start::early, "sort", shape, stream, count_keys<Key>, n, from.keys, shift, counts);

@@ -20,6 +20,8 @@ inline constexpr Index short_list = 4096;
 inline constexpr int bits_of_short_steps = 11;
 inline constexpr Index short_steps = 1 << bits_of_short_steps;
 inline constexpr int step_cluster = 8;
+/// How many keys such a cluster sorts in one launch.
+inline constexpr Index most_cluster_keys = 32768;
 
 /// Whether each element adds to its nodes in global memory by itself, as vectors. That is fast
 /// where an element computes much per node; patches are faster elsewhere, and where there are no
