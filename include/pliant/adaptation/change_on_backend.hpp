@@ -93,7 +93,8 @@ class ChangesOnBackend {
         done.merged = static_cast<std::size_t>(merged.merged);
         done.gone_nodes = static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
         renumber(to_refine, merged);
-        commit("coarsen", done.merged, [&](auto& parts) { return parts.coarsened(merged); });
+        commit("coarsen", done.merged, merged,
+               [&](auto& parts) { return parts.coarsened(merged); });
       }
     }
     if (to_refine.size() > 0) {
@@ -101,7 +102,8 @@ class ChangesOnBackend {
       if (refined.leaves > 0) {
         done.refined = static_cast<std::size_t>(refined.leaves);
         done.new_nodes = static_cast<std::size_t>(refined.new_nodes);
-        commit("refine", done.refined, [&](auto& parts) { return parts.refined(refined); });
+        commit("refine", done.refined, refined,
+               [&](auto& parts) { return parts.refined(refined); });
       }
     }
     if (done.merged > 0 && done.refined > 0) enter_as_one();
@@ -147,13 +149,16 @@ class ChangesOnBackend {
     }
   }
 
-  /// Makes a change, which was made of the tree, of `count` elements.
-  template <class Change>
-  void commit(char const* action, std::size_t count, Change const& make) {
+  /// Makes a change, `done` on the tree, of `count` elements.
+  template <class Done, class Change>
+  void commit(char const* action, std::size_t count, Done const& done, Change const& make) {
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
     commit_change<true>(parts_, action, count, [&] {
       ChangedPartsOn<Parts> parts(parts_, kept);
-      return make(parts);
+      auto changed = make(parts);
+      kept->numbers.follow(backend(), kept->tree,
+                           done);  // patches are there, beside which it takes longer
+      return changed;
     });
     kept->tree.keep();
     ++kept->on_host.version;

@@ -81,7 +81,6 @@ class ChangedPartsOn {
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, come, rows_, false);
     add_strain(Energies::after, changed.parts, places.come, places.come_count);
-    on_->numbers.follow(backend_, on_->tree, done);
     read_energies(changed);
     return changed;
   }
@@ -132,7 +131,6 @@ class ChangedPartsOn {
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, families, rows_, true);
     add_strain(Energies::after, changed.parts);
-    on_->numbers.follow(backend_, on_->tree, done);
     read_energies(changed);
     changed.taken = on_->momentum.taken();
     return changed;
