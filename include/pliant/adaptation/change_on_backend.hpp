@@ -156,8 +156,8 @@ class ChangesOnBackend {
     commit_change<true>(parts_, action, count, [&] {
       ChangedPartsOn<Parts> parts(parts_, kept);
       auto changed = make(parts);
-      kept->numbers.follow(backend(), kept->tree,
-                           done);  // patches are there, beside which it takes longer
+      // Patches are there now, beside whose plans this takes longer.
+      kept->numbers.follow(backend(), kept->tree, done);
       return changed;
     });
     kept->tree.keep();
