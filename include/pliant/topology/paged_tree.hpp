@@ -36,13 +36,13 @@ struct PageMarks {
   PLIANT_HOST_DEVICE void part_of(Index c, Index part) const {
     auto const own = tree.row(c);
     auto const& p = tree.cells[static_cast<std::size_t>(c)].pattern();
-    constexpr Index edges = RefinementPattern::most_edges;
+    constexpr Index most = RefinementPattern::most_edges;
     if (part == 0) cell(c);
     auto const mark_edge = [&](Index e) { edge(e); };
     if (part < static_cast<Index>(p.edges))
       tree.visit_edge(own.edges[part], mark_edge);
-    else if (part >= edges && part - edges < static_cast<Index>(p.sides))
-      tree.visit_side(own.sides[part - edges], mark_edge, [&](Index s) { side(s); });
+    else if (part >= most && part - most < static_cast<Index>(p.sides))
+      tree.visit_side(own.sides[part - most], mark_edge, [&](Index s) { side(s); });
   }
 
  private:
