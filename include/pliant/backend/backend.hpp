@@ -83,8 +83,8 @@
 //   sum_elements<Groups>(elements, kernel, fields...)
 //                              double; the sum of kernel's S
 //   add_sum_elements<Groups>(elements, kernel, to, fields...)
-//                              the same, added to *to in the backend's memory; waits for nothing. May be left out: see
-//                              backend/element_sums.hpp
+//                              the same, added to *to in the backend's memory; waits for nothing. May be left out, as may
+//                              add_sum_elements_at of those at some places: see backend/element_sums.hpp
 //   visit<Groups>(elements, visitor, counters, fields...)
 //                              values = visitor.evaluate(GroupNumber<g>{}, v...), a Vector<S, N>;
 //                              then visitor.finish(GroupNumber<g>{}, element, values of that

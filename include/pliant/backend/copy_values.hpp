@@ -15,6 +15,16 @@ struct CopyValue {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
+/// Tells two numbers that lie apart.
+struct TellBoth {
+  Index const *first, *second;
+  Index* told;  // (2)
+  PLIANT_HOST_DEVICE void operator()(Index) const {
+    told[0] = *first;
+    told[1] = *second;
+  }
+};
+
 template <class U>
 struct ClearValue {
   U* values;

@@ -52,7 +52,7 @@ class ReadBack {
   }
   void read(std::span<U> values) const {
     if constexpr (is_pinned)
-      std::copy_n(array_.data(), values.size(), values.data());
+      std::copy_n(array_.values().begin(), values.size(), values.begin());
     else
       array_.download(values);
   }

@@ -259,7 +259,7 @@ class ChangedPartsOn {
     auto const& table = std::get<0>(of.layout.tables);
     energies_.add_strain(time, table, of.layout, of.state.u);
   }
-  /// Of elements at some places; or of all, where laws read what is kept by an element's number and sums know that of none.
+  /// Of elements at some places; or of all, where laws read what is kept by the number of an element, and a backend sums over copies.
   void add_strain(Time time, Parts const& of, Array<Index> const& places, Index count) {
     if constexpr (Table::Laws::reads_elements && !sums_at_places<B>)
       add_strain(time, of);

@@ -89,16 +89,6 @@ struct FreeRowsIn {
   }
 };
 
-/// Tells how many pages more all regions need, and how many have free rows.
-struct TellPages {
-  Index const *more, *partial;
-  Index* told;  // (2)
-  PLIANT_HOST_DEVICE void operator()(Index) const {
-    told[0] = *more;
-    told[1] = *partial;
-  }
-};
-
 /// New nodes and pages with free rows, both in the order of regions.
 struct NewRows {
   Index nodes, pages;                     // pages: at most

@@ -118,7 +118,7 @@ class NodeRowsOn {
         ScanStep{partial, detail::FreeRowsIn{node_.data(), partial_.data(), listed},
                  free_before_.data()},
         ScanStep{regions, detail::PagesNeeded{rows}, before_.data()},
-        LoopStep{1, detail::TellPages{before_.data() + regions, listed, counts_.data()}});
+        LoopStep{1, detail::TellBoth{before_.data() + regions, listed, counts_.data()}});
     backend_.synchronize();
     auto const [more, partial_before, free] = counts_.template first<3>();
     // A region has one page at most that it fills partly now.

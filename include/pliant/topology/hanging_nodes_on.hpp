@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
@@ -176,7 +177,7 @@ class HangingNodesOn {
         detail::ScanStep{n, detail::CountMasters<Dim>{masters, counters_.data()},
                          rows.first.data()},
         detail::LoopStep{
-            1, detail::TellEntries{rows.first.data() + n, counters_.data(), counts_.data()}});
+            1, detail::TellBoth{rows.first.data() + n, counters_.data(), counts_.data()}});
     known_ = n;
     auto const [entries, too_many] = counted<2>();
     if (too_many != 0)

@@ -245,15 +245,6 @@ struct CountMasters {
     return list.count;
   }
 };
-/// Tells how many there are in all, and whether some did not fit.
-struct TellEntries {
-  Index const *entries, *too_many;
-  Index* told;  // (2)
-  PLIANT_HOST_DEVICE void operator()(Index) const {
-    told[0] = *entries;
-    told[1] = *too_many;
-  }
-};
 /// Fills rows of slaves: nodes and masters by their rows in fields.
 template <int Dim, class T>
 struct FillSlaves {

@@ -20,7 +20,7 @@ struct TreeView {
   Pages<TreeSide> sides;
   Pages<RowEntry> rows;
   RowLayout layout;
-  /// Of so many cells, each may be shared by threads: more are enough for a backend.
+  /// Up to so many cells, several threads share each in some loops; more are work enough for a backend.
   static constexpr Index few = 16384;
   bool shared = true;  ///< whether several threads may change an entry at once
 

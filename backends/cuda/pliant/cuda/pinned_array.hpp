@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -16,41 +17,31 @@ class PinnedArray {
  public:
   PinnedArray() = default;
   /// Not set. Throws Error when there is not enough memory.
-  PinnedArray(detail::SharedStream stream, std::size_t count)
-      : stream_(std::move(stream)), size_(count) {
+  PinnedArray(detail::SharedStream stream, std::size_t count) : size_(count) {
     if (count == 0) return;
-    auto const device = stream_->enter();
+    auto const device = stream->enter();
     std::size_t const bytes = detail::array_bytes<U>(count);
     void* memory = nullptr;
     detail::check_memory(cudaMallocHost(&memory, bytes), bytes);
-    data_ = static_cast<U*>(memory);
-  }
-  ~PinnedArray() {
-    if (data_ == nullptr) return;
-    detail::DeviceGuard const device(stream_->device(), std::nothrow);
-    cudaStreamSynchronize(stream_->get());  // kernels may still write
-    cudaFreeHost(data_);
-  }
-  PinnedArray(PinnedArray&& other) noexcept
-      : stream_(std::move(other.stream_)),
-        data_(std::exchange(other.data_, nullptr)),
-        size_(std::exchange(other.size_, 0)) {}
-  PinnedArray& operator=(PinnedArray&& other) noexcept {
-    std::swap(stream_, other.stream_);
-    std::swap(data_, other.data_);
-    std::swap(size_, other.size_);
-    return *this;
+    memory_ = {static_cast<U*>(memory), Release{std::move(stream)}};
   }
 
-  U* data() { return data_; }
-  U const* data() const { return data_; }
-  std::size_t size() const { return size_; }
+  U* data() { return memory_.get(); }
+  std::size_t size() const { return memory_ ? size_ : 0; }
   /// What kernels wrote before the stream was waited for the last time.
-  std::span<U const> values() const { return {data_, size_}; }
+  std::span<U const> values() const { return {memory_.get(), size()}; }
 
  private:
-  detail::SharedStream stream_;
-  U* data_ = nullptr;
+  struct Release {
+    detail::SharedStream stream;
+    void operator()(U* memory) const noexcept {
+      detail::DeviceGuard const device(stream->device(), std::nothrow);
+      cudaStreamSynchronize(stream->get());  // kernels may still write
+      cudaFreeHost(memory);
+    }
+  };
+
+  std::unique_ptr<U, Release> memory_;
   std::size_t size_ = 0;
 };
 
