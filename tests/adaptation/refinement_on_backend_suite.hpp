@@ -92,6 +92,20 @@ TEST_CASE("a body that is coarsened in its backend's memory is the one that the 
   check_both_ways<Formulation<Tri3, Gauss<1>, NeoHookean>>(KeepingFloat{}, 6, 5, 2);
 }
 
+TEST_CASE("a refinement is refused where single precision cannot hold the masses behind it",
+          "[adaptation]") {
+  Mesh<Tri3> mesh;
+  mesh.nodes = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.elements<Tri3>() = {{0, 1, 2}};
+  // A node has 1.4 times the least mass, and a corner a quarter of that when the element is refined, which is rounded to none.
+  double const least = std::numeric_limits<float>::denorm_min();
+  Body body{KeepingFloat{}, mesh, Elastic{5.2, 0.3, 6 * 1.4 * least},
+            Group<Formulation<Tri3, Gauss<1>, NeoHookean>>{}};
+  CHECK_THROWS_WITH(refine(body, {{0}}), says("32 bits cannot hold the mass of a node"));
+  CHECK(body.mesh().nodes.size() == 3);
+  CHECK(refinement_levels<Tri3>(body) == std::vector<int>{0});
+}
+
 template <class E>
 using Graded = Formulation<E, Gauss<1>, PerElement<NeoHookean>::law>;
 

@@ -122,6 +122,30 @@ TEST_CASE("cells are refined as deep as levels go, and no deeper", "[topology]")
   });
 }
 
+TEST_CASE("refinements of a leaf are taken back wherever its edges and sides have parts",
+          "[topology]") {
+  auto const check = [](auto const& backend, auto host) {
+    TreeBeside on(backend, host);
+    Random random(5);
+    for (int round = 0; round < 2; ++round) {  // what there is then is of many pages
+      auto const marked = some_leaves(host, 3, random);
+      on.refine(marked);
+      host.refine(marked);
+    }
+    on.tree.keep();
+    auto const leaves = host.leaves();
+    for (int k = 0; k < 40; ++k) {
+      CHECK(on.refine({leaves[random.below(leaves.size())]}).leaves > 0);
+      on.tree.take_back();
+    }
+    check_same(on.tree, host);
+  };
+  on_each_backend<DoubleBackends>([&]<class B>(B const& backend) {
+    check(backend, Hierarchy<2>(regular_mesh<Tri3>(20)));
+    check(backend, Hierarchy<3>(regular_mesh<Tet4>(4)));
+  });
+}
+
 TEST_CASE("a tree with more leaves than threads share is refined, and taken back", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     Hierarchy<2> const before(regular_mesh<Tri3>(96));
