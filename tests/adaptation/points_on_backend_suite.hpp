@@ -30,9 +30,9 @@ void step_both(Both& both, double dt) {
       .internal_variables.upload(std::get<0>(parts.layout.tables).in_internal_order(rows));
 }
 
-template <class F, class B>
+template <class F, class Other = Stiffer<F>, class B>
 void check_points(B const& backend, Index cells, std::size_t one_in) {
-  TwoBodies<F, B> both(backend, cells);
+  TwoBodies<F, B, Other> both(backend, cells);
   double const dt = 0.1 * stable_step(both.host);
   step_both(both, dt);
   for (int round = 0; round < 2; ++round) {
@@ -40,11 +40,11 @@ void check_points(B const& backend, Index cells, std::size_t one_in) {
     both.check_all();
     step_both(both, dt);
     both.refine_one_in(one_in);
-    // Families of elements of both laws, of which one keeps nothing.
-    auto const stiff = some(both.host, 4, both.random), viscous = some(both.host, 4, both.random);
+    // Families of elements of both groups.
+    auto const others = some(both.host, 4, both.random), first = some(both.host, 4, both.random);
     for (auto* body : {&both.body, &both.host}) {
-      body->template assign<Stiffer<F>>(stiff);
-      body->template assign<F>(viscous);
+      body->template assign<Other>(others);
+      body->template assign<F>(first);
     }
     CHECK(both.coarsen_all_but_one_in(9) > 0);
     both.check_all();
@@ -59,6 +59,8 @@ TEST_CASE("quadrature points keep their memory where a body's backend changes it
     check_points<Viscous<Quad4, Gauss<2>>>(backend, 4, 4);
     check_points<Viscous<Tet4, Gauss<1>>>(backend, 2, 8);
     check_points<Viscous<Tet4, Gauss<2>>>(backend, 2, 3);  // children of mirrored ones too
+    // The others of the same law, with fewer points.
+    check_points<Viscous<Tri3, Gauss<2>>, Viscous<Tri3, Gauss<1>>>(backend, 5, 5);
   });
 }
 

@@ -15,9 +15,16 @@ namespace pliant::test::two_bodies {
 template <class F>
 using Stiffer = Formulation<typename F::element, typename F::quadrature, Hooke>;
 
+/// A law that keeps something at points.
+template <class F>
+void make_viscous(Group<F>& group) {
+  if constexpr (internal_variables_of<F> > 0)
+    group.law = typename F::template law<double>{{3, 2}, {0.5}, {0.1}};
+}
+
 /// A body with elements of two groups, displacements and velocities; some nodes are held if it `is_held`. `on_host`: it is refined
 /// on the host, as a listener wants to know.
-template <class F, class B>
+template <class F, class Other = Stiffer<F>, class B>
 auto body_of(B const& backend, bool on_host, Index cells, bool is_held = true) {
   using E = typename F::element;
   constexpr int dim = E::dim;
@@ -28,9 +35,10 @@ auto body_of(B const& backend, bool on_host, Index cells, bool is_held = true) {
     for (std::size_t e = 0; e < std::get<0>(mesh.tables).size(); ++e)
       group.values.push_back({1 + random(), 2 + random()});
   }
-  if constexpr (internal_variables_of<F> > 0)
-    group.law = typename F::template law<double>{{3, 2}, {0.5}, {0.1}};
-  Body body{backend, mesh, soft, group, Group<Stiffer<F>>{}};
+  Group<Other> other;
+  make_viscous(group);
+  make_viscous(other);
+  Body body{backend, mesh, soft, group, other};
   std::vector<Point<dim>> u(mesh.nodes.size()), v(u);
   std::vector<Index> held;
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -51,7 +59,7 @@ auto body_of(B const& backend, bool on_host, Index cells, bool is_held = true) {
   std::vector<Index> stiff;
   for (Index e = 0; e < static_cast<Index>(std::get<0>(mesh.tables).size()); e += 3)
     stiff.push_back(e);
-  body.template assign<Stiffer<F>>(stiff);
+  body.template assign<Other>(stiff);
   body.set_loads(std::vector<Point<dim>>(mesh.nodes.size(), u[1]));
   if (on_host) body.on_change([](auto const&) {});
   return body;
@@ -145,16 +153,16 @@ void check_same(OnBackend& body, OnHost& host, double rounding) {
 }
 
 /// A body whose mesh is changed in its backend's memory, and one that the host changes.
-template <class F, class B>
+template <class F, class B, class Other = Stiffer<F>>
 struct TwoBodies {
-  using Body = decltype(body_of<F>(std::declval<B const&>(), false, 2));
+  using Body = decltype(body_of<F, Other>(std::declval<B const&>(), false, 2));
   double rounding = std::numeric_limits<typename B::scalar>::epsilon();
   Body body, host;
   Random random{3};
 
   TwoBodies(B const& backend, Index cells, bool is_held = true)
-      : body(body_of<F>(backend, false, cells, is_held)),
-        host(body_of<F>(backend, true, cells, is_held)) {}
+      : body(body_of<F, Other>(backend, false, cells, is_held)),
+        host(body_of<F, Other>(backend, true, cells, is_held)) {}
 
   void refine_one_in(std::size_t one_in) {
     auto const marked = some(host, one_in, random);
