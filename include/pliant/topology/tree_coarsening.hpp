@@ -102,7 +102,8 @@ class TreeCoarsening {
             LoopStep{most, ListMergeable{tree, families_.data(), counts, stamps.data(),
                                          stamps.now(), parents_.data(), counts + 1, keys_.data()}},
             LoopStep{knows_ ? 1 : 0,
-                     CopyValue<Index>{counters_before_.data() + of_knowing, counts + 2}},
+                     CopyValue<Index>{knows_ ? counters_before_.data() + of_knowing : nullptr,
+                                      counts + 2}},
             LoopStep{3, CopyValue<Index>{counts, counts_.data()}});
   }
 
