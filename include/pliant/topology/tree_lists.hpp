@@ -20,9 +20,9 @@ struct TreeLists {
   SharedList<TreeSide> sides;
   SharedList<RowEntry> rows;  ///< of cells
   RowLayout layout;
-  std::vector<Index> divided;  ///< cells, each once
+  std::vector<Index> divided{};  ///< cells, each once
   std::vector<Index>
-      converted;  ///< cells of the initial mesh that have not what they had there: each once
+      converted{};  ///< cells of the initial mesh that have not what they had there: each once
   Index linear_leaves = 0, quadratic_leaves = 0;  ///< with corners only, and others
   TreeSizes initial;                              ///< of the initial mesh
   Index nodes = 0;
