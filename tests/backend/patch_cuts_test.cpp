@@ -39,29 +39,60 @@ TEST_CASE("a table without blocks has patches of one size, but for the last", "[
   CHECK(PatchCuts(17, 8).first() == std::vector<Index>{0, 8, 16, 17});
 }
 
-TEST_CASE("patches end with chapters of blocks, and share them evenly", "[backend]") {
-  auto const [before, after] = change(std::vector<Index>(40, 240), {{3, 247}, {39, 0}});
-  PatchCuts const first(40 * 240, 768, before), then(40 * 240 - 233, 768, after);
-
-  // Sixteen blocks have 3840 elements, the last eight have 1920.
-  CHECK(first.first() == std::vector<Index>{0, 768, 1536, 2304, 3072, 3840, 4608, 5376, 6144, 6912,
-                                            7680, 8320, 8960, 9600});
-  CHECK(then.first() == std::vector<Index>{0, 641, 1282, 1923, 2564, 3205, 3847, 4615, 5383, 6151,
-                                           6919, 7687, 8247, 8807, 9367});
-  CHECK(std::ranges::max(then.first()) == 40 * 240 - 233);
+/// How many elements patches have.
+std::vector<Index> sizes_of(PatchCuts const& cuts) {
+  std::vector<Index> sizes;
+  for (Index p = 0; p < cuts.count(); ++p) sizes.push_back(cuts.first(p + 1) - cuts.first(p));
+  return sizes;
 }
 
-TEST_CASE("patches of chapters of which all blocks stay are known from before", "[backend]") {
+TEST_CASE("patches of a first mesh are full, and end with chapters of blocks", "[backend]") {
+  auto const sizes =
+      sizes_of({38 * 240 + 5, 768, change({std::vector<Index>(38, 240)}, {}).before});
+  CHECK(sizes == std::vector<Index>{768, 768, 768, 768, 768, 768, 768, 768, 768, 768, 768, 672});
+}
+
+TEST_CASE("patches behind a change are where they were, if that takes no more", "[backend]") {
+  // Sixteen blocks of 3840 elements in all are five patches, of which the third begins in block 6, behind 96 elements.
+  auto const sizes_behind = [](std::vector<std::pair<std::size_t, Index>> others, Index more) {
+    auto const [before, after] = change(std::vector<Index>(16, 240), std::move(others));
+    return sizes_of({3840 + more, 768, after});
+  };
+  CHECK(sizes_behind({{1, 247}}, 7) == std::vector<Index>{387, 388, 768, 768, 768, 768});
+  CHECK(sizes_behind({{6, 247}}, 7) == std::vector<Index>{768, 768, 387, 388, 768, 768});
+  CHECK(sizes_behind({{15, 1920}}, 1680) ==
+        std::vector<Index>{768, 768, 768, 768, 612, 612, 612, 612});
+  CHECK(sizes_behind({{0, 241}, {1, 239}}, 0) == std::vector<Index>(5, 768));
+  // A block with less than belongs to the patch before.
+  CHECK(sizes_behind({{6, 90}}, -150) == std::vector<Index>{768, 762, 624, 768, 768});
+  // In the first and the last of five, each of which would become two: seven, for which six have room.
+  CHECK(sizes_behind({{1, 247}, {15, 247}}, 14) ==
+        std::vector<Index>{642, 642, 643, 642, 642, 643});
+}
+
+TEST_CASE("patches of which all blocks stay are known from before", "[backend]") {
   auto const [before, after] = change(std::vector<Index>(40, 240), {{3, 247}});
   PatchCuts const first(40 * 240, 768, before), then(40 * 240 + 7, 768, after);
 
+  // The first begins block 3, and the second, which is two now, goes on with it.
   CHECK(then.known_from(first, after) ==
-        std::vector<Index>{-1, -1, -1, -1, -1, -1, 5, 6, 7, 8, 9, 10, 11, 12});
-  for (std::size_t p = 6; p < 14; ++p) CHECK(then.first()[p] == first.first()[p - 1] + 7);
+        std::vector<Index>{-1, -1, -1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  for (std::size_t p = 3; p < 14; ++p) CHECK(then.first()[p] == first.first()[p - 1] + 7);
   CHECK(then.known_from(PatchCuts(40 * 240, 384, before), after) ==
         std::vector<Index>(14, -1));  // of another size
   CHECK(then.known_from(PatchCuts(40 * 240, 768), after) == std::vector<Index>(14, -1));
   CHECK(then.known_from(first, {after.first, {}, {}}) == std::vector<Index>(14, -1));
+}
+
+TEST_CASE("patches with other elements of blocks that stay are not known", "[backend]") {
+  auto const [before, after] = change(std::vector<Index>(16, 240), {{1, 247}, {15, 247}});
+  PatchCuts const first(3840, 768, before), then(3854, 768, after);
+  CHECK(then.known_from(first, after) == std::vector<Index>(6, -1));
+
+  auto const [full, gone] = change(std::vector<Index>(16, 240), {{5, 0}});
+  // The second has lost a block in its midst, the others are where they were.
+  CHECK(PatchCuts(3600, 768, gone).known_from({3840, 768, full}, gone) ==
+        std::vector<Index>{0, -1, 2, 3, 4});
 }
 
 TEST_CASE("large patches stay where blocks of others beside them change", "[backend]") {

@@ -13,6 +13,9 @@ namespace pliant {
 /// Consecutive elements of a table that keep together when the mesh changes: a backend may plan each block apart from the
 /// others, and keep what it planned for blocks that stay.
 struct ElementBlocks {
+  /// How many elements blocks have in a first mesh, but for the last: 40 cubes of six tetrahedra.
+  static constexpr Index usual = 240;
+
   std::vector<Index> first;  ///< (blocks + 1), elements; empty: cut as suits the backend
   /// (blocks): not zero where the block of this number in the table before a change had the same elements of the same nodes in
   /// the same order, whatever the elements are numbered now. Empty: none.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/element_blocks.hpp>
@@ -29,8 +30,9 @@ struct PatchOfRun {
   }
 };
 
-/// How a table is cut into patches. Where it has blocks, no patch has elements of two chapters of them: those of a chapter
-/// whose blocks all stay in a change stay as well.
+/// How a table is cut into patches. Where it has blocks, no patch has elements of two chapters of them, and what a chapter is cut
+/// into follows from the sizes of its blocks. Patches keep to where they began and ended in a first mesh, as long as that takes no
+/// more of them, so that those stay of which all blocks stay; else a chapter's share it evenly.
 class PatchCuts {
  public:
   PatchCuts() = default;
@@ -45,22 +47,10 @@ class PatchCuts {
     first_.reserve(static_cast<std::size_t>(elements / size) + count / blocks_of_chapter_ + 2);
     of_chapter_.reserve(count / blocks_of_chapter_ + 2);
     of_chapter_.push_back(0);
+    FirstCuts const first_cuts(static_cast<Index>(blocks_of_chapter_) * ElementBlocks::usual, size);
     for (std::size_t b = 0; b < count; b += blocks_of_chapter_) {
-      Index const begin = blocks.first[b],
-                  own = blocks.first[std::min(b + blocks_of_chapter_, count)] - begin,
-                  parts = own / size + (own % size != 0);
-      // Patch k ends with own k / parts, rounded down, without a division for each.
-      Index const each = parts > 0 ? own / parts : 0, rest = parts > 0 ? own % parts : 0;
-      for (Index k = 0, end = begin, over = 0; k < parts; ++k) {
-        end += each;
-        over += rest;
-        if (over >= parts) {
-          over -= parts;
-          ++end;
-        }
-        first_.push_back(end);
-      }
-      of_chapter_.push_back(static_cast<Index>(first_.size()) - 1);
+      cut_chapter(blocks.first, b, std::min(b + blocks_of_chapter_, count), first_cuts);
+      of_chapter_.push_back(this->count());
     }
   }
 
@@ -79,16 +69,99 @@ class PatchCuts {
     for (std::size_t c = 0; c + 1 < of_chapter_.size(); ++c) {
       auto const from = blocks_of_chapter_ * c,
                  to = std::min(from + blocks_of_chapter_, blocks.stays.size());
-      if (std::ranges::count(std::span(blocks.stays).subspan(from, to - from), 0) > 0) continue;
-      for (Index p = of_chapter_[c]; p < of_chapter_[c + 1]; ++p)
-        known[static_cast<std::size_t>(p)] = before.of_chapter_[c] + p - of_chapter_[c];
+      if (std::ranges::count(std::span(blocks.stays).subspan(from, to - from), 0) == 0)
+        for (Index p = of_chapter_[c]; p < of_chapter_[c + 1]; ++p)
+          known[static_cast<std::size_t>(p)] = before.of_chapter_[c] + p - of_chapter_[c];
+      else
+        find_known(before, blocks, c, from, known);
     }
     return known;
   }
 
  private:
+  /// Where the patches of a chapter end in a first mesh: in which block, counted from the chapter's first, and behind how many of
+  /// its elements.
+  class FirstCuts {
+   public:
+    FirstCuts(Index elements, Index size) {
+      Index const parts = parts_of(elements, size);
+      for (Index k = 1; k < parts; ++k) {
+        auto const end = static_cast<Index>(std::int64_t{elements} * k / parts);
+        ends_.push_back(
+            {static_cast<std::size_t>(end / ElementBlocks::usual), end % ElementBlocks::usual});
+      }
+    }
+
+    /// visit(end) of the patches of some blocks, which have other sizes now.
+    template <class Visit>
+    void visit_ends(std::vector<Index> const& first, std::size_t block, std::size_t end,
+                    Visit const& visit) const {
+      for (auto const& [of_chapter, elements] : ends_) {
+        auto const b = block + of_chapter;
+        if (b >= end) break;
+        visit(std::min(first[b] + elements, first[b + 1]));
+      }
+      visit(first[end]);
+    }
+
+   private:
+    struct End {
+      std::size_t block;
+      Index elements;
+    };
+    std::vector<End> ends_;  // but for the last
+  };
+
+  static Index parts_of(Index elements, Index size) {
+    if (elements <= size) return elements > 0 ? 1 : 0;  // most, which takes no division
+    return elements / size + (elements % size != 0);
+  }
+
+  /// Known patches of a chapter, of which not all blocks stay. `block`: its first.
+  void find_known(PatchCuts const& before, ElementBlocks const& blocks, std::size_t chapter,
+                  std::size_t block, std::vector<Index>& known) const {
+    Index then = before.of_chapter_[chapter];
+    Index const last = before.of_chapter_[chapter + 1];
+    for (Index p = of_chapter_[chapter]; p < of_chapter_[chapter + 1]; ++p) {
+      while (blocks.first[block + 1] <= first(p)) ++block;
+      Index const begin = first(p) - blocks.first[block] + blocks.first_before[block],
+                  size = first(p + 1) - first(p);
+      bool stays = true;
+      for (auto b = block; b < blocks.stays.size() && blocks.first[b] < first(p + 1); ++b)
+        stays = stays && blocks.stays[b] != 0;
+      while (then < last && before.first(then) < begin) ++then;
+      if (stays && then < last && before.first(then) == begin &&
+          before.first(then + 1) - begin == size)
+        known[static_cast<std::size_t>(p)] = then;
+    }
+  }
+  void cut_chapter(std::vector<Index> const& first, std::size_t block, std::size_t end,
+                   FirstCuts const& first_cuts) {
+    Index parts = 0, from = first[block];
+    first_cuts.visit_ends(first, block, end, [&](Index to) {
+      parts += parts_of(to - std::exchange(from, to), size_);
+    });
+    if (parts > parts_of(first[end] - first[block], size_)) return cut(first[end]);
+    first_cuts.visit_ends(first, block, end, [&](Index to) { cut(to); });
+  }
+  /// Cuts what is behind the last patch, up to an element, into patches that share it evenly.
+  void cut(Index to) {
+    Index const begin = first_.back(), own = to - begin, parts = parts_of(own, size_);
+    // Patch k ends with own k / parts, rounded down, without a division for each.
+    Index const each = parts > 0 ? own / parts : 0, rest = parts > 0 ? own % parts : 0;
+    for (Index k = 0, end = begin, over = 0; k < parts; ++k) {
+      end += each;
+      over += rest;
+      if (over >= parts) {
+        over -= parts;
+        ++end;
+      }
+      first_.push_back(end);
+    }
+  }
+
   Index size_ = 1;
-  /// Of 240 elements each in a first mesh, 16 are five patches of 768 or ten of 384, and 8 are one of 2048.
+  /// Of `ElementBlocks::usual` elements each, 16 are five patches of 768 or ten of 384, and 8 are one of 2048.
   std::size_t blocks_of_chapter_ = 16;
   std::vector<Index> first_{0}, of_chapter_;  // elements; patches
 };

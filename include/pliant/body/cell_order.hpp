@@ -18,8 +18,8 @@
 
 namespace pliant {
 
-/// Cells of the first mesh, from which a block of elements is: 40 cubes of six tetrahedra.
-inline constexpr Index cells_per_block = 240;
+/// Cells of the first mesh, from which a block of elements is.
+inline constexpr Index cells_per_block = ElementBlocks::usual;
 
 /// The order of the cells of a body's first mesh, by the tree's numbers. That of every mesh it becomes follows from this one and
 /// from the tree: children stand in the place of their parents, so that what is near stays near, and no change has to

@@ -41,7 +41,7 @@ class PatchConnectivity {
     auto const pieces = pieces_of(cuts, blocks);
     for_each_on_host(static_cast<Index>(pieces.size()) - 1, few_pieces, [&](Index piece) {
       Index const first = pieces[at(piece)], last = pieces[at(piece) + 1];
-      if (known[at(first)] < 0)
+      if (std::any_of(known.begin() + first, known.begin() + last, [](Index p) { return p < 0; }))
         carry(first, last, cuts, blocks, [&](std::size_t b) {
           return blocks.stays[b] != 0 ? before.row(cuts_before, blocks.first_before[b])
                                       : rows.data() + (-1 - sources[b]);
