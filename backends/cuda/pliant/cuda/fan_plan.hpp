@@ -94,8 +94,10 @@ class FanPlanner {
                                       FanVisit const* known, PatchCounts const& capacity,
                                       FanVisit* visits) {
     share_out(threads, capacity.fans, [&](int f) {
+      FanVisit of_fan[most_fan_visits];  // read before any is written, so that a device waits once
       for (int j = 0; j < most_fan_visits; ++j)
-        visits[j * capacity.fans + f] = f < own.fans ? known[j * from.fans + f] : FanVisit{};
+        of_fan[j] = f < own.fans ? known[j * from.fans + f] : FanVisit{};
+      for (int j = 0; j < most_fan_visits; ++j) visits[j * capacity.fans + f] = of_fan[j];
     });
   }
 

@@ -41,6 +41,13 @@ __device__ __forceinline__ void begin_after_previous_kernel() {
 #endif
 }
 
+/// At the end of a kernel that started before the one before it had ended, and reads nothing of that: ends behind it.
+__device__ __forceinline__ void end_after_previous_kernel() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+#endif
+}
+
 /// In every thread of a launch of one block, or of one cluster: what any wrote before, all see then.
 __device__ __forceinline__ void wait_for_cluster() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <pliant/backend/patch_cuts.hpp>
 #include <pliant/cuda/array.hpp>
@@ -15,10 +16,10 @@
 namespace pliant::detail {
 
 /// The threads of a block, as a planner sees them.
-template <class Planner>
+template <int Threads>
 struct BlockThreads {
   __device__ int first() const { return static_cast<int>(threadIdx.x); }
-  __device__ static constexpr int stride() { return Planner::block_threads; }
+  __device__ static constexpr int stride() { return Threads; }
   __device__ void meet() const { __syncthreads(); }
   __device__ bool any(bool value) const { return __syncthreads_or(value) != 0; }
   template <class U>
@@ -97,7 +98,7 @@ __device__ void plan_patch(PatchInput const& input, Index patch, PlanView<Planne
   extern __shared__ __align__(16) char planner_memory[];
   Index const first = input.first[patch];
   PlanMemory memory(planner_memory);
-  BlockThreads<Planner> const threads;
+  BlockThreads<Planner::block_threads> const threads;
   Planner planner(memory, input.patch_size, static_cast<int>(input.first[patch + 1] - first));
   auto const counts =
       planner.count(threads, input.connectivity + std::int64_t{first} * input.width, input.width);
@@ -107,12 +108,12 @@ __device__ void plan_patch(PatchInput const& input, Index patch, PlanView<Planne
                to.diagonals_of(patch));
 }
 
-/// By a block: takes a patch from a plan, for which there is room.
-template <class Planner>
+/// By a block of so many threads: takes a patch from a plan, for which there is room.
+template <int Threads, class Planner>
 __device__ void take_patch(PlanView<Planner> const& from, Index before, PlanView<Planner> const& to,
                            Index patch, PatchCounts* most) {
   PatchCounts const counts = from.counts[before];
-  BlockThreads<Planner> const threads;
+  BlockThreads<Threads> const threads;
   Planner::take(threads, counts, static_cast<int>(to.first[patch + 1] - to.first[patch]),
                 from.capacity, from.units_of(before), to.capacity, to.units_of(patch));
   share_out(threads, to.capacity.nodes, [&](int n) {
@@ -124,17 +125,24 @@ __device__ void take_patch(PlanView<Planner> const& from, Index before, PlanView
   if (threadIdx.x == 0) to.set_counts(patch, counts, most);
 }
 
-/// Plans patches, or takes them from a plan of no larger capacity. known: (patches), the patch there; −1: none; null: all of
-/// them are planned.
+/// Plans patches: those of a list, or all, where it is null. May run beside take_known_patches, and ends behind that.
 template <class Planner>
 __global__ void __launch_bounds__(Planner::block_threads)
-    plan_patches_anew(PatchInput input, Index const* known, PlanView<Planner> from,
-                      PlanView<Planner> to, PatchCounts* most) {
+    plan_listed_patches(PatchInput input, Index const* list, PlanView<Planner> to,
+                        PatchCounts* most) {
+  auto const i = static_cast<Index>(blockIdx.x);
+  plan_patch(input, list == nullptr ? i : list[i], to, most);
+  end_after_previous_kernel();
+}
+
+/// Takes patches from a plan of no larger capacity. known: (patches), the patch there; −1: none.
+template <class Planner>
+__global__ void __launch_bounds__(take_threads)
+    take_known_patches(Index const* known, PlanView<Planner> from, PlanView<Planner> to,
+                       PatchCounts* most) {
+  begin_after_previous_kernel();
   auto const patch = static_cast<Index>(blockIdx.x);
-  if (known != nullptr && known[patch] >= 0)
-    take_patch(from, known[patch], to, patch, most);
-  else
-    plan_patch(input, patch, to, most);
+  if (known[patch] >= 0) take_patch<take_threads>(from, known[patch], to, patch, most);
 }
 
 /// Takes patches from a plan of theirs that had room for some of them, and plans the others.
@@ -144,7 +152,7 @@ __global__ void __launch_bounds__(Planner::block_threads)
                       PatchCounts* most) {
   auto const patch = static_cast<Index>(blockIdx.x);
   if (holds(from.capacity, from.counts[patch]))
-    take_patch(from, patch, to, patch, most);
+    take_patch<Planner::block_threads>(from, patch, to, patch, most);
   else
     plan_patch(input, patch, to, most);
 }
@@ -179,8 +187,17 @@ PatchPlan<Planner> room_for_plan(B const& backend, PatchCuts const& cuts,
 }
 
 template <class Planner>
-LaunchShape plan_shape(PatchCuts const& cuts) {
-  return {cuts.count(), Planner::block_threads, plan_bytes<Planner>(cuts.size())};
+LaunchShape plan_shape(Index patches, PatchCuts const& cuts) {
+  return {patches, Planner::block_threads, plan_bytes<Planner>(cuts.size())};
+}
+
+/// Known patches, and behind them a list of those that are not.
+template <class Planner>
+std::vector<Index> known_and_planned(KnownPatches<Planner> const& known) {
+  auto lists = known.patches;
+  for (Index p = 0; p < static_cast<Index>(known.patches.size()); ++p)
+    if (known.patches[static_cast<std::size_t>(p)] < 0) lists.push_back(p);
+  return lists;
 }
 
 /// Patches that are being planned.
@@ -190,8 +207,8 @@ struct PlanInWork {
   PatchPlan<Planner> plan;  // of a capacity that may be right
   PatchCounts changed;      // what such a plan had before
   bool changes_many;
-  DeviceArray<Index> patches_before;
-  DeviceArray<PatchCounts> most;  // that any patch needs
+  DeviceArray<Index> known_and_planned;  // (patches), as KnownPatches::patches; and those of −1
+  DeviceArray<PatchCounts> most;         // that any patch needs
 };
 
 /// Begins to plan patches, on a side stream if there is one; what any needs goes there to its mail. `known`: a plan of patches of
@@ -201,17 +218,26 @@ PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchC
                                KnownPatches<Planner> const& known, SideStream* side = nullptr) {
   DeviceGuard const device(backend.device());
   bool const is_known = !known.patches.empty();
+  auto const lists = known_and_planned(known);
   PlanInWork<Planner> work{
       input,
       room_for_plan<Planner>(backend, cuts, guessed_capacity(known, cuts.size())),
       known.plan == nullptr ? PatchCounts{} : known.plan->changed,
       many_change(known),
-      is_known ? backend.array(std::span<Index const>(known.patches)) : DeviceArray<Index>{},
+      is_known ? backend.array(std::span<Index const>(lists)) : DeviceArray<Index>{},
       backend.template array<PatchCounts>(1)};
-  PlanView<Planner> const from = is_known ? view_of(*known.plan, known.first) : PlanView<Planner>{};
-  launch("plan patches", plan_shape<Planner>(cuts), side ? side->begin() : backend.stream(),
-         plan_patches_anew<Planner>, input, work.patches_before.data(), from,
-         view_of(work.plan, input.first), work.most.data());
+  auto const to = view_of(work.plan, input.first);
+  auto const stream = side ? side->begin() : backend.stream();
+  Index const* const first_known = work.known_and_planned.data();
+  auto const planned = is_known ? static_cast<Index>(lists.size()) - cuts.count() : cuts.count();
+  bool const takes = planned < cuts.count();
+  if (takes)
+    launch("plan patches", {cuts.count(), take_threads}, stream, take_known_patches<Planner>,
+           first_known, view_of(*known.plan, known.first), to, work.most.data());
+  if (planned > 0)
+    launch(takes ? Start::early : Start::in_order, "plan patches",
+           plan_shape<Planner>(planned, cuts), stream, plan_listed_patches<Planner>, input,
+           is_known ? first_known + cuts.count() : nullptr, to, work.most.data());
   if (side)
     check(cudaMemcpyAsync(side->mail(), work.most.data(), sizeof(PatchCounts),
                           cudaMemcpyDeviceToHost, side->get()),
@@ -234,9 +260,9 @@ PatchPlan<Planner> end_plan(B const& backend, PlanInWork<Planner> work, PatchCou
     plan.capacity = in_fours(counts);
     if (!accepts(plan.capacity)) return plan;
     plan = room_for_plan<Planner>(backend, cuts, plan.capacity);
-    launch("plan patches", plan_shape<Planner>(cuts), backend.stream(), plan_patches_left<Planner>,
-           work.input, view_of(work.plan, work.input.first), view_of(plan, work.input.first),
-           work.most.data());
+    launch("plan patches", plan_shape<Planner>(cuts.count(), cuts), backend.stream(),
+           plan_patches_left<Planner>, work.input, view_of(work.plan, work.input.first),
+           view_of(plan, work.input.first), work.most.data());
   }
   plan.changed = changed;
   return plan;

@@ -7,9 +7,9 @@ namespace pliant::detail {
 
 inline constexpr int warp_size = 32;
 
-/// Threads per block of loops over nodes, of reductions, and of visits to elements.
+/// Threads per block of loops over nodes, of reductions, and of visits to elements; and that take a patch's plan from another.
 inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 128,
-                     scatter_threads = 128;
+                     scatter_threads = 128, take_threads = 256;
 
 /// Loops over lists (scan.cuh, sort.cuh): threads per block, the most blocks, keys that a thread sorts at once, and how long a
 /// list one block takes alone, in one launch.
