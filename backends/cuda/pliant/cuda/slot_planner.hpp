@@ -151,6 +151,7 @@ class SlotPlanner {
   struct Visit {
     int visit = -1;          // negative: it has one, or there is none
     int first, count;        // the node's in free_
+    int begin;               // which of these it looks at first
     int chosen, slot, bank;  // in free_; there; in writers_
     bool has_bank, has_slot;
   };
@@ -189,6 +190,7 @@ class SlotPlanner {
         v.visit = visit;
         v.first = first_free_[node];
         v.count = valence_[node];
+        v.begin = v.first + i / lanes % v.count;  // visits of a node begin with others each
       });
       threads.meet();
       for (bool some_left = true; some_left;) {
@@ -221,10 +223,11 @@ class SlotPlanner {
       }
     }
   }
-  /// The first of a node's free slots in a bank that the warp writes to least. `banks`: where these begin.
+  /// The next of a node's free slots in a bank that the warp writes to least. `banks`: where these begin.
   PLIANT_HOST_DEVICE void choose(Visit& v, int banks) const {
     int least = lanes + 1;
-    for (int k = v.first; k < v.first + v.count && least > 0; ++k) {
+    for (int left = v.count, k = v.begin; left > 0 && least > 0; --left, ++k) {
+      if (k == v.first + v.count) k = v.first;
       if (free_[k] == taken) continue;
       int const slot = free_[k] & 0xffff, bank = banks + slot % lanes;
       if (writers_[bank] >= least) continue;
