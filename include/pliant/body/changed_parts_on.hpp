@@ -51,6 +51,7 @@ class ChangedPartsOn {
     auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
     backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
     follow_on_host(std::move(cells), false);
+    on_->hanging.find_after(on_->tree, done);
     on_->order.refine(on_->tree, done);
     on_->rows.refine(on_->tree, on_->order, done);
     if (done.new_nodes == 0) backend_.synchronize();  // rows of new nodes were waited for
@@ -60,7 +61,7 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout = new_layout(copies, done, [&](DirectionMask* held) {
+    auto layout = new_layout(copies, [&](DirectionMask* held) {
       on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, held);
     });
     on_->points = std::move(points);
@@ -75,6 +76,7 @@ class ChangedPartsOn {
     on_->masses.extend(rows_);
     auto const come = refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest());
     on_->masses.exchange(come);
+    layout.interpolation = interpolation();
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
     RefinedPlaces<B> const places(backend_, on_->order, done);
     add_strain(Energies::before, parts_, places.go, places.go_count);
@@ -94,6 +96,7 @@ class ChangedPartsOn {
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
     follow_on_host(std::move(parents), true);
+    on_->hanging.find_after(on_->tree, done);
     on_->order.coarsen(on_->tree, done);
     on_->rows.coarsen(done);
     double const speed = backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v));  // m/s
@@ -103,16 +106,17 @@ class ChangedPartsOn {
     auto u = copies.template extended<T>(parts_.state.u, values());
     auto v = copies.template extended<T>(parts_.state.v, values());
     auto load = extended_load(copies);
-    auto layout = new_layout(copies, done, [&](DirectionMask* held) {
+    auto layout = new_layout(copies, [&](DirectionMask* held) {
       on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, held);
     });
     MergedElements<E> const families{on_->order.merged_families(), on_->order.merged_count(),
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
                                      std::get<0>(layout.tables).elements.rows_of_nodes(),
                                      ElementsByRows<E>(at_rest())};
+    on_->masses.take_gone(families);
+    layout.interpolation = interpolation();
     MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_),
         weights(backend_, layout.interpolation, rows_);
-    on_->masses.take_gone(families);
     on_->momentum.begin(families, weights_before, weights, on_->masses);
     on_->masses.add_come(families);
     read_masses(layout, weights);
@@ -164,10 +168,10 @@ class ChangedPartsOn {
     return copies.template extended<T>(parts_.state.load, values());
   }
 
-  /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
+  /// Behind a change, with all but masses and interpolation(), which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
   /// of what was held before): holds what is held now, before patches are planned, beside which loops over all take longer.
-  template <class Change, class Hold>
-  Layout new_layout(Copies& copies, Change const& done, Hold const& hold) {
+  template <class Hold>
+  Layout new_layout(Copies& copies, Hold const& hold) {
     auto snapshot = std::make_shared<typename NodeRowsOn<B>::Lists>(on_->rows.lists(copies));
     WhenAsked<NodeRows> const node_rows = WhenAsked<NodeRows>::by(
         [snapshot] { return std::make_shared<NodeRows>(snapshot->download_all()); });
@@ -191,9 +195,13 @@ class ChangedPartsOn {
     make_table(std::get<0>(layout.tables), blocks);
     layout.first_of_block[0] = std::move(blocks.first);
     layout.mass = unset<T>(backend_, at(rows_));
-    layout.interpolation = InterpolationOn<B>(
-        backend_, on_->hanging.rows_after(on_->tree, done, on_->rows.of_node()), false, rows_);
+    on_->hanging.find_masters(on_->tree);
     return layout;
+  }
+  /// Waits for what new_layout asked for.
+  InterpolationOn<B> interpolation() {
+    backend_.synchronize();
+    return {backend_, on_->hanging.found_rows(on_->tree, on_->rows.of_node()), false, rows_};
   }
   void make_table(Table& table, ElementBlocks const& blocks) {
     auto const& before = std::get<0>(parts_.layout.tables);

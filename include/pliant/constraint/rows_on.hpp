@@ -17,6 +17,7 @@ struct RowsOn {
   Index count = 0;
   typename B::template Array<Index> node, first, other;
   typename B::template Array<typename B::scalar> weight;
+  Index others = -1;  // how many different nodes the entries are of, where that is known
 };
 
 namespace detail {
@@ -95,8 +96,9 @@ RowsOn<B> transposed(B const& backend, RowsOn<B> const& rows,
   auto keys = unset<std::uint64_t>(backend, entries);
   auto order = unset<Index>(backend, entries), row = unset<Index>(backend, entries + 1),
        count = unset<Index>(backend, 1);
-  RowsOn<B> by_other{0, unset<Index>(backend, entries), unset<Index>(backend, entries + 1),
-                     unset<Index>(backend, entries), unset<T>(backend, entries)};
+  RowsOn<B> by_other{rows.others, unset<Index>(backend, entries),
+                     unset<Index>(backend, entries + 1), unset<Index>(backend, entries),
+                     unset<T>(backend, entries)};
   in_turn(backend, LoopStep{n, KeysOfEntries{rows.other.data(), keys.data(), order.data()}},
           SortStep{n, keys.data(), order.data(), key_bits(nodes)},
           ScanStep{n, IsFirstOfKey{keys.data()}, row.data()},
@@ -104,8 +106,8 @@ RowsOn<B> transposed(B const& backend, RowsOn<B> const& rows,
                                        rows.node.data(), rows.first.data(), rows.weight.data(),
                                        by_other.node.data(), by_other.first.data(),
                                        by_other.other.data(), by_other.weight.data()}},
-          LoopStep{1, CopyValue<Index>{row.data() + entries, count.data()}});
-  by_other.count = download<Index>(count)[0];
+          LoopStep{rows.others < 0 ? 1 : 0, CopyValue<Index>{row.data() + entries, count.data()}});
+  if (rows.others < 0) by_other.count = download<Index>(count)[0];
   return by_other;
 }
 

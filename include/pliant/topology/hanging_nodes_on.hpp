@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -30,35 +29,25 @@ class HangingNodesOn {
  public:
   /// `sides_have_nodes`: whether nodes may hang in the middle of sides; not where all sides are those of linear tetrahedra.
   explicit HangingNodesOn(B const& backend, bool sides_have_nodes = true)
-      : backend_(backend), sides_have_nodes_(sides_have_nodes), counts_(backend, 2) {}
+      : backend_(backend), sides_have_nodes_(sides_have_nodes), counts_(backend, 5) {}
 
   /// Every one, ascending by the user's numbers, with its free masters; by row_of_node(the user's number), in the backend's
   /// memory. Throws Error for a tree that mixes degrees.
   RowsOn<B> rows(TreeOn<B> const& tree, Index const* row_of_node) {
-    find_all(tree);
-    return rows_found(tree, row_of_node);
+    find(tree);
+    return rows_waited_for(tree, row_of_node);
   }
-  /// The same after a refinement of the tree of which the last call told: looks at what hung then, and at what was refined.
-  RowsOn<B> rows_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
-                       Index const* row_of_node) {
-    if (knows_all_)
-      find_after(tree, refined);
-    else
-      find_all(tree);
-    return rows_found(tree, row_of_node);
-  }
-  /// The same after a coarsening of the tree.
-  RowsOn<B> rows_after(TreeOn<B> const& tree, Coarsened const& coarsened,
-                       Index const* row_of_node) {
-    if (knows_all_)
-      find_after(tree, coarsened);
-    else
-      find_all(tree);
-    return rows_found(tree, row_of_node);
+  /// The same after a change of the tree of which the last call told, by a refinement or a coarsening (TreeOn::Refined, Coarsened).
+  template <class Change>
+  RowsOn<B> rows_after(TreeOn<B> const& tree, Change const& change, Index const* row_of_node) {
+    find_after(tree, change);
+    return rows_waited_for(tree, row_of_node);
   }
 
- private:
-  void find_all(TreeOn<B> const& tree) {
+  // The same in three calls, between each two of which the backend has to be waited for, so that other work may stand there.
+
+  /// Asks for the edges and sides on which nodes hang.
+  void find(TreeOn<B> const& tree) {
     if (tree.mixes_degrees())
       throw Error("hanging nodes: the tree mixes degrees; take HangingNodes, on the host");
     auto const sizes = tree.sizes();
@@ -70,9 +59,11 @@ class HangingNodesOn {
     backend_.select(sizes.edges, detail::IsHungOnEdge<Dim>{view}, edges_.data(), counts_.data());
     if (sides > 0)
       backend_.select(sides, detail::IsHungOnSide<Dim>{view}, sides_.data(), counts_.data() + 1);
-    count_found();
+    knows_all_ = true;
   }
+  /// The same after a refinement: looks at what hung before it, and at what was refined.
   void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
+    if (!knows_all_) return find(tree);
     using detail::LoopStep, detail::CopyValue, detail::IsHungOnEdge, detail::IsHungOnSide,
         detail::ListStillHung;
     using NewEdges = detail::ListNewlyHungEdges<Dim>;
@@ -97,10 +88,11 @@ class HangingNodesOn {
         LoopStep{new_edges, NewEdges{{view}, refined.cells, refined.parts, edges_.data(), edges}},
         LoopStep{new_sides, NewSides{{view}, refined.cells, refined.parts, sides_.data(), sides}},
         LoopStep{2, CopyValue<Index>{edges, counts_.data()}});
-    count_found();
   }
-  /// Only leaves that were made of families come to have finer neighbours: what else hangs did so before.
+  /// The same after a coarsening. Only leaves that were made of families come to have finer neighbours: what else hangs did so
+  /// before.
   void find_after(TreeOn<B> const& tree, Coarsened const& coarsened) {
+    if (!knows_all_) return find(tree);
     if (coarsened.merged == 0) return;
     using detail::LoopStep, detail::CopyValue, detail::IsHungOnEdge, detail::IsHungOnSide,
         detail::ListStaying, detail::NewNumbers;
@@ -132,72 +124,80 @@ class HangingNodesOn {
         LoopStep{of_edges, EdgesOfMerged{{view}, coarsened.parents, cells, edges}},
         LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}},
         LoopStep{2, CopyValue<Index>{counters_.data(), counts_.data()}});
-    count_found();
   }
-  void count_found() {
-    auto const counts = counted<2>();
-    edge_count_ = counts[0];
-    side_count_ = counts[1];
-    knows_all_ = true;
-  }
-  /// Of the edges and sides that were found.
-  RowsOn<B> rows_found(TreeOn<B> const& tree, Index const* row_of_node) {
-    auto const sizes = tree.sizes();
-    Index const places = edge_count_ + side_count_;
-    detail::HungOn<Dim> const hung{{tree.view()}, edges_.data(), sides_.data(), edge_count_};
+  /// Numbers the slaves, and asks how many masters they have.
+  void find_masters(TreeOn<B> const& tree) {
+    auto const found = counts_.template first<2>();
+    edge_count_ = found[0];
+    side_count_ = found[1];
+    Index const places = edge_count_ + side_count_, nodes = tree.sizes().nodes;
+    auto const hung = hung_on(tree);
     std::swap(nodes_, nodes_before_);
-    if (slave_at_.size() < at(sizes.nodes)) {
-      slave_at_ = zeros<Index>(backend_, at(sizes.nodes) + at(sizes.nodes) / 2);
-      known_ = 0;
+    if (slave_at_.size() < at(nodes)) {
+      slave_at_ = zeros<Index>(backend_, at(nodes) + at(nodes) / 2);
+      slaves_ = 0;
     }
-    auto const forget = number_slaves(nodes_before_, std::exchange(known_, 0), false);
+    auto const forget = number_slaves(nodes_before_, std::exchange(slaves_, 0), false);
     // One hangs on each edge where all leaves have corners only.
     bool const is_one_each = tree.is_linear() && side_count_ == 0;
     Index const n = is_one_each ? places : count_on(hung, places);
-    if (n == 0) {
-      forget.run(backend_);
-      return {};
-    }
+    if (n == 0) return forget.run(backend_);
     need(nodes_, n);
     need(order_, n);
     need(places_, n);
-    detail::FreeMasters<Dim> const masters{hung, order_.data(), places_.data(), slave_at_.data()};
-    RowsOn<B> rows;
-    rows.count = n;
-    rows.node = unset<Index>(backend_, at(n));
-    rows.first = unset<Index>(backend_, at(n) + 1);
-    counters_ = zeros<Index>(backend_, 1);
+    first_ = unset<Index>(backend_, at(n) + 1);
+    counters_ = zeros<Index>(backend_, 2);
+    node_stamps_.begin(backend_, at(nodes));
+    Index *const masters = counters_.data(), *const too_many = masters + 1;
     detail::in_turn(
         backend_, forget,
         detail::LoopStep{places,
                          detail::ListSlaves<Dim>{hung, is_one_each ? nullptr : start_.data(),
                                                  nodes_.data(), order_.data(), places_.data()}},
-        detail::SortStep{n, nodes_.data(), order_.data(), detail::key_bits(sizes.nodes)},
+        detail::SortStep{n, nodes_.data(), order_.data(), detail::key_bits(nodes)},
         number_slaves(nodes_, n, true),
-        detail::ScanStep{n, detail::CountMasters<Dim>{masters, counters_.data()},
-                         rows.first.data()},
-        detail::LoopStep{
-            1, detail::TellBoth{rows.first.data() + n, counters_.data(), counts_.data()}});
-    known_ = n;
-    auto const [entries, too_many] = counted<2>();
+        detail::ScanStep{n,
+                         detail::CountMasters<Dim>{free_masters(tree), node_stamps_.data(),
+                                                   node_stamps_.now(), masters, too_many},
+                         first_.data()},
+        detail::LoopStep{2, detail::CopyValue<Index>{masters, counts_.data() + 2}},
+        detail::LoopStep{1, detail::CopyValue<Index>{first_.data() + n, counts_.data() + 4}});
+    slaves_ = n;
+  }
+  /// What was found, as of `rows`.
+  RowsOn<B> found_rows(TreeOn<B> const& tree, Index const* row_of_node) {
+    if (slaves_ == 0) return {};
+    auto const [edges, sides, masters, too_many, entries] = counts_.template first<5>();
     if (too_many != 0)
       throw Error("hanging nodes: one has more than ", detail::MasterList::most,
                   " masters; keep neighbours of finer elements within one level");
-    rows.other = unset<Index>(backend_, at(entries));
-    rows.weight = unset<T>(backend_, at(entries));
+    RowsOn<B> rows{slaves_,
+                   unset<Index>(backend_, at(slaves_)),
+                   std::move(first_),
+                   unset<Index>(backend_, at(entries)),
+                   unset<T>(backend_, at(entries)),
+                   masters};
     backend_.for_each(
-        n, detail::FillSlaves<Dim, T>{masters, nodes_.data(), row_of_node, rows.first.data(),
-                                      rows.node.data(), rows.other.data(), rows.weight.data()});
+        slaves_, detail::FillSlaves<Dim, T>{free_masters(tree), nodes_.data(), row_of_node,
+                                            rows.first.data(), rows.node.data(), rows.other.data(),
+                                            rows.weight.data()});
     return rows;
   }
 
+ private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
-  /// Numbers that loops counted, which this waits for.
-  template <std::size_t N>
-  std::array<Index, N> counted() {
+  RowsOn<B> rows_waited_for(TreeOn<B> const& tree, Index const* row_of_node) {
     backend_.synchronize();
-    return counts_.template first<N>();
+    find_masters(tree);
+    backend_.synchronize();
+    return found_rows(tree, row_of_node);
+  }
+  [[nodiscard]] detail::HungOn<Dim> hung_on(TreeOn<B> const& tree) const {
+    return {{tree.view()}, edges_.data(), sides_.data(), edge_count_};
+  }
+  [[nodiscard]] detail::FreeMasters<Dim> free_masters(TreeOn<B> const& tree) const {
+    return {hung_on(tree), order_.data(), places_.data(), slave_at_.data()};
   }
   /// Numbers listed slaves, or forgets their numbers.
   detail::LoopStep<detail::NumberSlaves> number_slaves(Array<std::uint64_t> const& nodes,
@@ -209,8 +209,9 @@ class HangingNodesOn {
     need(start_, places + 1);
     detail::in_turn(
         backend_, detail::ScanStep{places, hung, start_.data()},
-        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counts_.data()}});
-    return counted<1>()[0];
+        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counts_.data() + 4}});
+    backend_.synchronize();
+    return counts_.template first<5>()[4];
   }
 
   B backend_;
@@ -218,13 +219,13 @@ class HangingNodesOn {
   Array<Index> edges_, sides_;  // on which nodes hang, in no order
   Index edge_count_ = 0, side_count_ = 0;
   Array<Index> edges_before_, sides_before_;
-  detail::Stamps<B> edge_stamps_, side_stamps_;
-  Array<Index> start_, order_, counters_;
-  ReadBack<B, Index> counts_;
+  detail::Stamps<B> edge_stamps_, side_stamps_, node_stamps_;
+  Array<Index> start_, order_, first_, counters_;
+  ReadBack<B, Index> counts_;                  // edges, sides; masters, too many of them, entries
   Array<std::uint64_t> nodes_, nodes_before_;  // slaves, and those before
   Array<detail::HangingPlace> places_;
   Array<Index> slave_at_;  // by node: its number among slaves, one more; or zero
-  Index known_ = 0;        // slaves that are numbered there
+  Index slaves_ = 0;       // how many are numbered there
 };
 
 }  // namespace pliant

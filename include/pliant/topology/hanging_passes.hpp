@@ -232,16 +232,21 @@ struct FreeMasters {
     hung.add_masters(place.on, place.which, weight, list);
   }
 };
-/// How many each slave has.
+/// How many each slave has, and how many there are in all.
 template <int Dim>
 struct CountMasters {
   FreeMasters<Dim> masters;
+  Index* stamps;  // by node
+  Index now;
+  Index* count;     // in all
   Index* too_many;  // set where they do not fit into a list
 
   PLIANT_HOST_DEVICE Index operator()(Index k) const {
     MasterList list;
     masters.find(k, list);
     if (!list.fits) atomic_store(*too_many, 1);
+    for (int m = 0; m < list.count; ++m)
+      if (stamps_first(stamps[list.nodes[m]], now)) atomic_add(*count, 1);
     return list.count;
   }
 };
