@@ -66,7 +66,13 @@ struct Tables {
     change(before, {.refine = {ranks(*before, marked)}}, [&] {
       mesh.refine(marked);
       numbers.follow(backend, mesh.tree, mesh.refined);
-      return RefinedPlaces<B>(backend, mesh.order, mesh.refined);
+      auto const places = std::make_shared<RefinedPlaces<B>>(backend, mesh.order, mesh.refined);
+      return std::pair{[=, this](auto const& kernel) {
+                         return sum_at(kernel, places->go.data(), places->go_count);
+                       },
+                       [=, this](auto const& kernel) {
+                         return sum_at(kernel, places->come.data(), places->come_count);
+                       }};
     });
   }
   /// Merges families of marked leaves; returns how many.
@@ -75,7 +81,14 @@ struct Tables {
     change(before, {.coarsen = {ranks(*before, marked)}}, [&] {
       mesh.coarsen(marked);
       numbers.follow(backend, mesh.tree, mesh.coarsened);
-      return RefinedPlaces<B>(backend, mesh.tree.view(), mesh.order);
+      return std::pair{
+          [this](auto const& kernel) {
+            return sum_if(kernel, detail::IsMergedLeaf{mesh.order.before()});
+          },
+          [this](auto const& kernel) {
+            auto const& order = mesh.order;
+            return sum_if(kernel, detail::IsNewLeaf{order.leaves(), order.before(), order.from()});
+          }};
     });
     return mesh.coarsened.merged;
   }
@@ -133,7 +146,7 @@ struct Tables {
     return list;
   }
 
-  /// Makes a change, and what follows from it.
+  /// Makes a change, and what follows from it. make_change() gives sum(kernel) of the elements that go, and of those that come.
   template <class Change>
   void change(std::shared_ptr<Topology<M> const> const& before, MarkedElements const& marked,
               Change const& make_change) {
@@ -146,14 +159,11 @@ struct Tables {
           volume<E, MassQuadrature<E>>(nodal(*before, before->template nodes_of<E>(user))));
     auto const volumes_on = upload(backend, volumes);
     auto const energy_before = energy(on);
-    RefinedPlaces<B> const places = make_change();
+    auto const [sum_gone, sum_come] = make_change();
 
-    auto const at_gone = [&](auto const& kernel) {
-      return sum_at(kernel, places.go.data(), places.go_count);
-    };
-    CHECK(std::vector{at_gone(IsInGroup<0>{}), at_gone(IsInGroup<1>{})} ==
+    CHECK(std::vector{sum_gone(IsInGroup<0>{}), sum_gone(IsInGroup<1>{})} ==
           counts_of_gone(tags_before));
-    double const gone = at_gone(Energy{});
+    double const gone = sum_gone(Energy{});
     if (plan) {
       own_tags = plan->transfer.carry_elements(own_tags);
       own_values = plan->transfer.carry_elements(own_values, 0, 2);
@@ -164,7 +174,7 @@ struct Tables {
     backend.synchronize();
     blocks = blocks_after_refinement(mesh.order, blocks.first);
     make(on.rows_of_nodes(), true);
-    double const made = sum_at(Energy{}, places.come.data(), places.come_count);
+    double const made = sum_come(Energy{});
     CHECK((made > 0) == plan.has_value());
     CHECK(std::abs(made - gone - (energy(on) - energy_before)) <= 1e-13 * energy_before);
   }
@@ -255,6 +265,14 @@ struct Tables {
     add_sum_elements_at<groups>(backend, on, std::as_const(tags).data(), places, count,
                                 mesh.rows.count(), kernel, sum.data(),
                                 NodeField<T const, dim>{x.data()});
+    return download<double>(sum)[0];
+  }
+  /// Of those of which the places meet a condition.
+  double sum_if(auto const& kernel, auto const& meets) {
+    auto const x = field_values(mesh.rows.count());
+    auto sum = zeros<double>(backend, 1);
+    add_sum_elements_if<groups>(backend, on, std::as_const(tags).data(), meets, mesh.rows.count(),
+                                kernel, sum.data(), NodeField<T const, dim>{x.data()});
     return download<double>(sum)[0];
   }
   /// How many leaves of each group were divided or merged.

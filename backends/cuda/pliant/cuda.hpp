@@ -200,8 +200,8 @@ class Cuda {
       reduce_to<detail::AddedSum>("add_sum_elements", element_count(active),
                                   element_term<Groups>(active, kernel, fields...), to);
   }
-  template <int Groups, class Table, class Kernel, class... Fields>
-  void add_sum_elements_at(Table const& table, Index const* places, Index count,
+  template <int Groups, class Table, class Places, class Kernel, class... Fields>
+  void add_sum_elements_at(Table const& table, Places const& places, Index count,
                            Kernel const& kernel, double* to, Fields const&... fields) const {
     constexpr int nodes = detail::table_nodes<Table>;
     require_kernel<Kernel, double, Groups, OneElement, Values<nodes, Fields>...>();

@@ -13,6 +13,12 @@ struct AddValue {
   double value;
   PLIANT_HOST_DEVICE void operator()(Index) const { *to += value; }
 };
+/// Places that meet a condition; −1 in place of others.
+template <class Condition>
+struct PlacesThatMeet {
+  Condition meets;
+  PLIANT_HOST_DEVICE Index operator[](Index place) const { return meets(place) ? place : -1; }
+};
 }  // namespace detail
 
 /// Adds what sum_elements gives to *to in the backend's memory.
@@ -44,6 +50,23 @@ void add_sum_elements_at(B const& backend, Elements const& table, Tag const* tag
     add_sum_elements<Groups>(backend,
                              element_list(backend, table, tags, places, count, Groups, nodes),
                              kernel, to, fields...);
+}
+/// The same of the elements of which the places meet a condition, meets(place).
+template <int Groups, Backend B, class Elements, class Condition, class Kernel, class... Fields>
+void add_sum_elements_if(B const& backend, Elements const& table, Tag const* tags,
+                         Condition const& meets, Index nodes, Kernel const& kernel, double* to,
+                         Fields const&... fields) {
+  if constexpr (sums_at_places<B>) {
+    backend.template add_sum_elements_at<Groups>(table, detail::PlacesThatMeet<Condition>{meets},
+                                                 table.count(), kernel, to, fields...);
+  } else {
+    auto places = unset<Index>(backend, static_cast<std::size_t>(table.count()));
+    auto listed = zeros<Index>(backend, 1);
+    backend.select(table.count(), meets, places.data(), listed.data());
+    if (Index const count = download<Index>(listed)[0]; count > 0)
+      add_sum_elements_at<Groups>(backend, table, tags, places.data(), count, nodes, kernel, to,
+                                  fields...);
+  }
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/atomic.hpp>
@@ -77,6 +78,19 @@ struct PlaceAtRest {
     Index const row = of_node[nodes[k].node];
     for (int d = 0; d < Dim; ++d)
       rest(row, d) = static_cast<T>(points(row, d) - middle[static_cast<std::size_t>(d)]);
+  }
+};
+/// Notes which of listed rows have other displacements than before a change.
+template <class T, int Dim>
+struct MarkDisplaced {
+  Index const* rows;
+  NodeField<T const, Dim> before, now;
+  std::uint8_t* displaced;  // by the row
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    Index const row = rows[k];
+    bool stays = true;
+    for (int d = 0; d < Dim; ++d) stays = stays && before(row, d) == now(row, d);
+    displaced[row] = stays ? 0 : 1;
   }
 };
 /// Sets listed rows to zero.

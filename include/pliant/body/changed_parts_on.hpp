@@ -79,20 +79,18 @@ class ChangedPartsOn {
     layout.interpolation = interpolation();
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
     RefinedPlaces<B> const places(backend_, on_->order, done);
-    add_strain(Energies::before, parts_, places.go, places.go_count);
+    energies_.add_strain_at(Energies::before, parts_, places.go.data(), places.go_count);
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, come, rows_, false);
-    add_strain(Energies::after, changed.parts, places.come, places.come_count);
+    energies_.add_strain_at(Energies::after, changed.parts, places.come.data(), places.come_count);
     read_energies(changed);
     return changed;
   }
 
-  /// Energies are of all elements: nodes that begin to hang displace some that stay.
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
     synchronize_velocities(parts_);
     energies_.count_not_finite(parts_);
     energies_.add_kinetic(Energies::before, parts_);
-    add_strain(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
     follow_on_host(std::move(parents), true);
@@ -134,7 +132,7 @@ class ChangedPartsOn {
           .apply_transpose(backend_, node_field<dim>(load));
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, families, rows_, true);
-    add_strain(Energies::after, changed.parts);
+    energies_.add_strain_of_merged(parts_, changed.parts, on_->order);
     read_energies(changed);
     changed.taken = on_->momentum.taken();
     return changed;
@@ -261,21 +259,6 @@ class ChangedPartsOn {
     state.implicit = {};
   }
 
-  using Time = typename Energies::Time;
-  /// The strain energy of all elements.
-  void add_strain(Time time, Parts const& of) {
-    auto const& table = std::get<0>(of.layout.tables);
-    energies_.add_strain(time, table, of.layout, of.state.u);
-  }
-  /// Of elements at some places; or of all, where laws read what is kept by the number of an element, and a backend sums over copies.
-  void add_strain(Time time, Parts const& of, Array<Index> const& places, Index count) {
-    if constexpr (Table::Laws::reads_elements && !sums_at_places<B>)
-      add_strain(time, of);
-    else
-      energies_.add_strain_at(time, std::get<0>(of.layout.tables),
-                              std::get<0>(of.state.elements).tags.data(), places.data(), count,
-                              of.layout, of.state.u);
-  }
   /// Waits for what was asked of the backend. Throws Error where a field was not finite, or a mass cannot be held.
   void read_energies(ChangedTopology<Parts>& changed) {
     energies_.add_kinetic(Energies::after, changed.parts);

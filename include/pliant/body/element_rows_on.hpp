@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -48,12 +49,21 @@ struct IsNewLeaf {
   Index const *leaves, *leaves_before, *from;
   PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves_before[from[i]] != leaves[i]; }
 };
-/// Whether the leaf that was at a place is divided, or merged into another.
-struct IsGoneLeaf {
-  TreeView tree;
+/// Whether the leaf that was at a place is merged into another.
+struct IsMergedLeaf {
   Index const* leaves_before;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves_before[i] < 0; }
+};
+/// Whether an element at a place is another one, as a condition says, or has a node that a change displaced.
+template <int Nodes, class IsOther>
+struct IsOtherOrDisplaced {
+  IsOther is_other;
+  ElementRows rows;
+  std::uint8_t const* displaced;  // by the row of a node
   PLIANT_HOST_DEVICE bool operator()(Index i) const {
-    return leaves_before[i] < 0 || !tree.is_leaf(leaves_before[i]);
+    bool is = is_other(i);
+    for (int a = 0; a < Nodes; ++a) is = is || displaced[rows[i][a]] != 0;
+    return is;
   }
 };
 
@@ -180,37 +190,22 @@ typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> 
   return values;
 }
 
-/// The places of the elements that come in a change, and of those that go, before it, in a backend's memory.
+/// The places of the elements that come in a refinement, and of those that go, before it, in a backend's memory.
 template <Backend B>
 struct RefinedPlaces {
+  Index come_count, go_count;
   typename B::template Array<Index> come, go;
-  Index come_count = 0, go_count = 0;
 
-  /// After a refinement, by the leaves that it divided. Waits for nothing.
+  /// By the leaves that it divided. Waits for nothing.
   RefinedPlaces(B const& backend, LeafOrderOn<B> const& order,
                 typename TreeOn<B>::Refined const& refined)
-      : RefinedPlaces(backend, order.count() - order.count_before() + refined.leaves,
-                      refined.leaves) {
+      : come_count(order.count() - order.count_before() + refined.leaves),
+        go_count(refined.leaves),
+        come(unset<Index>(backend, static_cast<std::size_t>(come_count))),
+        go(unset<Index>(backend, static_cast<std::size_t>(go_count))) {
     backend.for_each(go_count, detail::PlacesOfDivided{refined.parts, order.places(), order.from(),
                                                        come.data(), go.data()});
   }
-  /// After a coarsening, ascending. Waits for nothing.
-  RefinedPlaces(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order)
-      : RefinedPlaces(backend, order.merged_count(),
-                      order.count_before() - order.count() + order.merged_count()) {
-    // How many there are is behind them.
-    backend.select(order.count(), detail::IsNewLeaf{order.leaves(), order.before(), order.from()},
-                   come.data(), come.data() + come_count);
-    backend.select(order.count_before(), detail::IsGoneLeaf{tree, order.before()}, go.data(),
-                   go.data() + go_count);
-  }
-
- private:
-  RefinedPlaces(B const& backend, Index that_come, Index that_go)
-      : come(unset<Index>(backend, static_cast<std::size_t>(that_come) + 1)),
-        go(unset<Index>(backend, static_cast<std::size_t>(that_go) + 1)),
-        come_count(that_come),
-        go_count(that_go) {}
 };
 
 }  // namespace pliant

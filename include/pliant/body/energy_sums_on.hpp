@@ -2,11 +2,14 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
+#include <cstdint>
+#include <tuple>
 
 #include <pliant/backend/element_sums.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/carried_nodes.hpp>
+#include <pliant/body/change_passes.hpp>
+#include <pliant/body/element_rows_on.hpp>
 #include <pliant/body/motion.hpp>
 #include <pliant/force/element_kernels.hpp>
 
@@ -24,7 +27,7 @@ template <class Parts>
 class EnergySumsOn {
   using B = typename Parts::backend_type;
   using T = typename Parts::T;
-  using Field = typename Parts::template Array<T>;
+  using Table = std::tuple_element_t<0, decltype(Parts::layout_type::tables)>;
   static constexpr int dim = Parts::dim;
 
  public:
@@ -36,25 +39,24 @@ class EnergySumsOn {
 
   explicit EnergySumsOn(B const& backend) : backend_(backend), sums_(zeros<double>(backend, 5)) {}
 
-  /// Of all elements of a table.
-  template <class Table, class Layout>
-  void add_strain(Time time, Table const& table, Layout const& layout, Field const& u) {
-    table.with_geometry([&](auto geometry) {
-      add_sum_elements<Table::groups>(
-          backend_, table.elements, EnergyKernel<typename Table::Laws, geometry.value>{table.laws},
-          sums_.data() + time, node_field<dim>(layout.rest), node_field<dim>(u));
+  /// Of the elements of a body at some places, (count).
+  void add_strain_at(Time time, Parts const& of, Index const* places, Index count) {
+    add(time, of, [&](auto const& table, Tag const* tags, auto const&... arguments) {
+      add_sum_elements_at<Table::groups>(backend_, table, tags, places, count, arguments...);
     });
   }
-  /// Of those at some places, (count).
-  template <class Table, class Layout>
-  void add_strain_at(Time time, Table const& table, Tag const* tags, Index const* places,
-                     Index count, Layout const& layout, Field const& u) {
-    table.with_geometry([&](auto geometry) {
-      add_sum_elements_at<Table::groups>(
-          backend_, table.elements, tags, places, count, layout.rows,
-          EnergyKernel<typename Table::Laws, geometry.value>{table.laws}, sums_.data() + time,
-          node_field<dim>(layout.rest), node_field<dim>(u));
-    });
+  /// Before and after a coarsening, of what it merged, and of other elements with nodes that it displaced: those that hang, where they
+  /// began to, or hang on others that did. `order`: of the leaves now.
+  void add_strain_of_merged(Parts const& parts, Parts const& now, LeafOrderOn<B> const& order) {
+    using Values = NodeField<T const, dim>;
+    auto displaced = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(now.layout.rows));
+    auto const& slaves = now.layout.interpolation.slaves();
+    backend_.for_each(slaves.count,
+                      MarkDisplaced<T, dim>{slaves.node.data(), Values{parts.state.u.data()},
+                                            Values{now.state.u.data()}, displaced.data()});
+    add_strain_of_others(before, parts, IsMergedLeaf{order.before()}, displaced.data());
+    add_strain_of_others(after, now, IsNewLeaf{order.leaves(), order.before(), order.from()},
+                         displaced.data());
   }
   /// Velocities have to be of the present time.
   void add_kinetic(Time time, Parts const& parts) {
@@ -72,6 +74,32 @@ class EnergySumsOn {
   }
 
  private:
+  template <class IsOther>
+  void add_strain_of_others(Time time, Parts const& of, IsOther const& is_other,
+                            std::uint8_t const* displaced) {
+    IsOtherOrDisplaced<Table::element::nodes, IsOther> const meets{
+        is_other, std::get<0>(of.layout.tables).elements.rows_of_nodes(), displaced};
+    add(time, of, [&](auto const& table, Tag const* tags, auto const&... arguments) {
+      add_sum_elements_if<Table::groups>(backend_, table, tags, meets, arguments...);
+    });
+  }
+  /// add_some(table, its tags, rows, kernel, sum, fields...): of some elements. Of all instead, where laws read what is kept by the
+  /// number of an element, and a backend sums over copies.
+  template <class AddSome>
+  void add(Time time, Parts const& of, AddSome const& add_some) {
+    auto const& table = std::get<0>(of.layout.tables);
+    auto const rest = node_field<dim>(of.layout.rest), u = node_field<dim>(of.state.u);
+    table.with_geometry([&](auto geometry) {
+      EnergyKernel<typename Table::Laws, geometry.value> const kernel{table.laws};
+      if constexpr (Table::Laws::reads_elements && !sums_at_places<B>)
+        add_sum_elements<Table::groups>(backend_, table.elements, kernel, sums_.data() + time, rest,
+                                        u);
+      else
+        add_some(table.elements, std::get<0>(of.state.elements).tags.data(), of.layout.rows, kernel,
+                 sums_.data() + time, rest, u);
+    });
+  }
+
   B const& backend_;
   typename Parts::template Array<double> sums_;
 };

@@ -101,12 +101,15 @@ struct ElementTerm {
     return value;
   }
 };
-/// The same of the element at a place.
-template <class Term>
+/// The same of the element at a place; −1: zero.
+template <class Term, class Places>
 struct TermAt {
   Term term;
-  Index const* places;
-  __device__ double operator()(Index i) const { return term.of(places[i]); }
+  Places places;
+  __device__ double operator()(Index i) const {
+    Index const e = places[i];
+    return e < 0 ? 0 : term.of(e);
+  }
 };
 
 }  // namespace pliant::detail
