@@ -35,6 +35,7 @@ class ChangedPartsOn {
   using Copies = ArrayCopies<B>;
   using Energies = EnergySumsOn<Parts>;
   static constexpr int dim = Parts::dim;
+  static constexpr Index few_hung = 2048;  // edges and sides on which nodes hang
   template <class U>
   using Array = typename Parts::template Array<U>;
 
@@ -46,7 +47,6 @@ class ChangedPartsOn {
   /// of shape functions.
   ChangedTopology<Parts> refined(typename TreeOn<B>::Refined const& done) {
     synchronize_velocities(parts_);
-    energies_.count_not_finite(parts_);
     energies_.add_kinetic(Energies::before, parts_);
     auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
     backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
@@ -76,7 +76,6 @@ class ChangedPartsOn {
     on_->masses.extend(rows_);
     auto const come = refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest());
     on_->masses.exchange(come);
-    layout.interpolation = interpolation();
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
     RefinedPlaces<B> const places(backend_, on_->order, done);
     energies_.add_strain_at(Energies::before, parts_, places.go.data(), places.go_count);
@@ -89,7 +88,6 @@ class ChangedPartsOn {
 
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
     synchronize_velocities(parts_);
-    energies_.count_not_finite(parts_);
     energies_.add_kinetic(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
@@ -111,10 +109,9 @@ class ChangedPartsOn {
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
                                      std::get<0>(layout.tables).elements.rows_of_nodes(),
                                      ElementsByRows<E>(at_rest())};
-    on_->masses.take_gone(families);
-    layout.interpolation = interpolation();
     MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_),
         weights(backend_, layout.interpolation, rows_);
+    on_->masses.take_gone(families);
     on_->momentum.begin(families, weights_before, weights, on_->masses);
     on_->masses.add_come(families);
     read_masses(layout, weights);
@@ -166,7 +163,7 @@ class ChangedPartsOn {
     return copies.template extended<T>(parts_.state.load, values());
   }
 
-  /// Behind a change, with all but masses and interpolation(), which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
+  /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
   /// of what was held before): holds what is held now, before patches are planned, beside which loops over all take longer.
   template <class Hold>
   Layout new_layout(Copies& copies, Hold const& hold) {
@@ -190,16 +187,18 @@ class ChangedPartsOn {
     copies.make();
     hold(layout.held.data());
     auto blocks = blocks_after_refinement(on_->order, before.first_of_block[0]);
+    // The masters of a few are found while the host plans patches, which those of many would keep waiting.
+    auto& hanging = on_->hanging;
+    bool const are_few = hanging.count_found() <= few_hung;
+    if (are_few) hanging.find_masters(on_->tree);
     make_table(std::get<0>(layout.tables), blocks);
+    if (!are_few) hanging.find_masters(on_->tree);
     layout.first_of_block[0] = std::move(blocks.first);
     layout.mass = unset<T>(backend_, at(rows_));
-    on_->hanging.find_masters(on_->tree);
-    return layout;
-  }
-  /// Waits for what new_layout asked for.
-  InterpolationOn<B> interpolation() {
     backend_.synchronize();
-    return {backend_, on_->hanging.found_rows(on_->tree, on_->rows.of_node()), false, rows_};
+    layout.interpolation = InterpolationOn<B>(
+        backend_, hanging.found_rows(on_->tree, on_->rows.of_node()), false, rows_);
+    return layout;
   }
   void make_table(Table& table, ElementBlocks const& blocks) {
     auto const& before = std::get<0>(parts_.layout.tables);
@@ -264,7 +263,7 @@ class ChangedPartsOn {
     energies_.add_kinetic(Energies::after, changed.parts);
     auto const sums = energies_.read();
     settle(backend_, std::get<0>(changed.parts.layout.tables).elements);
-    if (sums.not_finite > 0) check_fields();
+    if (!is_finite(sums.kinetic[Energies::before])) check_fields();
     on_->masses.template check<T>();
     changed.strain_energy_before = sums.strain[Energies::before] + energy_of_added_terms(parts_);
     changed.strain_energy = sums.strain[Energies::after] + energy_of_added_terms(changed.parts);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 
 #include <pliant/backend/element_sums.hpp>
@@ -15,11 +16,14 @@
 
 namespace pliant::detail {
 
-/// Whether one of two fields is not finite at a node: 1, or 0.
+/// The kinetic energy of a node; no number where its displacement is not finite.
 template <class T, int Dim>
-struct IsNotFinite {
-  LargerRowSize<T, Dim> sizes;
-  PLIANT_HOST_DEVICE double operator()(Index i) const { return is_finite(sizes(i)) ? 0 : 1; }
+struct KineticEnergyOfFinite {
+  KineticEnergy<T, Dim> energy;
+  RowSize<T, Dim> displacement;
+  PLIANT_HOST_DEVICE double operator()(Index i) const {
+    return is_finite(displacement(i)) ? energy(i) : std::numeric_limits<double>::quiet_NaN();
+  }
 };
 
 /// Energies of a body before and after a change of its mesh, summed in the backend's memory and read all at once.
@@ -32,12 +36,12 @@ class EnergySumsOn {
 
  public:
   enum Time : std::size_t { before, after };
+  /// J, by the time; kinetic energies are not finite where displacements or velocities are not.
   struct Sums {
-    std::array<double, 2> strain, kinetic;  // J, by the time
-    double not_finite;  // nodes of which displacements or velocities are not finite, before
+    std::array<double, 2> strain, kinetic;
   };
 
-  explicit EnergySumsOn(B const& backend) : backend_(backend), sums_(zeros<double>(backend, 5)) {}
+  explicit EnergySumsOn(B const& backend) : backend_(backend), sums_(zeros<double>(backend, 4)) {}
 
   /// Of the elements of a body at some places, (count).
   void add_strain_at(Time time, Parts const& of, Index const* places, Index count) {
@@ -60,17 +64,14 @@ class EnergySumsOn {
   }
   /// Velocities have to be of the present time.
   void add_kinetic(Time time, Parts const& parts) {
-    backend_.add_sum(parts.layout.rows, KineticEnergy<T, dim>{parts.v(), parts.layout.mass.data()},
-                     sums_.data() + 2 + time);
-  }
-  void count_not_finite(Parts const& parts) {
-    LargerRowSize<T, dim> const sizes{{node_field<dim>(parts.state.u)},
-                                      {node_field<dim>(parts.state.v)}};
-    backend_.add_sum(parts.layout.rows, IsNotFinite<T, dim>{sizes}, sums_.data() + 4);
+    backend_.add_sum(
+        parts.layout.rows,
+        KineticEnergyOfFinite<T, dim>{{parts.v(), parts.layout.mass.data()}, {parts.u()}},
+        sums_.data() + 2 + time);
   }
   [[nodiscard]] Sums read() const {
     auto const s = download<double>(sums_);
-    return {{s[0], s[1]}, {s[2], s[3]}, s[4]};
+    return {{s[0], s[1]}, {s[2], s[3]}};
   }
 
  private:

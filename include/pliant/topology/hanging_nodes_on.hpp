@@ -125,6 +125,11 @@ class HangingNodesOn {
         LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}},
         LoopStep{2, CopyValue<Index>{counters_.data(), counts_.data()}});
   }
+  /// How many edges and sides were found.
+  [[nodiscard]] Index count_found() const {
+    auto const found = counts_.template first<2>();
+    return found[0] + found[1];
+  }
   /// Numbers the slaves, and asks how many masters they have.
   void find_masters(TreeOn<B> const& tree) {
     auto const found = counts_.template first<2>();
