@@ -9,6 +9,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/constraint/rows_on.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/hanging_lists.hpp>
@@ -64,8 +65,8 @@ class HangingNodesOn {
   /// The same after a refinement: looks at what hung before it, and at what was refined.
   void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
     if (!knows_all_) return find(tree);
-    using detail::LoopStep, detail::CopyValue, detail::IsHungOnEdge, detail::IsHungOnSide,
-        detail::ListStillHung;
+    using detail::LoopStep, detail::CopyValue, detail::FillValue, detail::IsHungOnEdge,
+        detail::IsHungOnSide, detail::ListStillHung;
     using NewEdges = detail::ListNewlyHungEdges<Dim>;
     using NewSides = detail::ListNewlyHungSides<Dim>;
     detail::HangingView<Dim> const view{tree.view()};
@@ -75,10 +76,10 @@ class HangingNodesOn {
                 new_sides = sides_have_nodes_ ? NewSides::each * refined.leaves : 0;
     need(edges_, edge_count_ + new_edges);
     need(sides_, side_count_ + new_sides);
-    counters_ = zeros<Index>(backend_, 2);
+    need(counters_, 2);
     Index *const edges = counters_.data(), *const sides = edges + 1;
     detail::in_turn(
-        backend_,
+        backend_, LoopStep{2, FillValue<Index>{edges, 0}},
         LoopStep{
             edge_count_,
             ListStillHung<IsHungOnEdge<Dim>>{{view}, edges_before_.data(), edges_.data(), edges}},
@@ -94,8 +95,8 @@ class HangingNodesOn {
   void find_after(TreeOn<B> const& tree, Coarsened const& coarsened) {
     if (!knows_all_) return find(tree);
     if (coarsened.merged == 0) return;
-    using detail::LoopStep, detail::CopyValue, detail::IsHungOnEdge, detail::IsHungOnSide,
-        detail::ListStaying, detail::NewNumbers;
+    using detail::LoopStep, detail::CopyValue, detail::FillValue, detail::IsHungOnEdge,
+        detail::IsHungOnSide, detail::ListStaying, detail::NewNumbers;
     using EdgesOfMerged = detail::ListHungEdgesOfMerged<Dim>;
     using SidesOfMerged = detail::ListHungSidesOfMerged<Dim>;
     detail::HangingView<Dim> const view{tree.view()};
@@ -107,14 +108,14 @@ class HangingNodesOn {
                 of_sides = sides_have_nodes_ ? SidesOfMerged::each * coarsened.merged : 0;
     need(edges_, edge_count_ + of_edges);
     need(sides_, side_count_ + of_sides);
-    counters_ = zeros<Index>(backend_, 2);
+    need(counters_, 2);
     edge_stamps_.begin(backend_, at(coarsened.now.edges));
     side_stamps_.begin(backend_, sides_have_nodes_ ? at(coarsened.now.sides) : 0);
     detail::ListOnce const edges{edge_stamps_.data(), edge_stamps_.now(), edges_.data(),
                                  counters_.data()},
         sides{side_stamps_.data(), side_stamps_.now(), sides_.data(), counters_.data() + 1};
     detail::in_turn(
-        backend_,
+        backend_, LoopStep{2, FillValue<Index>{counters_.data(), 0}},
         LoopStep{edge_count_,
                  ListStaying<IsHungOnEdge<Dim>>{
                      {view}, edges_before_.data(), {initial.edges, coarsened.edges}, edges}},
@@ -151,11 +152,11 @@ class HangingNodesOn {
     need(order_, n);
     need(places_, n);
     first_ = unset<Index>(backend_, at(n) + 1);
-    counters_ = zeros<Index>(backend_, 2);
+    need(counters_, 2);
     node_stamps_.begin(backend_, at(nodes));
     Index *const masters = counters_.data(), *const too_many = masters + 1;
     detail::in_turn(
-        backend_, forget,
+        backend_, forget, detail::LoopStep{2, detail::FillValue<Index>{masters, 0}},
         detail::LoopStep{places,
                          detail::ListSlaves<Dim>{hung, is_one_each ? nullptr : start_.data(),
                                                  nodes_.data(), order_.data(), places_.data()}},

@@ -10,6 +10,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/topology/cells_at_edges.hpp>
 #include <pliant/topology/stamps.hpp>
 #include <pliant/topology/tree_passes.hpp>
@@ -32,13 +33,14 @@ class TreeClosure {
                    Stamps<B>& stamps, Index const* marked, Index count, int max_level) {
     stamps.begin(backend, static_cast<std::size_t>(cells));
     grow(backend, list_, static_cast<std::size_t>(cells));
-    counters_ = zeros<Index>(backend, 2);
+    grow(backend, counters_, 2);
     Index *const all = counters_.data(), *const listed = all + 1;
     ListOnce const once{stamps.data(), stamps.now(), list_.data(), all};
+    LoopStep clear{2, FillValue<Index>{all, 0}};
     LoopStep list_marked{count, ListMarked{tree, marked, max_level, once}};
     LoopStep const tell{2, CopyValue<Index>{all, counts_.data()}};
     if (cells == initial.cells) {  // none has coarser neighbours
-      in_turn(backend, list_marked, tell);
+      in_turn(backend, clear, list_marked, tell);
       return told(backend)[0];
     }
     CellsAtEdgesView const at_edges{tree, initial.edges, first_at_edge_.data(),
@@ -47,12 +49,12 @@ class TreeClosure {
     Index n = 0, from = 0;
     for (Index most = count; most > 0; most = n - from) {
       most = std::min(most, std::numeric_limits<Index>::max() / each);
-      in_turn(backend, list_marked, LoopStep{1, CopyValue<Index>{all, listed}},
+      in_turn(backend, clear, list_marked, LoopStep{1, CopyValue<Index>{all, listed}},
               LoopStep{most * each, ListCoarser{at_edges, each, from, listed, once}}, tell);
       auto const counts = told(backend);
       n = counts[0];
       from = std::min(counts[1], from + most);
-      list_marked.n = 0;
+      clear.n = list_marked.n = 0;
     }
     return n;
   }
