@@ -32,10 +32,16 @@ class PatchNumbering {
       share_[i] = shares;
     });
     threads.meet();
-    share_out(threads, shares, [&](int i) {
-      int const place = find_or_insert(keys_, mask_, node(i));
-      place_[i] = static_cast<std::uint16_t>(place);
-      lower_shared(share_[place], i);
+    // Of an element at once where they are few, so that a device waits for its row once.
+    constexpr int group = Nodes <= 4 ? Nodes : 1;
+    share_out(threads, shares / group, [&](int g) {
+      Index nodes_of[group];
+      for (int k = 0; k < group; ++k) nodes_of[k] = node(group * g + k);
+      for (int k = 0; k < group; ++k) {
+        int const i = group * g + k, place = find_or_insert(keys_, mask_, nodes_of[k]);
+        place_[i] = static_cast<std::uint16_t>(place);
+        lower_shared(share_[place], i);
+      }
     });
     threads.meet();
     // Each thread goes through a run of shares: how many of them have a node first, then the numbers of these.
