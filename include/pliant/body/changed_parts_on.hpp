@@ -65,17 +65,17 @@ class ChangedPartsOn {
       on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, held);
     });
     on_->points = std::move(points);
-    in_turn(backend_,
-            filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), on_->point_field(),
-                                 node_field<dim>(u), node_field<dim>(v)),
-            LoopStep{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
-                                                         on_->rows.of_node(),
-                                                         {on_->points.data()},
-                                                         layout.middle,
-                                                         node_field<dim>(layout.rest)}});
     on_->masses.extend(rows_);
     auto const come = refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest());
-    on_->masses.exchange(come);
+    on_->masses.exchange(
+        come,
+        filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), on_->point_field(),
+                             node_field<dim>(u), node_field<dim>(v)),
+        LoopStep{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
+                                                     on_->rows.of_node(),
+                                                     {on_->points.data()},
+                                                     layout.middle,
+                                                     node_field<dim>(layout.rest)}});
     read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
     RefinedPlaces<B> const places(backend_, on_->order, done);
     energies_.add_strain_at(Energies::before, parts_, places.go.data(), places.go_count);
@@ -196,8 +196,7 @@ class ChangedPartsOn {
     layout.first_of_block[0] = std::move(blocks.first);
     layout.mass = unset<T>(backend_, at(rows_));
     backend_.synchronize();
-    layout.interpolation = InterpolationOn<B>(
-        backend_, hanging.found_rows(on_->tree, on_->rows.of_node()), false, rows_);
+    layout.interpolation = hanging.interpolation(on_->tree, on_->rows.of_node(), rows_);
     return layout;
   }
   void make_table(Table& table, ElementBlocks const& blocks) {

@@ -115,10 +115,11 @@ class NodalMassesOn {
   void add_come(Families const& families) {
     shares<true>(families, false).run(backend_);
   }
-  /// Both.
-  template <detail::ChangedFamilies<E> Families>
-  void exchange(Families const& families) {
-    detail::in_turn(backend_, shares<false>(families, true), shares<true>(families, false));
+  /// Both, behind other steps of loops.
+  template <detail::ChangedFamilies<E> Families, class... Steps>
+  void exchange(Families const& families, Steps const&... before) {
+    detail::in_turn(backend_, before..., shares<false>(families, true),
+                    shares<true>(families, false));
   }
   /// Undoes both, to the bit.
   template <detail::ChangedFamilies<E> Families>

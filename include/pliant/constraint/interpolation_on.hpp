@@ -139,12 +139,13 @@ class InterpolationOn {
     to_masters_ = detail::transposed(backend, to_slaves_);
   }
   /// Of slaves in the backend's memory, each once, whose masters are free. `has_negative`: whether weights may be negative;
-  /// `nodes`: a number that those of masters are below.
+  /// `nodes`: a number that those of masters are below; `before`: steps of loops (in_turn), behind which they are filled.
+  template <class... Steps>
   InterpolationOn(B const& backend, RowsOn<B> slaves, bool has_negative = true,
-                  Index nodes = std::numeric_limits<Index>::max())
+                  Index nodes = std::numeric_limits<Index>::max(), Steps const&... before)
       : to_slaves_(std::move(slaves)) {
     if (empty()) return;
-    to_masters_ = detail::transposed(backend, to_slaves_, nodes);
+    to_masters_ = detail::transposed(backend, to_slaves_, nodes, before...);
     if (has_negative)
       magnitude_ = backend.maximum(
           to_slaves_.count,

@@ -86,10 +86,10 @@ struct MagnitudeOfRow {
 };
 
 /// The same entries by the other node, ascending, which are below `nodes`; those of one in the order in which they were. No row
-/// may be empty.
-template <Backend B>
+/// may be empty. `before`: steps of loops, behind which they are filled.
+template <Backend B, class... Steps>
 RowsOn<B> transposed(B const& backend, RowsOn<B> const& rows,
-                     Index nodes = std::numeric_limits<Index>::max()) {
+                     Index nodes = std::numeric_limits<Index>::max(), Steps const&... before) {
   using T = typename B::scalar;
   auto const entries = rows.other.size();
   auto const n = static_cast<Index>(entries);
@@ -99,7 +99,8 @@ RowsOn<B> transposed(B const& backend, RowsOn<B> const& rows,
   RowsOn<B> by_other{rows.others, unset<Index>(backend, entries),
                      unset<Index>(backend, entries + 1), unset<Index>(backend, entries),
                      unset<T>(backend, entries)};
-  in_turn(backend, LoopStep{n, KeysOfEntries{rows.other.data(), keys.data(), order.data()}},
+  in_turn(backend, before...,
+          LoopStep{n, KeysOfEntries{rows.other.data(), keys.data(), order.data()}},
           SortStep{n, keys.data(), order.data(), key_bits(nodes)},
           ScanStep{n, IsFirstOfKey{keys.data()}, row.data()},
           LoopStep{n, TransposeRows<T>{n, keys.data(), order.data(), row.data(), rows.count,

@@ -10,6 +10,7 @@
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
 #include <pliant/backend/value_at.hpp>
+#include <pliant/constraint/interpolation_on.hpp>
 #include <pliant/constraint/rows_on.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/hanging_lists.hpp>
@@ -170,24 +171,11 @@ class HangingNodesOn {
         detail::LoopStep{1, detail::CopyValue<Index>{first_.data() + n, counts_.data() + 4}});
     slaves_ = n;
   }
-  /// What was found, as of `rows`.
-  RowsOn<B> found_rows(TreeOn<B> const& tree, Index const* row_of_node) {
-    if (slaves_ == 0) return {};
-    auto const [edges, sides, masters, too_many, entries] = counts_.template first<5>();
-    if (too_many != 0)
-      throw Error("hanging nodes: one has more than ", detail::MasterList::most,
-                  " masters; keep neighbours of finer elements within one level");
-    RowsOn<B> rows{slaves_,
-                   unset<Index>(backend_, at(slaves_)),
-                   std::move(first_),
-                   unset<Index>(backend_, at(entries)),
-                   unset<T>(backend_, at(entries)),
-                   masters};
-    backend_.for_each(
-        slaves_, detail::FillSlaves<Dim, T>{free_masters(tree), nodes_.data(), row_of_node,
-                                            rows.first.data(), rows.node.data(), rows.other.data(),
-                                            rows.weight.data()});
-    return rows;
+  /// The interpolation by what was found. `rows`: a number that those of nodes are below.
+  InterpolationOn<B> interpolation(TreeOn<B> const& tree, Index const* row_of_node, Index rows) {
+    auto slaves = room_for_slaves();
+    auto const fill = filling(tree, row_of_node, slaves);
+    return {backend_, std::move(slaves), false, rows, fill};
   }
 
  private:
@@ -197,7 +185,30 @@ class HangingNodesOn {
     backend_.synchronize();
     find_masters(tree);
     backend_.synchronize();
-    return found_rows(tree, row_of_node);
+    auto slaves = room_for_slaves();
+    filling(tree, row_of_node, slaves).run(backend_);
+    return slaves;
+  }
+  /// Rows of what was found, without values.
+  RowsOn<B> room_for_slaves() {
+    if (slaves_ == 0) return {};
+    auto const [edges, sides, masters, too_many, entries] = counts_.template first<5>();
+    if (too_many != 0)
+      throw Error("hanging nodes: one has more than ", detail::MasterList::most,
+                  " masters; keep neighbours of finer elements within one level");
+    return {slaves_,
+            unset<Index>(backend_, at(slaves_)),
+            std::move(first_),
+            unset<Index>(backend_, at(entries)),
+            unset<T>(backend_, at(entries)),
+            masters};
+  }
+  detail::LoopStep<detail::FillSlaves<Dim, T>> filling(TreeOn<B> const& tree,
+                                                       Index const* row_of_node,
+                                                       RowsOn<B>& rows) const {
+    return {rows.count,
+            {free_masters(tree), nodes_.data(), row_of_node, rows.first.data(), rows.node.data(),
+             rows.other.data(), rows.weight.data()}};
   }
   [[nodiscard]] detail::HungOn<Dim> hung_on(TreeOn<B> const& tree) const {
     return {{tree.view()}, edges_.data(), sides_.data(), edge_count_};
