@@ -85,8 +85,8 @@ TEST_CASE("patches of which all blocks stay are known from before", "[backend]")
 }
 
 TEST_CASE("patches with other elements of blocks that stay are not known", "[backend]") {
-  auto const [before, after] = change(std::vector<Index>(16, 240), {{1, 247}, {15, 247}});
-  PatchCuts const first(3840, 768, before), then(3854, 768, after);
+  auto const [before, after] = change(std::vector<Index>(16, 240), {{9, 247}, {15, 247}});
+  PatchCuts const first(3840, 768, before), then(3854, 768, after);  // cut anew
   CHECK(then.known_from(first, after) == std::vector<Index>(6, -1));
 
   auto const [full, gone] = change(std::vector<Index>(16, 240), {{5, 0}});

@@ -7,6 +7,7 @@
 #include <pliant/backend/atomic.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/shape_weights.hpp>
+#include <pliant/topology/tree_passes.hpp>
 #include <pliant/topology/tree_view.hpp>
 
 // Passes that find hanging nodes of trees of one degree, for loops of a backend. See HangingNodes for the rule.
