@@ -42,6 +42,7 @@ void check_both_ways(B const& backend, Index cells, std::size_t one_in, int roun
   for (int round = 0; round < rounds; ++round) {
     both.refine_one_in(one_in);
     both.refine_one_in(one_in);
+    both.displace();
     merged += both.coarsen_all_but_one_in(12);
     both.check_all();
     merged += both.coarsen_all_but_one_in(9);

@@ -183,6 +183,14 @@ struct TwoBodies {
     check_place();
     return done.merged;
   }
+  /// Moves all nodes a little, so that those that come to hang are displaced by that.
+  void displace() {
+    auto u = host.displacements();
+    for (auto& of_node : u)
+      for (double& x : of_node) x += 1e-3 * (random() - 0.5);
+    body.set_displacements(u);
+    host.set_displacements(u);
+  }
   void check_all() { check_same(body, host, rounding); }
   void check_place() {
     REQUIRE(is_on_backend(body));

@@ -101,6 +101,11 @@ TEST_CASE("large patches stay where blocks of others beside them change", "[back
   CHECK(first.first() == std::vector<Index>{0, 1920, 3840, 5760, 7680, 9600});
   CHECK(then.first() == std::vector<Index>{0, 1920, 3854, 5774, 7694, 9614});
   CHECK(then.known_from(first, after) == std::vector<Index>{0, -1, 2, 3, 4});
+
+  auto const [full, grown] = change(std::vector<Index>(40, 240), {{9, 400}});
+  PatchCuts const more(40 * 240 + 160, 2048, grown);
+  CHECK(more.first() == std::vector<Index>{0, 1920, 2960, 4000, 5920, 7840, 9760});
+  CHECK(more.known_from({40 * 240, 2048, full}, grown) == std::vector<Index>{0, -1, -1, 2, 3, 4});
 }
 
 TEST_CASE("every element finds its patch", "[backend]") {
