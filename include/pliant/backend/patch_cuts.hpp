@@ -124,14 +124,13 @@ class PatchCuts {
     Index const last = before.of_chapter_[chapter + 1];
     for (Index p = of_chapter_[chapter]; p < of_chapter_[chapter + 1]; ++p) {
       while (blocks.first[block + 1] <= first(p)) ++block;
-      Index const begin = first(p) - blocks.first[block] + blocks.first_before[block],
-                  size = first(p + 1) - first(p);
-      bool stays = true;
-      for (auto b = block; b < blocks.stays.size() && blocks.first[b] < first(p + 1); ++b)
-        stays = stays && blocks.stays[b] != 0;
+      auto staying = block;
+      while (blocks.first[staying] < first(p + 1) && blocks.stays[staying] != 0) ++staying;
+      if (blocks.first[staying] < first(p + 1)) continue;
+      Index const begin = first(p) - blocks.first[block] + blocks.first_before[block];
       while (then < last && before.first(then) < begin) ++then;
-      if (stays && then < last && before.first(then) == begin &&
-          before.first(then + 1) - begin == size)
+      if (then < last && before.first(then) == begin &&
+          before.first(then + 1) - begin == first(p + 1) - first(p))
         known[static_cast<std::size_t>(p)] = then;
     }
   }
