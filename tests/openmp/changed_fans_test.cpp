@@ -201,4 +201,25 @@ TEST_CASE("tables of a mesh of degree two that changed are those made anew", "[o
   for (int threads : {1, 3}) compare_on<Tet10, Curved>(threads, 15, 6);
 }
 
+TEST_CASE("a table knows some patches of a chapter, and plans the others", "[openmp]") {
+  using Elements = OpenMP<double>::Elements<4>;
+  OpenMP<double> const backend;
+  // Eight blocks are eight patches of 2040 elements, of which the first keeps these where the last block has seven more.
+  ElementBlocks blocks{{0, 2100, 4080, 6120, 8160, 10200, 12240, 14280, 16320}};
+  std::vector<std::array<Index, 4>> rows;
+  for (Index e = 0; e < 16320; ++e) rows.push_back({e, e + 1, e + 2, e + 3});
+  Index const nodes = 16340;
+  Elements const before(backend, rows, 1, {}, nodes, NodeOrder::as_given, blocks);
+
+  ElementBlocks changed{blocks.first, {1, 1, 1, 1, 1, 1, 1, 0}, blocks.first};
+  changed.first.back() += 7;
+  for (Index e = 0; e < 7; ++e) rows.push_back({e, e + 5, e + 9, e + 30});
+  std::vector const others(rows.begin() + 14280, rows.end());
+  Elements const after(backend, others, 1, {}, nodes, NodeOrder::as_given, changed, &before);
+  CHECK(after.patch_bounds()[1] == before.patch_bounds()[1]);
+  CHECK(after.patch_bounds()[2] != before.patch_bounds()[2]);
+  Elements const anew(backend, rows, 1, {}, nodes, NodeOrder::as_given, {changed.first});
+  CHECK(described(after, 1) == described(anew, 1));
+}
+
 }  // namespace pliant::test::changed_fans_test
