@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <cstddef>
 #include <random>
+#include <vector>
 
 #include <pliant/topology/shared_list.hpp>
 
@@ -13,13 +16,13 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
   // Lists, and what they should be.
   std::vector<SharedList<int>> lists(1);
   std::vector<std::vector<int>> models(1);
-  for (int round = 0; round < 4000; ++round) {
+  for (int round = 0; round < 2000; ++round) {
     std::size_t const i = any(lists.size());
     auto& list = lists[i];
     auto& model = models[i];
-    switch (any(5)) {
+    switch (any(8)) {
       case 0:
-        for (std::size_t k = any(300); k > 0; --k) {
+        for (std::size_t k = any(8) == 0 ? 20000 : any(300); k > 0; --k) {
           list.push_back(round);
           model.push_back(round);
         }
@@ -45,6 +48,32 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
         model = left;
         break;
       }
+      case 4: {
+        std::size_t const from = model.size(), count = any(8) == 0 ? 20000 : any(300);
+        list.extend(count);
+        model.resize(from + count, round);
+        for (std::size_t k = from; k < model.size(); ++k) list.edit(k) = round;
+        break;
+      }
+      case 5: {
+        if (model.empty()) break;
+        std::size_t const from = model.size() - any(std::min<std::size_t>(model.size(), 1000));
+        std::size_t const count = any(1000);
+        std::vector<int> const before = model;
+        model.resize(from);
+        for (std::size_t k = 0; k < count; ++k) model.push_back(before[k % before.size()]);
+        list.replace_from(from, count, [&](std::size_t k) { return list[k % before.size()]; });
+        break;
+      }
+      case 6: {
+        std::vector<Index> numbers;
+        for (std::size_t at = any(400); at < model.size(); at += 1 + any(6000))
+          numbers.push_back(static_cast<Index>(at));
+        list.edit_listed(numbers, [](int& value, std::size_t k) { value = static_cast<int>(k); });
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+          model[static_cast<std::size_t>(numbers[k])] = static_cast<int>(k);
+        break;
+      }
       default:
         if (lists.size() < 8) {
           auto const copy = list;
@@ -60,7 +89,7 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
     }
   }
   for (std::size_t i = 0; i < lists.size(); ++i) {
-    CHECK(models[i].size() > 256);  // more than a block
+    CHECK(models[i].size() > 2 * 64 * 256);  // several groups of pages
     CHECK(std::vector<int>(lists[i].begin(), lists[i].end()) == models[i]);
   }
 }

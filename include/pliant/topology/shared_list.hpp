@@ -16,7 +16,8 @@
 namespace pliant {
 
 /// A list in pages that its copies share until one of them changes: to copy it takes as long as to copy a pointer per
-/// page, and what a change costs is in proportion to the pages that it touches. Copies may be used in several threads.
+/// page, and what a change costs is in proportion to the pages that it touches. Copies share groups of pages as a whole,
+/// so that they count owners of groups alone. Copies may be used in several threads.
 template <class V>
 class SharedList {
  public:
@@ -47,8 +48,9 @@ class SharedList {
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first),
                   std::min(per_page, size_ - first), table_[first / per_page]->values);
   }
-  SharedList(SharedList const& other) : table_(other.table_), size_(other.size_) {
-    for (Page<V>* page : table_) OwnedPage::of(page).owners.fetch_add(1, std::memory_order_relaxed);
+  SharedList(SharedList const& other)
+      : table_(other.table_), groups_(other.groups_), size_(other.size_) {
+    for (Group* group : groups_) group->owners.fetch_add(1, std::memory_order_relaxed);
   }
   SharedList(SharedList&& other) noexcept { swap(other); }
   SharedList& operator=(SharedList other) noexcept {
@@ -68,32 +70,23 @@ class SharedList {
   [[nodiscard]] Pages<V> pages() const { return {table_.data()}; }
   /// An entry to be changed: one's own, whoever shared it. In a loop of several threads it has to be one's own already.
   V& edit(std::size_t i) {
-    assert(!HostThreads::in_loop() || !OwnedPage::of(table_[i / per_page]).is_shared());
+    assert(!HostThreads::in_loop() || is_own(i / per_page));
     return own(i / per_page).values[i % per_page];
   }
   /// An entry that was edited since the last copy was made: several threads may ask for theirs at once.
   V& edited(std::size_t i) { return pages()[i]; }
 
   void push_back(V const& value) {
-    if (size_ % per_page == 0) {
-      auto page = std::make_unique<OwnedPage>();
-      table_.push_back(page.get());
-      page.release();
-    }
-    own(size_ / per_page).values[size_ % per_page] = value;
-    ++size_;
+    if (size_ % per_page == 0)
+      extend(1);
+    else
+      ++size_;
+    edit(size_ - 1) = value;
   }
   /// Appends entries that have no value until they are edited.
   void extend(std::size_t count) {
-    auto const first_new = table_.size();
-    if (size_ % per_page != 0) own(first_new - 1);
-    table_.resize((size_ + count + per_page - 1) / per_page, nullptr);
-    try {
-      for_each_page(first_new, [&](std::size_t p) { table_[p] = OwnedPage::make(); });
-    } catch (...) {
-      shrink(size_);
-      throw;
-    }
+    if (size_ % per_page != 0) own(size_ / per_page);
+    add_pages(size_ + count, [](std::size_t) { return OwnedPage::make(); });
     size_ += count;
   }
   /// Which entries are to be edited, for `own`: several threads may add to it at once.
@@ -111,6 +104,7 @@ class SharedList {
     std::vector<std::size_t> found;
     for (std::size_t p = 0; p < table_.size(); ++p)
       if (touched.pages_[p].load(std::memory_order_relaxed)) found.push_back(p);
+    for (auto const p : found) own_group(p / per_group);
     detail::for_each_on_host(static_cast<Index>(found.size()), few_pages,
                              [&](Index k) { own(found[static_cast<std::size_t>(k)]); });
   }
@@ -132,24 +126,28 @@ class SharedList {
   template <class Make>
   void replace_from(std::size_t first, std::size_t count, Make const& make) {
     SharedList others = *this;
-    auto const kept = first / per_page;
-    others.shrink(std::min(kept * per_page, size_));
-    others.table_.resize((first + count + per_page - 1) / per_page, nullptr);
-    others.for_each_page(kept, [&](std::size_t p) {
-      auto* const page = others.table_[p] = OwnedPage::make();
+    others.shrink(std::min(first / per_page * per_page, size_));
+    others.add_pages(first + count, [&](std::size_t p) {
+      auto* const page = OwnedPage::make();
       for (std::size_t i = p * per_page; i < std::min((p + 1) * per_page, first + count); ++i)
         page->values[i % per_page] = i < first ? (*this)[i] : make(i - first);
+      return page;
     });
     others.size_ = first + count;
     swap(others);
   }
   /// Takes the entries from this one on away.
   void shrink(std::size_t size) {
-    size_ = size;
-    while (table_.size() > (size + per_page - 1) / per_page) {
-      if (table_.back() != nullptr) OwnedPage::release(table_.back());
-      table_.pop_back();
+    auto const pages = pages_for(size), groups = groups_for(pages);
+    for (; groups_.size() > groups; groups_.pop_back()) Group::release(groups_.back());
+    if (pages < std::min(table_.size(), groups * per_group)) {
+      own_group(groups - 1);
+      for (auto p = pages; p < groups * per_group; ++p)
+        if (auto* const page = std::exchange(groups_.back()->pages[p % per_group], nullptr))
+          OwnedPage::release(page);
     }
+    table_.resize(std::min(pages, table_.size()));
+    size_ = size;
   }
   void clear() { shrink(0); }
   /// Takes those entries from `first` on away for which not stays(place); the others move up.
@@ -165,10 +163,10 @@ class SharedList {
   }
 
  private:
-  static constexpr std::size_t per_page = Page<V>::entries;
-  static constexpr Index few_pages = 16;  // worth a thread
+  static constexpr std::size_t per_page = Page<V>::entries, per_group = 64;  // entries; pages
+  static constexpr Index few_pages = 16;                                     // worth a thread
 
-  /// A page that knows how many lists have it.
+  /// A page that knows how many groups have it.
   struct OwnedPage : Page<V> {
     std::atomic<int> owners{1};
 
@@ -179,29 +177,72 @@ class SharedList {
     }
     [[nodiscard]] bool is_shared() const { return owners.load(std::memory_order_acquire) > 1; }
   };
+  /// Pages side by side, and how many lists have them.
+  struct Group {
+    std::atomic<int> owners{1};
+    std::array<Page<V>*, per_group> pages{};  // null behind the last
+
+    static void release(Group* group) {
+      if (group->owners.fetch_sub(1, std::memory_order_acq_rel) > 1) return;
+      for (Page<V>* page : group->pages)
+        if (page != nullptr) OwnedPage::release(page);
+      delete group;
+    }
+    [[nodiscard]] bool is_shared() const { return owners.load(std::memory_order_acquire) > 1; }
+  };
+
+  static std::size_t pages_for(std::size_t entries) { return (entries + per_page - 1) / per_page; }
+  static std::size_t groups_for(std::size_t pages) { return (pages + per_group - 1) / per_group; }
 
   void swap(SharedList& other) noexcept {
     table_.swap(other.table_);
+    groups_.swap(other.groups_);
     std::swap(size_, other.size_);
   }
-  /// Of pages from this one on, on the threads of the host.
-  template <class F>
-  void for_each_page(std::size_t first, F const& f) const {
-    auto const count = table_.size() - std::min(first, table_.size());
-    detail::for_each_on_host(static_cast<Index>(count), few_pages,
-                             [&](Index p) { f(first + static_cast<std::size_t>(p)); });
+  /// Puts make(page) behind the pages, for so many entries in all, on the threads of the host. Nothing has changed where that
+  /// throws.
+  template <class Make>
+  void add_pages(std::size_t entries, Make const& make) {
+    auto const first = table_.size(), needed = std::max(first, pages_for(entries));
+    if (first < groups_.size() * per_group) own_group(groups_.size() - 1);
+    try {
+      table_.resize(needed, nullptr);
+      groups_.reserve(groups_for(needed));
+      while (groups_.size() < groups_for(needed)) groups_.push_back(new Group);
+      detail::for_each_on_host(static_cast<Index>(needed - first), few_pages, [&](Index k) {
+        auto const p = first + static_cast<std::size_t>(k);
+        groups_[p / per_group]->pages[p % per_group] = table_[p] = make(p);
+      });
+    } catch (...) {
+      shrink(size_);
+      throw;
+    }
+  }
+  [[nodiscard]] bool is_own(std::size_t p) const {
+    return !groups_[p / per_group]->is_shared() && !OwnedPage::of(table_[p]).is_shared();
+  }
+  void own_group(std::size_t g) {
+    if (!groups_[g]->is_shared()) return;
+    auto* const copy = new Group;
+    copy->pages = groups_[g]->pages;
+    for (Page<V>* page : copy->pages)
+      if (page != nullptr) OwnedPage::of(page).owners.fetch_add(1, std::memory_order_relaxed);
+    Group::release(std::exchange(groups_[g], copy));
   }
   Page<V>& own(std::size_t p) {
+    own_group(p / per_group);
     Page<V>*& page = table_[p];
     if (OwnedPage::of(page).is_shared()) {
       auto* const copy = OwnedPage::make();
       std::copy_n(page->values, per_page, copy->values);
       OwnedPage::release(std::exchange(page, copy));
+      groups_[p / per_group]->pages[p % per_group] = copy;
     }
     return *page;
   }
 
-  std::vector<Page<V>*> table_;
+  std::vector<Page<V>*> table_;  // of all groups, for loops
+  std::vector<Group*> groups_;
   std::size_t size_ = 0;
 };
 
