@@ -153,7 +153,7 @@ class ChangesOnBackend {
   template <class Done, class Change>
   void commit(char const* action, std::size_t count, Done const& done, Change const& make) {
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
-    commit_change<true>(parts_, action, count, [&] {
+    commit_change(parts_, action, count, [&] {
       ChangedPartsOn<Parts> parts(parts_, kept);
       auto changed = make(parts);
       // Patches are there now, beside whose plans this takes longer.

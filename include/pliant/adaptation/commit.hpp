@@ -74,20 +74,18 @@ auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level
 namespace detail {
 
 /// Puts a ChangedTopology, which change() gives, in force, and books what it does to energies. `actions`, `count`: in words, and
-/// on how many elements it acts. TellsKinetic: whether it has kinetic energies.
-template <bool TellsKinetic = false, class Parts, class Change>
+/// on how many elements it acts.
+template <class Parts, class Change>
 void commit_change(Parts& parts, std::string actions, std::size_t count, Change const& change) {
   constexpr int dim = Parts::dim;
   wake_all(parts);
-  enum Sum : std::size_t { kinetic, potential, term, all };  // before, and as many behind
+  enum Sum : std::size_t { potential, term, all };  // before, and as many behind
   // Without a value where there is nothing to add up: reading sums waits for a backend.
   std::optional<Sums<2 * all, typename Parts::backend_type>> sums;
-  if (!TellsKinetic || parts.add_watched_term != nullptr) sums.emplace(parts.backend);
+  if (parts.add_watched_term != nullptr) sums.emplace(parts.backend);
   auto const add = [&](Parts& p, std::size_t first) {
     if (!sums) return;
     double* const to = sums->data() + first;
-    if (!TellsKinetic) add_kinetic_energy(p, to + kinetic);
-    if (p.add_watched_term == nullptr) return;
     add_potential_energy(p, to + potential);
     p.add_watched_term(p, to + term);
   };
@@ -98,15 +96,12 @@ void commit_change(Parts& parts, std::string actions, std::size_t count, Change 
   if (changed.changed_rows.marks.size() > 0)  // waits, too
     parts.raise_bounds(parts, next, changed.changed_rows);
   auto const read = sums ? sums->read() : std::array<double, 2 * all>{};
-  auto const energy_of = [](Parts const& p, double strain, std::optional<double> given,
-                            double const* from) {
-    return WatchedEnergy{{strain, given.value_or(from[kinetic]), from[potential]},
+  auto const energy_of = [](Parts const& p, ChangedEnergy const& own, double const* from) {
+    return WatchedEnergy{{own.strain, own.kinetic, from[potential]},
                          square(p.state.integrator.step) * from[term]};
   };
-  auto const before =
-      energy_of(parts, changed.strain_energy_before, changed.kinetic_energy_before, read.data());
-  auto const after =
-      energy_of(next, changed.strain_energy, changed.kinetic_energy, read.data() + all);
+  auto const before = energy_of(parts, changed.before, read.data());
+  auto const after = energy_of(next, changed.after, read.data() + all);
   auto const added_to = [](double from, double to) { return zero_if_not_finite(to - from); };
   LedgerEntry<dim> const entry{next.state.time,
                                std::move(actions),

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include <pliant/backend/carry_rows.hpp>
-#include <pliant/backend/value_at.hpp>
-#include <pliant/body/check_field.hpp>
 #include <pliant/body/touched_elements.hpp>
 #include <pliant/math/each_once.hpp>
 #include <pliant/topology/element_types.hpp>
@@ -48,26 +46,6 @@ struct ValuesAt {
   }
 };
 
-/// How large the values of a row are; infinite where one is not finite.
-template <class T, int Dim>
-struct RowSize {
-  NodeField<T const, Dim> field;
-  PLIANT_HOST_DEVICE double operator()(Index i) const {
-    auto const row = field.at(i);
-    double most = 0;
-    for (int k = 0; k < Dim; ++k)
-      most = max(most, infinite_if_not_finite(static_cast<double>(abs(row[k]))));
-    return most;
-  }
-};
-
-/// The larger one of two fields.
-template <class T, int Dim>
-struct LargerRowSize {
-  RowSize<T, Dim> one, other;
-  PLIANT_HOST_DEVICE double operator()(Index i) const { return max(one(i), other(i)); }
-};
-
 /// Takes fields of nodes over to another topology.
 template <class Parts>
 class CarriedNodes {
@@ -94,13 +72,6 @@ class CarriedNodes {
 
   /// The nodes that it looks at, by their new numbers, ascending.
   std::vector<Index> const& looked_at() const { return after_.nodes; }
-
-  /// Throws Error where a value of a field is not finite.
-  void check(char const* what, Array const& field) const {
-    auto const rows = node_field<dim>(field);
-    if (is_finite(parts_.backend.maximum(parts_.layout.rows, RowSize<T, dim>{rows}))) return;
-    check_field(what, parts_.layout.in_user_order(field), parts_.layout.nodes());
-  }
 
   /// The values before the change that it looks at.
   Values before(Array const& field) const {

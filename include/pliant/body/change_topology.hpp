@@ -7,6 +7,7 @@
 #include <pliant/body/changed_rows.hpp>
 #include <pliant/body/checkpoint.hpp>
 #include <pliant/body/converted_elements.hpp>
+#include <pliant/body/finite_fields.hpp>
 #include <pliant/body/ledger.hpp>
 #include <pliant/body/point_visitors.hpp>
 #include <pliant/body/set_state.hpp>
@@ -124,14 +125,18 @@ void put_in_force(Parts& parts, Parts next) noexcept {
   parts.revision = next.revision + 1;
 }
 
-/// A body's parts on another topology, what held nodes took, and the strain energy, before and after, of elements that
-/// are touched and of force terms.
+/// Energies of a body before or after a change of its mesh, J: the strain energy of elements that are touched and of force
+/// terms, and the kinetic energy of all nodes.
+struct ChangedEnergy {
+  double strain = 0, kinetic = 0;
+};
+
+/// A body's parts on another topology, and what held nodes took.
 template <class Parts>
 struct ChangedTopology {
   Parts parts;
-  Point<Parts::dim> taken;                                          // N s
-  double strain_energy_before, strain_energy = 0;                   // J
-  std::optional<double> kinetic_energy_before{}, kinetic_energy{};  // J, where it tells
+  Point<Parts::dim> taken;  // N s
+  ChangedEnergy before{}, after{};
   ChangedRows<typename Parts::backend_type> changed_rows{};
 };
 
@@ -144,13 +149,11 @@ ChangedTopology<Parts> change_topology(
     Parts& parts, std::shared_ptr<Topology<typename Parts::mesh_type> const> topology,
     Transfer<Parts::dim> const& transfer, GiveBack const& give_back) {
   constexpr int dim = Parts::dim;
-  synchronize_velocities(parts);
+  double const kinetic_before = detail::kinetic_energy_of_finite(parts);
   detail::TouchedElements<typename Parts::mesh_type> const touched(
       *parts.state.topology, *topology, transfer,
       [&](std::vector<Index> const& at) { return detail::ElementsAtNodes<Parts>(parts, at); });
   detail::CarriedNodes<Parts> const nodes(parts, *topology, transfer, touched);
-  nodes.check("change of the mesh (displacements)", parts.state.u);
-  nodes.check("change of the mesh (velocities)", parts.state.v);
   auto const u = nodes.after(nodes.before(parts.state.u));
   auto v_before = nodes.before(parts.state.v);
   auto v = nodes.after(v_before);
@@ -185,8 +188,9 @@ ChangedTopology<Parts> change_topology(
 
   // As they are, and not by the body's setters, which stop driven nodes.
   ChangedTopology<Parts> changed{
-      parts_on(parts, std::move(layout), std::move(topology), std::move(prescribed)), taken,
-      energy_before};
+      parts_on(parts, std::move(layout), std::move(topology), std::move(prescribed)),
+      taken,
+      {energy_before, kinetic_before}};
   auto& next = changed.parts;
   auto& state = next.state;
   state.record.totals = detail::closed_totals(parts);
@@ -215,9 +219,11 @@ ChangedTopology<Parts> change_topology(
   changed.changed_rows =
       detail::changed_rows(parts, next.layout, touched.nodes(),
                            transfer.staying_nodes() < transfer.old_nodes(), touched.displaces());
-  changed.strain_energy = detail::energy_of_some(
-      std::as_const(next),
-      [&]<Element E>(auto const& visit) { touched.template visit_after<E>(visit); }, tags);
+  changed.after = {
+      detail::energy_of_some(
+          std::as_const(next),
+          [&]<Element E>(auto const& visit) { touched.template visit_after<E>(visit); }, tags),
+      kinetic_energy_of(next)};
   return changed;
 }
 

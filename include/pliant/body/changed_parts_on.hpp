@@ -15,6 +15,7 @@
 #include <pliant/body/element_rows_on.hpp>
 #include <pliant/body/energy_sums_on.hpp>
 #include <pliant/body/fill_new_nodes_on.hpp>
+#include <pliant/body/finite_fields.hpp>
 #include <pliant/body/gone_nodes_on.hpp>
 #include <pliant/force/forces.hpp>
 #include <pliant/topology/refined_elements.hpp>
@@ -95,8 +96,9 @@ class ChangedPartsOn {
     on_->hanging.find_after(on_->tree, done);
     on_->order.coarsen(on_->tree, done);
     on_->rows.coarsen(done);
-    double const speed = backend_.maximum(parts_.layout.rows, sizes_of(parts_.state.v));  // m/s
-    if (!is_finite(speed)) check_fields();
+    double const speed =  // m/s
+        backend_.maximum(parts_.layout.rows, RowSize<T, dim>{std::as_const(parts_).v()});
+    if (!is_finite(speed)) check_fields(std::as_const(parts_));
     rows_ = on_->rows.count();
     Copies copies(backend_);
     auto u = copies.template extended<T>(parts_.state.u, values());
@@ -140,17 +142,6 @@ class ChangedPartsOn {
   [[nodiscard]] std::size_t values() const { return node_stride * at(rows_); }
   NodeField<double const, dim> at_rest() const { return {on_->points.data()}; }
 
-  static RowSize<T, dim> sizes_of(Array<T> const& field) { return {node_field<dim>(field)}; }
-  /// Throws Error where a field is not finite.
-  void check_fields() {
-    auto const& layout = parts_.layout;
-    auto const& state = parts_.state;
-    LargerRowSize<T, dim> const both{sizes_of(state.u), sizes_of(state.v)};
-    if (is_finite(backend_.maximum(layout.rows, both))) return;
-    check_field("change of the mesh (displacements)", layout.in_user_order(state.u),
-                layout.nodes());
-    check_field("change of the mesh (velocities)", layout.in_user_order(state.v), layout.nodes());
-  }
   void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
     auto const changed = changed_when_asked(parts_, on_, std::move(cells), merged);
     topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
@@ -230,8 +221,7 @@ class ChangedPartsOn {
     on_->masses.round(kilograms_->data(), layout.mass.data());
   }
   ChangedTopology<Parts> parts_with(Layout layout, Array<T> u, Array<T> v, Array<T> load) {
-    ChangedTopology<Parts> changed{
-        parts_on(parts_, std::move(layout), topology_, prescribed_), {}, 0};
+    ChangedTopology<Parts> changed{parts_on(parts_, std::move(layout), topology_, prescribed_), {}};
     auto& next = changed.parts;
     next.state.u = std::move(u);
     next.state.v = std::move(v);
@@ -262,12 +252,12 @@ class ChangedPartsOn {
     energies_.add_kinetic(Energies::after, changed.parts);
     auto const sums = energies_.read();
     settle(backend_, std::get<0>(changed.parts.layout.tables).elements);
-    if (!is_finite(sums.kinetic[Energies::before])) check_fields();
+    if (!is_finite(sums.kinetic[Energies::before])) check_fields(std::as_const(parts_));
     on_->masses.template check<T>();
-    changed.strain_energy_before = sums.strain[Energies::before] + energy_of_added_terms(parts_);
-    changed.strain_energy = sums.strain[Energies::after] + energy_of_added_terms(changed.parts);
-    changed.kinetic_energy_before = sums.kinetic[Energies::before];
-    changed.kinetic_energy = sums.kinetic[Energies::after];
+    changed.before = {sums.strain[Energies::before] + energy_of_added_terms(parts_),
+                      sums.kinetic[Energies::before]};
+    changed.after = {sums.strain[Energies::after] + energy_of_added_terms(changed.parts),
+                     sums.kinetic[Energies::after]};
   }
 
   Parts& parts_;

@@ -3,28 +3,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <tuple>
 
 #include <pliant/backend/element_sums.hpp>
 #include <pliant/backend/value_at.hpp>
-#include <pliant/body/carried_nodes.hpp>
 #include <pliant/body/change_passes.hpp>
 #include <pliant/body/element_rows_on.hpp>
-#include <pliant/body/motion.hpp>
+#include <pliant/body/finite_fields.hpp>
 #include <pliant/force/element_kernels.hpp>
 
 namespace pliant::detail {
-
-/// The kinetic energy of a node; no number where its displacement is not finite.
-template <class T, int Dim>
-struct KineticEnergyOfFinite {
-  KineticEnergy<T, Dim> energy;
-  RowSize<T, Dim> displacement;
-  PLIANT_HOST_DEVICE double operator()(Index i) const {
-    return is_finite(displacement(i)) ? energy(i) : std::numeric_limits<double>::quiet_NaN();
-  }
-};
 
 /// Energies of a body before and after a change of its mesh, summed in the backend's memory and read all at once.
 template <class Parts>
@@ -64,10 +52,8 @@ class EnergySumsOn {
   }
   /// Velocities have to be of the present time.
   void add_kinetic(Time time, Parts const& parts) {
-    backend_.add_sum(
-        parts.layout.rows,
-        KineticEnergyOfFinite<T, dim>{{parts.v(), parts.layout.mass.data()}, {parts.u()}},
-        sums_.data() + 2 + time);
+    backend_.add_sum(parts.layout.rows, kinetic_energy_of_finite_nodes(parts),
+                     sums_.data() + 2 + time);
   }
   [[nodiscard]] Sums read() const {
     auto const s = download<double>(sums_);

@@ -112,11 +112,9 @@ void make_room_for_forces(Parts& parts) {
   for_each_force_term(parts,
                       [&](auto const& term) { scratch = std::max(scratch, term.scratch_nodes()); });
   std::size_t const rows = static_cast<std::size_t>(parts.layout.rows + scratch);
+  forget_forces(parts);
   if (parts.layout.f.size() < node_stride * rows)
     parts.layout.f = zeros<typename Parts::T>(parts.backend, node_stride * rows);
-  else
-    clear_rows(parts, parts.f());
-  parts.forces_current = parts.forces_complete = false;
   parts.scratch.reset();
   parts.schedule.reset();
   ++parts.revision;
