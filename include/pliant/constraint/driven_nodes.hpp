@@ -26,12 +26,16 @@ struct Prescribe {
   T const* rows;  // (listed nodes, 2 Dim): displacement and velocity; null: the same for all
 
   PLIANT_HOST_DEVICE void operator()(Index n) const {
+    auto const put = [&](auto const& own_displacement, auto const& own_velocity) {
+      for (int k = 0; k < Dim; ++k)
+        if (directions >> k & 1) {
+          u(nodes[n], k) = own_displacement[k];
+          v(nodes[n], k) = own_velocity[k];
+        }
+    };
+    if (rows == nullptr) return put(displacement, velocity);
     T const* const row = rows + 2 * Dim * static_cast<std::ptrdiff_t>(n);
-    for (int k = 0; k < Dim; ++k)
-      if (directions >> k & 1) {
-        u(nodes[n], k) = rows ? row[k] : displacement[k];
-        v(nodes[n], k) = rows ? row[Dim + k] : velocity[k];
-      }
+    put(row, row + Dim);
   }
 };
 
