@@ -172,7 +172,7 @@ struct Tables {
     values =
         inherited_values(backend, mesh.order, std::as_const(values).data(), 2, volumes_on.data());
     backend.synchronize();
-    blocks = blocks_after_refinement(mesh.order, blocks.first);
+    blocks = blocks_after_change(mesh.order, blocks.first);
     make(on.rows_of_nodes(), true);
     double const made = sum_come(Energy{});
     CHECK((made > 0) == plan.has_value());

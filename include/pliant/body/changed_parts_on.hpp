@@ -177,7 +177,7 @@ class ChangedPartsOn {
     layout.held = copies.template extended<DirectionMask>(before.held, at(rows_));
     copies.make();
     hold(layout.held.data());
-    auto blocks = blocks_after_refinement(on_->order, before.first_of_block[0]);
+    auto blocks = blocks_after_change(on_->order, before.first_of_block[0]);
     // The masters of a few are found while the host plans patches, which those of many would keep waiting.
     auto& hanging = on_->hanging;
     bool const are_few = hanging.count_found() <= few_hung;

@@ -162,8 +162,7 @@ typename B::template Array<Index> element_rows(B const& backend, TreeView const&
 /// those with as many leaves as before. `first_before`: the blocks before it. The backend has to be waited for since the change of
 /// the order.
 template <Backend B>
-ElementBlocks blocks_after_refinement(LeafOrderOn<B> const& order,
-                                      std::vector<Index> first_before) {
+ElementBlocks blocks_after_change(LeafOrderOn<B> const& order, std::vector<Index> first_before) {
   ElementBlocks blocks{order.told_first_of_block(), {}, std::move(first_before)};
   auto const &now = blocks.first, &then = blocks.first_before;
   blocks.stays.resize(now.size() - 1);
