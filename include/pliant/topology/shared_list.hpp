@@ -77,11 +77,13 @@ class SharedList {
   V& edited(std::size_t i) { return pages()[i]; }
 
   void push_back(V const& value) {
-    if (size_ % per_page == 0)
+    if (size_ % per_page == 0) {
       extend(1);
-    else
+      edited(size_ - 1) = value;
+    } else {
+      own(size_ / per_page).values[size_ % per_page] = value;
       ++size_;
-    edit(size_ - 1) = value;
+    }
   }
   /// Appends entries that have no value until they are edited.
   void extend(std::size_t count) {
