@@ -26,16 +26,12 @@ struct Prescribe {
   T const* rows;  // (listed nodes, 2 Dim): displacement and velocity; null: the same for all
 
   PLIANT_HOST_DEVICE void operator()(Index n) const {
-    auto const put = [&](auto const& own_displacement, auto const& own_velocity) {
-      for (int k = 0; k < Dim; ++k)
-        if (directions >> k & 1) {
-          u(nodes[n], k) = own_displacement[k];
-          v(nodes[n], k) = own_velocity[k];
-        }
-    };
-    if (rows == nullptr) return put(displacement, velocity);
-    T const* const row = rows + 2 * Dim * static_cast<std::ptrdiff_t>(n);
-    put(row, row + Dim);
+    auto const row = std::ptrdiff_t{2 * Dim} * n;
+    for (int k = 0; k < Dim; ++k)
+      if (directions >> k & 1) {
+        u(nodes[n], k) = rows ? rows[row + k] : displacement[k];
+        v(nodes[n], k) = rows ? rows[row + Dim + k] : velocity[k];
+      }
   }
 };
 
@@ -71,14 +67,14 @@ struct MotionWork {
 
   PLIANT_HOST_DEVICE double operator()(Index n) const {
     Index const i = nodes[n];
-    T const* const row = rows + 2 * Dim * static_cast<std::ptrdiff_t>(n);
+    auto const row = std::ptrdiff_t{2 * Dim} * n;
     double work = 0;
     for (int k = 0; k < Dim; ++k) {
       if (!(directions >> k & 1)) continue;
       T force = f(i, k) + mass[i] * gravity[k];
       if (load) force += NodeField<T const, Dim>{load}(i, k);
       double const before = static_cast<double>(v(i, k));
-      double const after = static_cast<double>(rows ? row[Dim + k] : velocity[k]);
+      double const after = static_cast<double>(rows ? rows[row + Dim + k] : velocity[k]);
       work -= static_cast<double>(force) * (lag * before + (drifts ? kick * after : 0.0));
       if (drifts) work += static_cast<double>(mass[i]) * (after * after - before * before) / 2;
     }
