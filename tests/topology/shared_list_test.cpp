@@ -1,11 +1,33 @@
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <new>
+#include <numeric>
 #include <random>
 #include <vector>
 
 #include <pliant/topology/shared_list.hpp>
 
 #include "support/catch.hpp"
+
+namespace {
+std::atomic<long> allocations_left{std::numeric_limits<long>::max()};
+}
+
+// Not inlined, so that compilers do not take malloc for another way to allocate.
+[[gnu::noinline]] void* operator new(std::size_t size, std::nothrow_t const&) noexcept {
+  return allocations_left-- > 0 ? std::malloc(size) : nullptr;
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  void* const memory = operator new(size, std::nothrow);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 // Copies of a SharedList, and what changes in one of them.
 namespace pliant::test {
@@ -92,6 +114,44 @@ TEST_CASE("copies of a shared list change by themselves", "[topology]") {
     CHECK(models[i].size() > 2 * 64 * 256);  // several groups of pages
     CHECK(std::vector<int>(lists[i].begin(), lists[i].end()) == models[i]);
   }
+}
+
+TEST_CASE("a shared list is what it was where memory runs out", "[topology]") {
+  constexpr std::size_t group = 64 * 256;
+  std::vector<int> values(3 * group + 1000);
+  std::iota(values.begin(), values.end(), 0);
+  SharedList<int> const kept(values);
+  std::fill(values.end() - 1000, values.end(), -1);
+  auto const check = [&](std::function<void(SharedList<int>&)> const& change, int pushed = 0) {
+    int failed = 0;
+    for (bool done = false; !done && failed < 1000;) {
+      SharedList<int> list = kept;  // of which pages at the end are its own
+      for (std::size_t i = values.size() - 1000; i < values.size(); ++i) list.edit(i) = -1;
+      allocations_left = failed;
+      try {
+        change(list);
+        done = true;
+      } catch (std::bad_alloc const&) {
+        ++failed;
+      }
+      allocations_left = std::numeric_limits<long>::max();
+      auto wanted = values;
+      for (int k = 0; k < pushed && wanted.size() < list.size(); ++k) wanted.push_back(k);
+      bool const is_as_it_was = std::vector<int>(list.begin(), list.end()) == wanted;
+      CHECK((done || is_as_it_was));
+    }
+    CHECK(failed > 0);
+    CHECK(failed < 1000);
+  };
+  check([](auto& list) { list.shrink(group + 300); });
+  check([](auto& list) { list.edit(5) = 7; });
+  check([](auto& list) { list.extend(20000); });
+  check(
+      [](auto& list) {
+        for (int k = 0; k < 30; ++k) list.push_back(k);  // within the last page, and behind it
+      },
+      30);
+  check([](auto& list) { list.replace_from(group + 300, 2000, [](std::size_t) { return 3; }); });
 }
 
 }  // namespace pliant::test

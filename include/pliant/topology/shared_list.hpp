@@ -141,13 +141,12 @@ class SharedList {
   /// Takes the entries from this one on away.
   void shrink(std::size_t size) {
     auto const pages = pages_for(size), groups = groups_for(pages);
+    bool const cuts_group = pages < std::min(table_.size(), groups * per_group);
+    if (cuts_group) own_group(groups - 1);  // before anything goes, as memory may run out
     for (; groups_.size() > groups; groups_.pop_back()) Group::release(groups_.back());
-    if (pages < std::min(table_.size(), groups * per_group)) {
-      own_group(groups - 1);
-      for (auto p = pages; p < groups * per_group; ++p)
-        if (auto* const page = std::exchange(groups_.back()->pages[p % per_group], nullptr))
-          OwnedPage::release(page);
-    }
+    for (auto p = pages; cuts_group && p < groups * per_group; ++p)
+      if (auto* const page = std::exchange(groups_.back()->pages[p % per_group], nullptr))
+        OwnedPage::release(page);
     table_.resize(std::min(pages, table_.size()));
     size_ = size;
   }
