@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -82,7 +83,7 @@ auto body_to_change(B const& backend, int cells) {
   }
 }
 
-/// Some elements of a mesh in which one was refined before, or what that made of them back to what they were.
+/// Some elements of a mesh in which one was refined before, or their children, and no others, back to what they were.
 template <class F, class B>
 void time_change(benchmark::State& state, B const& backend, int cells,
                  std::vector<Index> const& marked, bool back, Beside beside) {
@@ -110,20 +111,23 @@ void time_change(benchmark::State& state, B const& backend, int cells,
     auto const levels = refinement_levels<E>(body);
     for (std::size_t e = 0; e < levels.size(); ++e)
       if (levels[e] > 0) found.push_back(static_cast<Index>(e));
-    return Lists{found};
+    return found;
   };
   for (auto _ : state) {
     refine(body, {{last}});
+    auto const beside = static_cast<std::ptrdiff_t>(children().size());
     go_on();
     double const there = seconds(backend, [&] {
       refine(body, marked_lists);
       go_on();
     });
-    auto const made = children();
+    auto const all = children();  // new ones follow others
+    Lists const made{{all.begin() + beside, all.end()}};
     double const again = seconds(backend, [&] {
       coarsen(body, made);
       go_on();
     });
+    coarsen(body, {children()});
     state.SetIterationTime(back ? again : there);
   }
   if (beside == Beside::sleep && asleep(body).patches == 0) state.SkipWithError("nothing sleeps");
