@@ -80,7 +80,8 @@ class PatchRows {
       Index* target = targets(p);
       for (Index const node : nodes_of(p)) {
         char& taken = is_taken[static_cast<std::size_t>(node)];
-        *target++ = taken != 0 ? nodes + rows : node;  // without a branch
+        Index const own = taken - 1;  // all bits, or none: compilers take a choice for a branch
+        *target++ = (node & own) | ((nodes + rows) & ~own);
         foreign[static_cast<std::size_t>(rows)] = node;
         rows += taken;
         taken = 1;
@@ -139,13 +140,15 @@ class PatchRows {
     for (Index const node : foreign)
       has_rows[static_cast<std::size_t>(node) / 64] |= std::uint64_t{1} << (node % 64);
     auto fold_of = HostArray<Index>::unset(static_cast<std::size_t>(nodes));  // by such nodes
-    folded_.reserve(foreign.size());
+    folded_.resize(foreign.size());
+    Index count = 0;
     for (std::size_t word = 0; word < has_rows.size(); ++word)
       for (auto left = has_rows[word]; left != 0; left &= left - 1) {
         auto const node = static_cast<Index>(64 * word) + std::countr_zero(left);
-        fold_of.data()[node] = folded_count();
-        folded_.push_back(node);
+        fold_of.data()[node] = count;
+        folded_[static_cast<std::size_t>(count++)] = node;
       }
+    folded_.resize(static_cast<std::size_t>(count));
     row_folds_.resize(foreign.size());
     for_each_on_host(scratch_nodes(), few_rows, [&](Index r) {
       auto const row = static_cast<std::size_t>(r);
