@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <vector>
 
 #include <pliant/body/cell_order.hpp>
@@ -36,7 +35,7 @@ struct RefinedMesh {
   std::vector<Index> leaves_before;
   typename TreeOn<B>::Refined refined{};
   Coarsened coarsened{};
-  // Of the last change: new numbers of cells and nodes, −1: gone; and families that were merged.
+  // Of the last change: new numbers of cells and nodes, and families that were merged.
   Renumbering renumbered;
   std::vector<MergedFamily> families;
 
@@ -77,7 +76,7 @@ struct RefinedMesh {
     tree.keep();
     auto const now = leaves();
     for (std::size_t r = 0; r < parents.size(); ++r) {
-      families[r].cell = renumbered.cells[at(parents[r])];
+      families[r].cell = renumbered.cells[parents[r]];
       auto const place = std::ranges::find(now, families[r].cell);
       families[r].place = static_cast<Index>(place - now.begin());
     }
@@ -91,10 +90,6 @@ struct RefinedMesh {
     leaves_before = leaves();
     families.clear();
     renumbered = {};
-    renumbered.nodes.resize(host->points().size());
-    renumbered.cells.resize(host->cells().size());
-    std::iota(renumbered.nodes.begin(), renumbered.nodes.end(), 0);
-    std::iota(renumbered.cells.begin(), renumbered.cells.end(), 0);
   }
 };
 

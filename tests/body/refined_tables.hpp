@@ -211,7 +211,7 @@ struct Tables {
     for (auto const& own : ordered.cells[0]) leaves.push_back(own->cells);
     if (changed) {
       for (auto& own : leaves_of_blocks)
-        for (Index& c : own) c = mesh.renumbered.cells[at(c)];
+        for (Index& c : own) c = mesh.renumbered.cells[c];
       for (std::size_t b = 0; b < leaves.size(); ++b)
         wanted.stays.push_back(leaves[b] == leaves_of_blocks[b] ? 1 : 0);
       CHECK(blocks.stays == wanted.stays);
@@ -279,7 +279,7 @@ struct Tables {
   std::vector<double> counts_of_gone(std::vector<Tag> const& tags_before) const {
     std::vector<double> counts(2);
     for (std::size_t i = 0; i < tags_before.size(); ++i) {
-      Index const now = mesh.renumbered.cells[at(mesh.leaves_before[i])];
+      Index const now = mesh.renumbered.cells[mesh.leaves_before[i]];
       if (now < 0 || !mesh.host->is_leaf(now)) counts[tags_before[i]] += 1;
     }
     return counts;

@@ -27,7 +27,7 @@ void check_order(RefinedMesh<B, Es...> const& mesh) {
       taken(mesh.backend, mesh.order.places(), static_cast<Index>(mesh.host->cells().size()));
   auto const from = taken(mesh.backend, mesh.order.from(), mesh.order.count());
   auto before = mesh.leaves_before;
-  for (Index& c : before) c = mesh.renumbered.cells[at(c)];
+  for (Index& c : before) c = mesh.renumbered.cells[c];
   CHECK(taken(mesh.backend, mesh.order.before(), mesh.order.count_before()) == before);
   int wrong = 0, merged = 0;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -79,7 +79,7 @@ void check_rows(RefinedMesh<B, Es...> const& mesh) {
   std::vector<Index> freed;
   std::size_t first_new = 0;
   for (std::size_t old = 0; old < before.of_node.size(); ++old) {
-    Index const now = mesh.renumbered.nodes[old], row = before.of_node[old];
+    Index const now = mesh.renumbered.nodes[static_cast<Index>(old)], row = before.of_node[old];
     if (now < 0) {
       freed.push_back(row);
       wrong += rows.node[at(row)] >= 0;

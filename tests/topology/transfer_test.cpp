@@ -77,7 +77,7 @@ TEST_CASE("facets of solids give way to four parts that run round as they do", "
 inline Transfer<2> merging() {
   return Transfer<2>(
       {.old_nodes = 6,
-       .renumbered = {0, 1, -1, 2, -1, 3},
+       .renumbered = {1, {1, -1, 2, -1, 3}},
        .gone = {{2, {{0, 0.25}, {5, 0.75}}}, {4, {{1, 0.5}, {3, 0.5}}}},
        .old_elements = {6},
        .origins = {{{4, -1}, {0, Transfer<2>::Origin::merged, 0}, {5, -1}}},
@@ -95,6 +95,22 @@ TEST_CASE("values at nodes that go are left behind, and sums handed on", "[topol
   CHECK(transfer().carry_sums(std::vector<double>{1, 2, 3, 4, 5, 6}) ==
         std::vector<double>{1, 2, 3, 4, 5, 6, 0, 0, 0});
   CHECK_THROWS_AS(t.carry_sums(std::vector<double>(4)), Error);
+}
+
+TEST_CASE("nodes that stay are told their numbers before", "[topology]") {
+  auto const t = merging();
+  CHECK(t.renumbers());
+  CHECK(t.staying_nodes() == 4);
+  CHECK(t.first_renumbered() == 2);
+  auto const old = t.old_numbers();
+  Index const wanted[] = {0, 1, 3, 5};
+  for (Index node = 0; node < 4; ++node) {
+    CHECK(old[node] == wanted[node]);
+    CHECK(t.renumbered(old[node]) == node);
+  }
+  CHECK(!transfer().renumbers());
+  CHECK(transfer().old_numbers().keeps_all());
+  CHECK(transfer().old_numbers()[5] == 5);
 }
 
 TEST_CASE("merged elements have their children's mean by volume, or their most frequent value",
@@ -118,6 +134,13 @@ TEST_CASE("parts of a facet are made whole where all of them are listed", "[topo
   CHECK_THROWS_WITH(t.carry_facets({{2, 5}}), says("nodes 0 and 2") && says("not all are listed"));
 }
 
+TEST_CASE("parts of a facet all of whose nodes stay are made whole too", "[topology]") {
+  Transfer<3> const t({.old_nodes = 5, .merged = {{{0, 1, 2, 3}, {{0, 1, 2}, {0, 2, 3}}}}});
+  using Facets = std::vector<Facet<3>>;
+  CHECK(t.changed_facets({{0, 1, 2}, {0, 2, 3}}) == Facets{{0, 1, 2, 3}});
+  CHECK(!t.changed_facets({{0, 1, 4}}));
+}
+
 TEST_CASE("facets that stay as they are, numbers included, are told from others", "[topology]") {
   auto const t = transfer(), merged = merging();
   using Facets = std::vector<Facet<2>>;
@@ -128,7 +151,7 @@ TEST_CASE("facets that stay as they are, numbers included, are told from others"
   CHECK(merged.changed_facets({{0, 2}, {2, 5}}) == Facets{{0, 3}});
   CHECK(!merged.changed_facets({}));
   Transfer<2> const both({.old_nodes = 4,
-                          .renumbered = {0, -1, 1, 2},
+                          .renumbered = {0, {0, -1, 1, 2}},
                           .new_nodes = {{3, {{1, 0.5}, {2, 0.5}}}},
                           .gone = {{1, {{0, 1}}}},
                           .old_elements = {1},

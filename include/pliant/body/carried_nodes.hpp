@@ -110,8 +110,7 @@ class CarriedNodes {
   std::size_t old_node_count() const { return static_cast<std::size_t>(transfer_.old_nodes()); }
   /// −1 for a new node.
   Index old_number(Index now) const {
-    if (now >= transfer_.staying_nodes()) return -1;
-    return old_numbers_.empty() ? now : old_numbers_[static_cast<std::size_t>(now)];
+    return now < transfer_.staying_nodes() ? old_numbers_[now] : -1;
   }
   /// Those of elements that come or go, of hanging nodes and what they hang at, and parents of new nodes.
   std::vector<Index> nodes_before(Topology<M> const& before, Topology<M> const& after,
@@ -144,7 +143,7 @@ class CarriedNodes {
 
   Parts const& parts_;
   Transfer<dim> const& transfer_;
-  std::vector<Index> old_numbers_;
+  NumberMap old_numbers_;
   NodeSubset before_, after_;
   typename Parts::template Array<Index> places_before_;
 };

@@ -43,7 +43,7 @@ class ChangedNodeRows {
     rows_.region.resize(pages, -2);
     if (transfer.renumbers()) {
       rows_.of_node.resize(static_cast<std::size_t>(transfer.staying_nodes()));
-      for (Index old = 0; old < transfer.old_nodes(); ++old) {
+      for (Index old = transfer.first_renumbered(); old < transfer.old_nodes(); ++old) {
         Index const row = before.of_node[static_cast<std::size_t>(old)],
                     now = transfer.renumbered(old);
         rows_.node[static_cast<std::size_t>(row)] = now;

@@ -185,9 +185,7 @@ class TouchedElements {
   }
 
   /// The number before of a node that stays.
-  Index old_number(Index node) const {
-    return old_numbers_.empty() ? node : old_numbers_[static_cast<std::size_t>(node)];
-  }
+  Index old_number(Index node) const { return old_numbers_[node]; }
   /// Whether elements at a node, by its new number, come or go.
   bool changes_elements(Index node) const { return (flags(node) & of_elements) != 0; }
   /// Whether a node hangs otherwise than before.
@@ -276,7 +274,7 @@ class TouchedElements {
 
   std::vector<char> nodes_;     // by the new number
   std::vector<Index> touched_;  // nodes, by the new number
-  std::vector<Index> old_numbers_;
+  NumberMap old_numbers_;
   FamilyNodes<M> families_before_, families_after_;
   ElementList<M> staying_before_, staying_after_;  // in the same order
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -47,15 +46,9 @@ struct ChangedCells {
   std::size_t raised = 0;
 
   /// Cells before this one keep their numbers.
-  Index first_renumbered() const {
-    return coarsening.renumbered.cells.empty() ? std::numeric_limits<Index>::max()
-                                               : coarsening.renumbered.first_cell;
-  }
+  Index first_renumbered() const { return coarsening.renumbered.cells.first(); }
   /// The new number of a cell.
-  Index renumbered(Index c) const {
-    auto const& cells = coarsening.renumbered.cells;
-    return cells.empty() ? c : cells[static_cast<std::size_t>(c)];
-  }
+  Index renumbered(Index c) const { return coarsening.renumbered.cells[c]; }
 };
 
 /// Makes changes of cells. Those that are refined, or merged, are not raised, and neither they nor raised ones are split.

@@ -55,7 +55,8 @@ class ElementChanges {
       types_.emplace_back(kind_of<typename E::cell>, nodes_on_cell<E>);
     });
     auto const& [parents, split] = std::tie(changed.refinement.parents, changed.split);
-    note_old_numbers(parents.empty() && split.empty());
+    if (!parents.empty() || !split.empty())
+      old_numbers_ = changed.coarsening.renumbered.cells.inverse();
     first_converted_ = merged.size();
     first_divided_ = first_converted_ + changed.converted.size();
     first_split_ = first_divided_ + parents.size();
@@ -174,7 +175,7 @@ class ElementChanges {
     } else if (f < first_divided_) {
       members[0] = old_element(changed_.converted[f - first_converted_], leaving);
     } else {
-      members[0] = old_element(old_number(divided(f)), leaving);
+      members[0] = old_element(old_numbers_[divided(f)], leaving);
     }
   }
   /// The cell that a family divides.
@@ -214,14 +215,6 @@ class ElementChanges {
   void list_arriving(Index old, int child, std::size_t family) {
     arriving_.push_back({changed_.renumbered(old), child, family, old});
   }
-  void note_old_numbers(bool none_is_asked_for) {
-    auto const& renumbered = changed_.coarsening.renumbered.cells;
-    if (none_is_asked_for) return;
-    for (Index old = 0; old < static_cast<Index>(renumbered.size()); ++old)
-      if (renumbered[at(old)] >= 0) old_numbers_.push_back(old);
-  }
-  Index old_number(Index c) const { return old_numbers_.empty() ? c : old_numbers_[at(c)]; }
-
   /// Of the element with a number in the list of its type. Makes it a member of its family.
   Origin origin_of(std::size_t type, int child, std::size_t number, Index element) {
     families_.after(number)[child < 0 ? 0 : at(child)] = {type, element};
@@ -238,7 +231,7 @@ class ElementChanges {
   std::size_t first_converted_ = 0, first_divided_ = 0, first_split_ = 0;  // of the families
   std::vector<std::vector<Leaving>> leaving_;  // by the part of the families and by type
   std::vector<Arriving> arriving_;             // merged and converted cells, ascending
-  std::vector<Index> old_numbers_;  // of cells; empty where they are the same, or none is asked for
+  NumberMap old_numbers_;                      // of cells, where some are divided
 };
 
 /// The shares of the elements before in the volume of their family: those of merged ones have several.

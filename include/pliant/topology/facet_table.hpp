@@ -36,16 +36,10 @@ class FacetTable {
   [[nodiscard]] bool empty() const { return keys_.empty(); }
   /// False for most facets that were not added.
   [[nodiscard]] bool may_have(Facet<Dim> const& facet) const {
-    return may_have(facet, [](Index node) { return node; });
-  }
-  /// The same of the facet that has the nodes number_of(node) in place of its own.
-  template <class NumberOf>
-  [[nodiscard]] bool may_have(Facet<Dim> const& facet, NumberOf const& number_of) const {
-    if (empty()) return false;
-    for (std::size_t k = 0; k < facet.corners(); ++k) {
-      Index const node = number_of(facet[k]);
-      if ((word_of(node) & bit_of(node)) == 0) return false;
-    }
+    // Most facets have other first nodes.
+    if (empty() || !may_have(facet[0])) return false;
+    for (std::size_t k = 1; k < facet.corners(); ++k)
+      if (!may_have(facet[k])) return false;
     return true;
   }
   /// Of a facet that was added several times the first one.
@@ -65,8 +59,9 @@ class FacetTable {
   [[nodiscard]] std::uint64_t& word_of(Index corner) {
     return corners_[static_cast<std::size_t>(corner) / 64 & (corners_.size() - 1)];
   }
-  [[nodiscard]] std::uint64_t word_of(Index corner) const {
-    return corners_[static_cast<std::size_t>(corner) / 64 & (corners_.size() - 1)];
+  [[nodiscard]] bool may_have(Index corner) const {
+    auto const word = static_cast<std::size_t>(corner) / 64 & (corners_.size() - 1);
+    return (corners_[word] & bit_of(corner)) != 0;
   }
   static std::uint64_t bit_of(Index corner) {
     return std::uint64_t{1} << (static_cast<std::size_t>(corner) % 64);

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,6 +11,7 @@
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/mesh/sides.hpp>
 #include <pliant/topology/facet_table.hpp>
+#include <pliant/topology/number_map.hpp>
 
 namespace pliant {
 
@@ -42,65 +41,65 @@ class FacetTransfer {
       for (auto const& part : merged_[i].parts) parts_.add(part, i);
   }
 
-  /// See Transfer::changed_facets. `numbers`: of nodes, by the old one; empty: all stay.
+  /// See Transfer::changed_facets. `numbers`: of nodes, by the old one.
   std::optional<std::vector<Facet<Dim>>> carry(std::vector<Facet<Dim>> const& facets,
-                                               std::span<Index const> numbers) const {
-    auto const number_of = [&](Index node) {
-      return numbers.empty() ? node : numbers[static_cast<std::size_t>(node)];
-    };
+                                               NumberMap const& numbers) const {
+    auto const number_of = [&](Index node) { return numbers[node]; };
     auto const renumbered = [&](Facet<Dim> facet) {
       for (Index& node : facet) node = number_of(node);
       return facet;
     };
-    auto const is_whole = [&](Facet<Dim> const& facet) {
-      return !parts_.may_have(facet) && !whole_.may_have(facet, number_of);
+    auto const keeps_number = [&](Index node) { return number_of(node) == node; };
+    auto const stays = [&](Facet<Dim> const& facet) {
+      return !parts_.may_have(facet) && !whole_.may_have(facet) &&
+             (numbers.keeps_all() || std::ranges::all_of(facet, keeps_number));
     };
-    auto const keeps_numbers = [&](Index node) { return number_of(node) == node; };
-    if (std::ranges::all_of(facets, [&](Facet<Dim> const& facet) {
-          return is_whole(facet) && (numbers.empty() || std::ranges::all_of(facet, keeps_numbers));
-        }))
-      return std::nullopt;
-    if (std::vector<Facet<Dim>> const missing = cut(facets); !missing.empty())
-      throw Error(
-          "transfer: of the ", missing.size(), " facets that were merged, the one with the nodes ",
-          missing[0][0], " and ", missing[0][1],
-          " among them, not all are listed; list all, or keep the elements there from being "
-          "merged");
+    auto facet = std::ranges::find_if_not(facets, stays);
+    if (facet == facets.end()) return std::nullopt;
     std::vector<Facet<Dim>> carried;
-    carried.reserve(facets.size());
-    std::vector<bool> done(merged_.size(), false);
-    for (auto facet = facets.begin(); facet != facets.end();) {
-      if (auto const end = std::find_if_not(facet, facets.end(), is_whole); end != facet) {
-        auto const first = carried.insert(carried.end(), facet, end);
-        if (!numbers.empty()) std::transform(first, carried.end(), first, renumbered);
-        facet = end;
-        continue;
-      }
+    carried.reserve(facets.size() + 3 * divided_.size());
+    carried.assign(facets.begin(), facet);
+    std::vector<std::size_t> listed(merged_.size(), 0);  // parts of each
+    while (facet != facets.end()) {
       auto const whole = parts_.find(*facet);
-      if (!whole) {
+      if (!whole)
         add_parts(renumbered(*facet), carried);
-      } else if (!done[*whole]) {
-        done[*whole] = true;
+      else if (listed[*whole]++ == 0)
         add_parts(renumbered(whole_of(merged_[*whole], *facet)), carried);
-      }
-      ++facet;
+      auto const next = std::find_if_not(++facet, facets.end(), stays);
+      carried.insert(carried.end(), facet, next);
+      facet = next;
     }
+    check_all_are_listed(listed);
     return carried;
   }
   /// See Transfer::cut_facets.
   std::vector<Facet<Dim>> cut(std::vector<Facet<Dim>> const& facets) const {
     if (merged_.empty()) return {};
-    std::map<std::size_t, std::size_t> listed;  // by whole
+    std::vector<std::size_t> listed(merged_.size(), 0);
     for (auto const& facet : facets)
       if (auto const whole = parts_.find(facet)) ++listed[*whole];
-    std::vector<Facet<Dim>> found;
-    for (auto const& [whole, count] : listed)
-      if (count < merged_[whole].parts.size())
-        found.insert(found.end(), merged_[whole].parts.begin(), merged_[whole].parts.end());
-    return found;
+    return cut_of(listed);
   }
 
  private:
+  /// All parts of the facets of which some are listed, but not all. `listed`: how many are, by the whole.
+  std::vector<Facet<Dim>> cut_of(std::vector<std::size_t> const& listed) const {
+    std::vector<Facet<Dim>> found;
+    for (std::size_t whole = 0; whole < listed.size(); ++whole)
+      if (auto const& parts = merged_[whole].parts;
+          listed[whole] > 0 && listed[whole] < parts.size())
+        found.insert(found.end(), parts.begin(), parts.end());
+    return found;
+  }
+  void check_all_are_listed(std::vector<std::size_t> const& listed) const {
+    auto const missing = cut_of(listed);
+    if (missing.empty()) return;
+    throw Error(
+        "transfer: of the ", missing.size(), " facets that were merged, the one with the nodes ",
+        missing[0][0], " and ", missing[0][1],
+        " among them, not all are listed; list all, or keep the elements there from being merged");
+  }
   /// A facet, or the same the other way round: in 2D from its other end, in 3D from the same corner.
   static Facet<Dim> turned(Facet<Dim> const& facet, bool backwards) {
     if (!backwards) return facet;

@@ -134,9 +134,9 @@ class Hierarchy {
     auto const inside = detail::nodes_between(tree_, lowered, parents);
     done.renumbered = tree_.merge(parents, lowered);
     for (NewNode const& node : inside)
-      if (done.renumbered.nodes[at(node.node)] < 0) done.gone.push_back(node);
-    for (Index& c : done.parents) c = done.renumbered.cells[at(c)];
-    keep_points(done.renumbered);
+      if (done.renumbered.nodes[node.node] < 0) done.gone.push_back(node);
+    for (Index& c : done.parents) c = done.renumbered.cells[c];
+    keep_points(done.renumbered.nodes);
     return done;
   }
 
@@ -268,12 +268,10 @@ class Hierarchy {
       points_.edit(first + at(k)) = mean_of(weights);
     });
   }
-  void keep_points(Renumbering const& renumbered) {
-    std::vector<Index> kept;
-    for (Index i = renumbered.first_node; i < size(renumbered.nodes); ++i)
-      if (renumbered.nodes[at(i)] >= 0) kept.push_back(i);
-    points_.replace_from(at(renumbered.first_node), kept.size(),
-                         [&](std::size_t k) { return points_[at(kept[k])]; });
+  void keep_points(NumberMap const& renumbered) {
+    auto const kept = renumbered.inverse();
+    points_.replace_from(at(kept.first()), kept.others().size(),
+                         [&](std::size_t k) { return points_[at(kept.others()[k])]; });
   }
   detail::ShapeWeights weights_at(PlacedNode const& node) const {
     return detail::shape_weights<Dim>(cell(node.cell).kind, node.had, tree_.nodes_of(node.cell),

@@ -6,6 +6,7 @@
 
 #include <pliant/config.hpp>
 #include <pliant/mesh/mesh.hpp>
+#include <pliant/topology/number_map.hpp>
 
 namespace pliant {
 
@@ -18,10 +19,10 @@ class KnownFacets {
   /// Those of some lists, by the numbers of nodes before a change.
   explicit KnownFacets(std::vector<std::vector<Facet<Dim>> const*> lists)
       : lists_(std::move(lists)), all_(false) {}
-  /// The same by other numbers; −1: the node went. Empty: they are the same.
-  [[nodiscard]] KnownFacets renumbered(std::vector<Index> const& nodes) const {
+  /// The same by other numbers of nodes.
+  [[nodiscard]] KnownFacets renumbered(NumberMap const& nodes) const {
     auto other = *this;
-    other.nodes_ = nodes.empty() ? nullptr : &nodes;
+    other.nodes_ = &nodes;
     return other;
   }
 
@@ -33,8 +34,7 @@ class KnownFacets {
     for (auto const* list : lists_)
       for (auto const& facet : *list)
         for (std::size_t k = 0; k < facet.corners(); ++k) {
-          Index const now =
-              nodes_ == nullptr ? facet[k] : (*nodes_)[static_cast<std::size_t>(facet[k])];
+          Index const now = nodes_ == nullptr ? facet[k] : (*nodes_)[facet[k]];
           if (now >= 0) found[static_cast<std::size_t>(now)] = true;
         }
     return found;
@@ -42,7 +42,7 @@ class KnownFacets {
 
  private:
   std::vector<std::vector<Facet<Dim>> const*> lists_;
-  std::vector<Index> const* nodes_ = nullptr;
+  NumberMap const* nodes_ = nullptr;
   bool all_ = true;
 };
 

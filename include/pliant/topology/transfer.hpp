@@ -13,6 +13,7 @@
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/element_families.hpp>
 #include <pliant/topology/facet_transfer.hpp>
+#include <pliant/topology/number_map.hpp>
 #include <pliant/topology/weighted_nodes.hpp>
 
 namespace pliant {
@@ -41,9 +42,9 @@ class Transfer {
   using Family = ElementFamilies::Family;
   struct Parts {
     Index old_nodes = 0;
-    std::vector<Index> renumbered{};  ///< nodes, by the old number; −1: gone; empty: all stay
-    WeightedNodes new_nodes{};        ///< by new numbers, ascending; parents may be new, but before
-    WeightedNodes gone{};             ///< by old numbers
+    NumberMap renumbered{};     ///< nodes, by the old number
+    WeightedNodes new_nodes{};  ///< by new numbers, ascending; parents may be new, but before
+    WeightedNodes gone{};       ///< by old numbers
     std::vector<std::size_t> old_elements{};     ///< by type
     std::vector<std::vector<Origin>> origins{};  ///< by type, in the new order; see Origin::count
     ElementFamilies families{};
@@ -54,9 +55,10 @@ class Transfer {
   explicit Transfer(Parts parts)
       : p_(std::move(parts)), facets_(std::move(p_.divided), std::move(p_.merged)) {
     stay_ = p_.old_nodes;
-    if (p_.renumbered.empty()) return;
-    stay_ = static_cast<Index>(
-        std::ranges::count_if(p_.renumbered, [](Index node) { return node >= 0; }));
+    if (!renumbers()) return;
+    first_moved_ = p_.renumbered.first();
+    stay_ = first_moved_ + static_cast<Index>(std::ranges::count_if(
+                               p_.renumbered.others(), [](Index node) { return node >= 0; }));
     while (first_moved_ < stay_ && renumbered(first_moved_) == first_moved_) ++first_moved_;
   }
 
@@ -64,25 +66,17 @@ class Transfer {
   Index nodes() const { return stay_ + static_cast<Index>(p_.new_nodes.size()); }
   /// How many nodes stay: new ones follow them.
   Index staying_nodes() const { return stay_; }
-  /// The old numbers of nodes that stay, by the new ones; empty where these are the same.
-  std::vector<Index> old_numbers() const {
-    std::vector<Index> old(p_.renumbered.empty() ? 0 : static_cast<std::size_t>(stay_));
-    for (std::size_t i = 0; i < p_.renumbered.size(); ++i)
-      if (p_.renumbered[i] >= 0)
-        old[static_cast<std::size_t>(p_.renumbered[i])] = static_cast<Index>(i);
-    return old;
-  }
+  /// The old numbers of nodes that stay, by the new ones.
+  NumberMap old_numbers() const { return p_.renumbered.inverse(); }
   /// Whether parts of the mesh went, so that others may have other numbers.
-  bool renumbers() const { return !p_.renumbered.empty(); }
+  bool renumbers() const { return !p_.renumbered.keeps_all(); }
   /// Where it does, nodes before this one stay, and keep their numbers.
   Index first_renumbered() const { return first_moved_; }
   WeightedNodes const& new_nodes() const { return p_.new_nodes; }
   /// Nodes that go, by old numbers, as weighted sums over nodes that stay.
   WeightedNodes const& gone() const { return p_.gone; }
   /// The new number of an old node, or −1 where it goes.
-  Index renumbered(Index node) const {
-    return p_.renumbered.empty() ? node : p_.renumbered[static_cast<std::size_t>(node)];
-  }
+  Index renumbered(Index node) const { return p_.renumbered[node]; }
   /// Of the elements of one type (its place among the mesh's), in the new order; one entry for those that follow each
   /// other as they did before.
   std::vector<Origin> const& origins(std::size_t type = 0) const { return p_.origins[type]; }
@@ -211,11 +205,10 @@ class Transfer {
 
   template <class V>
   std::vector<V> those_that_stay(std::vector<V> values) const {
-    if (!p_.renumbered.empty()) {
-      for (std::size_t i = 0; i < values.size(); ++i)
-        if (p_.renumbered[i] >= 0) values[static_cast<std::size_t>(p_.renumbered[i])] = values[i];
-      values.resize(static_cast<std::size_t>(stay_));
-    }
+    for (Index old = p_.renumbered.first(); old < p_.old_nodes; ++old)
+      if (Index const now = renumbered(old); now >= 0)
+        values[static_cast<std::size_t>(now)] = values[static_cast<std::size_t>(old)];
+    values.resize(static_cast<std::size_t>(stay_));
     values.reserve(static_cast<std::size_t>(nodes()));
     return values;
   }

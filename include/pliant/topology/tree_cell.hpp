@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <pliant/config.hpp>
+#include <pliant/topology/number_map.hpp>
 #include <pliant/topology/patterns.hpp>
 
 // What a CellTree is made of.
@@ -232,10 +233,9 @@ struct CellConversion {
   CellNodes has = CellNodes::corners;
 };
 
-/// New numbers by old ones; −1: gone. What stays keeps its order.
+/// New numbers of nodes and cells by old ones.
 struct Renumbering {
-  std::vector<Index> nodes, cells;
-  Index first_node = 0, first_cell = 0;  ///< those before keep their numbers
+  NumberMap nodes, cells;
 };
 
 }  // namespace pliant

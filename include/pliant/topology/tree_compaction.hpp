@@ -29,7 +29,7 @@ class TreeCompaction {
     auto const& i = lists_.initial;
     CompactionView view{.tree = lists_.view(), .initial = i};
     find_nodes_in_use(view);
-    Numbers const node(lists_.nodes, i.nodes, [&](Index n) { return node_used_[at(n - i.nodes)]; }),
+    Numbers node(lists_.nodes, i.nodes, [&](Index n) { return node_used_[at(n - i.nodes)]; }),
         cell(size(lists_.cells), i.cells, [&](Index c) { return view.stays(c); }),
         edge(size(lists_.edges), i.edges,
              [&](Index e) { return CompactionView::is_used(lists_.edges[at(e)]); }),
@@ -52,7 +52,7 @@ class TreeCompaction {
     move_rows_up(cell, view);
     for (Index& c : lists_.divided) c = view.cells(c);
     lists_.nodes = node.count;
-    return {node.list(), cell.list(), i.nodes, i.cells};
+    return {{i.nodes, std::move(node.others)}, {i.cells, std::move(cell.others)}};
   }
 
  private:
@@ -102,12 +102,6 @@ class TreeCompaction {
       });
     }
     [[nodiscard]] NewNumbers view() const { return {first, others.data()}; }
-    [[nodiscard]] std::vector<Index> list() const {
-      std::vector<Index> all(at(first));
-      std::iota(all.begin(), all.end(), Index{0});
-      all.insert(all.end(), others.begin(), others.end());
-      return all;
-    }
   };
   /// Those behind the initial mesh's move up, and the known ones of the initial mesh are told.
   template <class V>
