@@ -148,9 +148,10 @@ __device__ void sort_all(Index n, List const& list, List const& other, int bits)
   ListPart const part(n);
   List from = list, to = other;
   for (int shift = 0; shift < bits; shift += digit_bits) {
+    Index const count = count_digits(part, from.keys, shift);
+    if (__syncthreads_or(count == n) != 0) continue;  // keys are alike there
     Index total = 0;
-    Index const place = scan_block(count_digits(part, from.keys, shift), total);
-    move_keys(part, from, to, shift, place);
+    move_keys(part, from, to, shift, scan_block(count, total));
     List const moved = to;
     to = from;
     from = moved;
@@ -181,8 +182,10 @@ __global__ void __launch_bounds__(list_threads)
       before += b < blockIdx.x ? count : 0;
       of_all += count;
     }
-    move_keys(part, from, to, shift, scan_block(of_all, total) + before);
+    bool const are_alike = __syncthreads_or(of_all == n) != 0;  // keys, there
+    if (!are_alike) move_keys(part, from, to, shift, scan_block(of_all, total) + before);
     wait_for_cluster();  // until all keys are there, and counts are read
+    if (are_alike) continue;
     List const moved = to;
     to = from;
     from = moved;
