@@ -51,12 +51,23 @@ struct Pair {
     values.resize(values.size() + count);
     write(values.size() - count, count);
   }
+  void write_page(std::size_t page) {
+    auto const first = page * Page<Index>::entries;
+    write(first, std::min(values.size() - first, Page<Index>::entries));
+  }
   void change(std::size_t page) {
     std::vector<std::uint8_t> touched(list.page_count(), 0);
     touched[page] = 1;
     list.change(backend, touched);
-    auto const first = page * Page<Index>::entries;
-    write(first, std::min(values.size() - first, Page<Index>::entries));
+    write_page(page);
+  }
+  /// So many pages in eight, of which some are written.
+  void change_some(Random& random, std::size_t in_eight) {
+    std::vector<std::uint8_t> touched(list.page_count());
+    for (auto& byte : touched) byte = random.below(8) < in_eight ? 1 : 0;
+    list.change(backend, touched);
+    for (std::size_t page = 0; page < touched.size(); ++page)
+      if (touched[page] != 0 && random.below(4) == 0) write_page(page);
   }
   void replace_from(std::size_t first, std::size_t count) {
     auto const period = values.size() - first;
@@ -79,6 +90,11 @@ struct Pair {
   void begin_noting() {
     list.begin_noting();
     noted = SharedList<Index>(values);
+  }
+  void check() {
+    REQUIRE(list.size() == values.size());
+    REQUIRE(list.download(backend) == values);
+    REQUIRE(list.download(backend, noted) == SharedList<Index>(values));
   }
 };
 
@@ -113,11 +129,35 @@ TEST_CASE("lists in pages hold what they were given, and take back what was not 
         default:
           if (random.below(2) == 0) on.take_back();
       }
-      REQUIRE(on.list.size() == on.values.size());
-      REQUIRE(on.list.download(backend) == on.values);
-      REQUIRE(on.list.download(backend, on.noted) == SharedList<Index>(on.values));
+      on.check();
     }
     CHECK(on.list.bytes() < 6 * most * sizeof(Index));
+  });
+}
+
+TEST_CASE("lists in pages take back changes of most pages at once, and others behind them",
+          "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Pair<B> on(backend);
+    Random random(4);
+    constexpr std::size_t pages = 60, entries = pages * Page<Index>::entries;
+    on.extend(entries - 100);
+    on.keep();
+    on.begin_noting();
+    for (int round = 0; round < 60; ++round) {
+      on.change_some(random, round % 5 == 0 ? 3 : 7);
+      if (random.below(2) == 0) on.change_some(random, 7);
+      if (random.below(2) == 0) on.change(random.below(on.list.page_count()));
+      if (random.below(3) == 0)
+        on.replace_from(on.values.size() - random.below(4000), random.below(4000));
+      auto const size = on.values.size();
+      if (size + 1000 < entries) on.extend(entries - size - random.below(1000));
+      on.check();
+      random.below(2) == 0 ? on.keep() : on.take_back();
+      if (random.below(3) == 0) on.begin_noting();
+      on.check();
+    }
+    CHECK(on.list.bytes() < 4 * entries * sizeof(Index));
   });
 }
 

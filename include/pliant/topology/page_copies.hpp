@@ -21,6 +21,16 @@ struct CopiedPage {
   Page<V>* now;
 };
 
+/// The pages of two tables from a place on, as a list of copies.
+template <class V>
+struct PagesOfTables {
+  Page<V>*const *before, *const *now;
+  Index first;
+  PLIANT_HOST_DEVICE CopiedPage<V> operator[](Index k) const {
+    return {first + k, before[first + k], now[first + k]};
+  }
+};
+
 /// Calls visit(p) for the bytes p that are not zero; passes over several at a time where they are.
 template <class Visit>
 void for_each_marked(std::span<std::uint8_t const> bytes, Visit const& visit) {

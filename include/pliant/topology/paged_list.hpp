@@ -11,6 +11,7 @@
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/topology/kept_pages.hpp>
 #include <pliant/topology/page_copies.hpp>
 #include <pliant/topology/pages.hpp>
 #include <pliant/topology/shared_list.hpp>
@@ -96,31 +97,32 @@ class PagedList {
   /// Notes which pages change from now on, for that.
   void begin_noting() { is_noted_.assign(pages_.size(), 0); }
 
-  /// Makes pages of which the byte is not zero the list's own.
+  /// Makes pages of which the byte is not zero the list's own; where these are most, the others too, which takes less than to
+  /// list them.
   void change(B const& backend, std::span<std::uint8_t const> touched) {
+    auto const count = touched.size() - static_cast<std::size_t>(std::ranges::count(touched, 0));
+    if (pages_.is_kept() && count > detail::FewValues<Copied>::most &&
+        4 * count > 3 * pages_.size())
+      return change_all(backend);
     copied_.clear();
     detail::for_each_marked(touched, [&](std::size_t p) {
       is_noted_[p] = 1;
-      if (!is_own(p)) copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
+      if (!pages_.is_own(p)) copied_.push_back({static_cast<Index>(p), pages_[p], nullptr});
     });
-    reserve(backend, copied_.size(), pages_.size(), copied_.size());
-    for (Copied& page : copied_) {
-      auto const p = static_cast<std::size_t>(page.place);
-      page.now = free_.back();
-      free_.pop_back();
-      leave(p, std::exchange(pages_[p], page.now));
-    }
+    reserve(backend, copied_.size(), pages_.size());
+    pages_.reserve_left(copied_.size());
+    for (Copied& page : copied_) page.now = pages_.replace(static_cast<std::size_t>(page.place));
     copy(backend, copied_, table_.data());
   }
   /// Makes room for so many entries more, which have no value, beside those of the last page if that is shared with what was
   /// kept. Loops see it behind the step that this returns.
   [[nodiscard]] PutPages extend(B const& backend, std::size_t count) {
     auto const before = pages_.size(), needed = std::max(before, pages_for(size_ + count));
-    reserve(backend, needed - before, needed, 0);
-    take_pages(needed);
+    reserve(backend, needed - before, needed);
+    pages_.extend(needed);
     size_ += count;
     if (count > 0) note_from((size_ - count) / per_page);
-    auto const pages = std::span<Page<V>* const>(pages_).subspan(before);
+    auto const pages = std::span(pages_.now()).subspan(before);
     auto* const to = table_.data() + before;
     PutPages step{};
     if (detail::with_few(pages, [&](auto const& few) {
@@ -135,18 +137,20 @@ class PagedList {
   /// it was from there on, for loops that are asked for until it changes again.
   [[nodiscard]] Pages<V> replace_from(B const& backend, std::size_t first, std::size_t count) {
     auto const staying = first / per_page, needed = pages_for(first + count);
-    reserve(backend, needed - staying, std::max(needed, pages_.size()), pages_.size() - staying);
-    detail::grow(backend, table_before_, table_.size());
-    std::vector<Page<V>*> const left(pages_.begin() + static_cast<std::ptrdiff_t>(staying),
-                                     pages_.end());
-    pages_.resize(staying);
-    take_pages(needed);
+    auto const in_all = std::max(needed, pages_.size());
+    reserve(backend, needed - staying, in_all);
+    pages_.reserve_left(pages_.size() - staying);
+    detail::grow(backend, table_before_, in_all);
+    std::vector<Page<V>*> const left(pages_.now().begin() + static_cast<std::ptrdiff_t>(staying),
+                                     pages_.now().end());
+    pages_.cut(staying);
+    pages_.extend(needed);
     copied_.clear();
     for (std::size_t p = staying; p < std::max(needed, staying + left.size()); ++p)
       copied_.push_back({static_cast<Index>(p),
                          p - staying < left.size() ? left[p - staying] : nullptr,
                          p < needed ? pages_[p] : nullptr});
-    for (std::size_t k = 0; k < left.size(); ++k) leave(staying + k, left[k]);
+    for (std::size_t k = 0; k < left.size(); ++k) pages_.leave(staying + k, left[k]);
     size_ = first + count;
     note_from(staying);
     if (copied_.empty()) return {table_before_.data()};
@@ -164,81 +168,57 @@ class PagedList {
 
   /// Keeps what changed.
   void keep() {
-    for (Left const& page : left_) {
-      free_.push_back(page.before);
-      is_left_[page.place] = 0;
-    }
-    left_.clear();
+    pages_.keep();
     kept_ = size_;
-    is_left_.resize(pages_.size());
-    kept_pages_ = pages_.size();
   }
   /// The list is what it was when it was kept.
   void take_back(B const& backend) {
-    for (auto p = kept_pages_; p < pages_.size(); ++p) free_.push_back(pages_[p]);
-    for (Left const& page : left_)
-      if (page.place < pages_.size()) free_.push_back(pages_[page.place]);
-    pages_.resize(kept_pages_);
-    is_noted_.resize(pages_.size(), 1);
-    for (Left const& page : left_) {
-      pages_[page.place] = page.before;
-      is_left_[page.place] = 0;
-      is_noted_[page.place] = 1;
-    }
-    left_.clear();
+    is_noted_.resize(pages_.kept(), 1);
+    pages_.take_back([&](std::size_t p) { is_noted_[p] = 1; });
     size_ = kept_;
     backend.synchronize();
-    table_.upload(pages_);
+    table_.upload(pages_.now());
   }
 
  private:
   using Copied = detail::CopiedPage<V>;
-  /// A page that was kept, and that the list has not any more.
-  struct Left {
-    std::size_t place;
-    Page<V>* before;
-  };
   static constexpr std::size_t per_page = Page<V>::entries, per_batch = 256;  // pages
 
   static std::size_t pages_for(std::size_t entries) { return (entries + per_page - 1) / per_page; }
-  /// Whether a page is not what it was when the list was kept.
-  [[nodiscard]] bool is_own(std::size_t p) const { return p >= kept_pages_ || is_left_[p] != 0; }
-  /// Another page, or none, is in the place of one. One that came there since the list was kept is free.
-  void leave(std::size_t p, Page<V>* before) {
-    if (is_own(p)) {
-      free_.push_back(before);
-    } else {
-      left_.push_back({p, before});
-      is_left_[p] = 1;
-    }
-  }
   /// Notes that pages from a place on change.
   void note_from(std::size_t first) {
     is_noted_.resize(std::min(first, is_noted_.size()));
     is_noted_.resize(pages_.size(), 1);
   }
-  /// Free pages behind the others, until there are so many.
-  void take_pages(std::size_t count) {
-    auto const more = static_cast<std::ptrdiff_t>(count - pages_.size());
-    pages_.insert(pages_.end(), free_.rbegin(), free_.rbegin() + more);
-    free_.resize(free_.size() - static_cast<std::size_t>(more));
-  }
-  /// Memory for so many pages more, and a table for so many in all, with some for changes to come; and for notes of so many
-  /// that are left, so that nothing is lost where memory runs out.
-  void reserve(B const& backend, std::size_t more, std::size_t in_all, std::size_t left) {
-    left_.reserve(left_.size() + left);
-    if (free_.size() < more) {
-      auto const count = std::max({more - free_.size(), reserved_ / 4, std::size_t{16}});
+  /// Memory for so many pages more, and a table for so many in all, with some for changes to come, so that nothing is lost
+  /// where memory runs out.
+  void reserve(B const& backend, std::size_t more, std::size_t in_all) {
+    if (pages_.free_pages() < more) {
+      auto const count = std::max({more - pages_.free_pages(), reserved_ / 4, std::size_t{16}});
       auto& chunk = chunks_.emplace_back(unset<V>(backend, count * per_page));
       reserved_ += count;
-      free_.reserve(reserved_);
-      for (std::size_t p = count; p-- > 0;) free_.push_back(page_in(chunk, p));
+      pages_.reserve(reserved_);
+      for (std::size_t p = 0; p < count; ++p) pages_.add_free(page_in(chunk, p));
     }
     if (table_.size() >= in_all) return;
     auto table = zeros<Page<V>*>(backend, in_all + in_all / 4 + 16);
     backend.synchronize();  // loops may still read the one before
-    table.upload(pages_);
+    table.upload(pages_.now());
     table_ = std::move(table);
+  }
+  /// Makes all pages, which are those that were kept, the list's own.
+  void change_all(B const& backend) {
+    auto const count = pages_.size();
+    reserve(backend, count, count);
+    pages_.reserve_all_left();
+    detail::grow(backend, table_before_, count);
+    auto const now = upload<Page<V>*>(backend, pages_.next(count));
+    pages_.replace_all();
+    std::ranges::fill(is_noted_, 1);
+    copy_in_loops(backend, count, table_before_.data(), [&](std::size_t first) {
+      return detail::PagesOfTables<V>{table_.data(), now.data(), static_cast<Index>(first)};
+    });
+    std::swap(table_, table_before_);
   }
   static Page<V>* page_in(Array<V>& chunk, std::size_t p) {
     return reinterpret_cast<Page<V>*>(chunk.data() + p * per_page);
@@ -251,10 +231,17 @@ class PagedList {
         }))
       return;
     auto const listed = upload(backend, copied);
-    for (std::size_t first = 0; first < copied.size(); first += Copy::most_pages) {
-      auto const count =
-          static_cast<Index>(std::min<std::size_t>(copied.size() - first, Copy::most_pages));
-      backend.for_each(count * Copy::words, Copy{listed.data() + first, table});
+    copy_in_loops(backend, copied.size(), table,
+                  [&](std::size_t first) { return listed.data() + first; });
+  }
+  /// Copies pages; list_from(k): those from the k-th on.
+  template <class ListFrom>
+  static void copy_in_loops(B const& backend, std::size_t pages, Page<V>** table,
+                            ListFrom const& list_from) {
+    using Copy = detail::CopyPages<V, decltype(list_from(std::size_t{}))>;
+    for (std::size_t first = 0; first < pages; first += Copy::most_pages) {
+      auto const count = static_cast<Index>(std::min<std::size_t>(pages - first, Copy::most_pages));
+      backend.for_each(count * Copy::words, Copy{list_from(first), table});
     }
   }
   /// Copies pages from a batch, where they lie one after another, or to it.
@@ -272,23 +259,18 @@ class PagedList {
     auto batch = zeros<V>(backend, std::min(per_batch, pages_.size()) * per_page);
     for (std::size_t p = 0; p < pages_.size(); p += per_batch)
       visit(p * per_page,
-            std::span<Page<V>* const>(pages_).subspan(p, std::min(per_batch, pages_.size() - p)),
-            batch);
+            std::span(pages_.now()).subspan(p, std::min(per_batch, pages_.size() - p)), batch);
     backend.synchronize();  // before the batch goes
   }
 
-  std::vector<Page<V>*> pages_;  // in the backend's memory
-  std::size_t size_ = 0;
-  std::size_t kept_ = 0, kept_pages_ = 0;  // size and pages when it was kept
-  std::vector<Left> left_;                 // since then: each place once
-  std::vector<std::uint8_t> is_left_;      // by place among those pages
+  detail::KeptPages<V> pages_;
+  std::size_t size_ = 0, kept_ = 0;  // entries; and when it was kept
   std::vector<std::uint8_t>
       is_noted_;                  // by place: whether a page changed since it began to note that
   std::vector<Copied> copied_;    // of a change
   Array<Page<V>*> table_;         // the same as pages_, and room
   Array<Page<V>*> table_before_;  // the last replace_from
   std::vector<Array<V>> chunks_;
-  std::vector<Page<V>*> free_;
   std::size_t reserved_ = 0;  // pages
 };
 
