@@ -403,6 +403,22 @@ TEST_CASE("copies come after the work of their backend and wait for no other str
   CHECK(download<double>(busy)[0] == 1);
 }
 
+TEST_CASE("values in pinned memory are read before a copy of them returns", "[cuda]") {
+  Cuda<double> const backend;
+  constexpr std::size_t count = 1 << 20;
+  double* pinned = nullptr;
+  REQUIRE(cudaMallocHost(&pinned, count * sizeof(double)) == cudaSuccess);
+  auto array = zeros<double>(backend, count), busy = zeros<double>(backend, 1);
+  std::fill_n(pinned, count, 1.0);
+  backend.for_each(1, WriteLate{busy.data(), 1});
+
+  array.upload(std::span<double const>(pinned, count));
+  std::fill_n(pinned, count, 2.0);
+
+  CHECK(download<double>(array) == std::vector<double>(count, 1.0));
+  CHECK(cudaFreeHost(pinned) == cudaSuccess);
+}
+
 TEST_CASE("a backend queues its work on the stream that it is given", "[cuda]") {
   cudaStream_t stream = nullptr;
   REQUIRE(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking) == cudaSuccess);

@@ -126,14 +126,34 @@ TEST_CASE("arrays start at zero and keep what is put into them", "[backend]") {
   });
 }
 
+TEST_CASE("values may be put behind others in an array, and changed once they are", "[backend]") {
+  on_each_backend<AllPairs>([](auto const& backend) {
+    constexpr std::size_t count = 100000, first = 300;
+    auto array = upload(backend, std::vector<float>(count + first, 1.0f));
+    std::vector<float> given(count, 2.0f);
+    array.upload(given, first);
+    std::ranges::fill(given, 3.0f);
+    array.upload(std::vector<float>{}, count + first);
+
+    std::vector<float> wanted(count + first, 2.0f);
+    std::fill_n(wanted.begin(), first, 1.0f);
+    CHECK(download<float>(array) == wanted);
+    CHECK_THROWS_WITH(array.upload(given, first + 1),
+                      says("copy of 100000 values from 301 on, but the array holds 100300"));
+    CHECK_THROWS_AS(array.upload(std::vector<float>{}, count + first + 1), Error);
+    CHECK(download<float>(array) == wanted);
+  });
+}
+
 TEST_CASE("copies beyond the end of an array are refused", "[backend]") {
   on_each_backend<AllPairs>([](auto const& backend) {
     auto array = zeros<float>(backend, 1000);
     std::vector<float> numbers(1001, 1.0f);
 
-    CHECK_THROWS_WITH(array.upload(numbers), says("copy of 1001 values, but the array holds 1000"));
+    CHECK_THROWS_WITH(array.upload(numbers),
+                      says("copy of 1001 values from 0 on, but the array holds 1000"));
     CHECK_THROWS_WITH(array.download(numbers),
-                      says("copy of 1001 values, but the array holds 1000"));
+                      says("copy of 1001 values from 0 on, but the array holds 1000"));
 
     CHECK(download<float>(array) == std::vector<float>(1000, 0.0f));
   });

@@ -26,9 +26,9 @@
 //   unset_array<U>(count)      not set, for unset<U>(backend, count) below; may be left out
 //   pinned_array<U>(count)     not set, in memory that the host and loops both reach, of backends whose Array the host does not;
 //                              may be left out: see backend/read_back.hpp
-//   .data() .size() .upload(span<U const>) .download(span<U>)
-//                              upload and download come after what was asked of the backend before,
-//                              and wait for that
+//   .data() .size() .upload(span<U const>, first = 0) .download(span<U>)
+//                              come after what was asked of the backend before. upload has read what it is given when it
+//                              returns, and writes the values from `first` on; download waits
 //
 // Node loops    f is a functor marked for host and device, called once for each i in [0, n). They take no list of
 //               patches; body/velocities.hpp says how nodes of sleeping ones are passed over.
@@ -130,6 +130,7 @@ concept BackendArray = std::default_initializable<A> && std::movable<A> &&
                          { a.data() } -> std::same_as<U*>;
                          { c.size() } -> std::convertible_to<std::size_t>;
                          a.upload(in);
+                         a.upload(in, std::size_t{});
                          c.download(out);
                        };
 

@@ -52,22 +52,22 @@ class HostArray {
   U* data() { return static_cast<U*>(bytes_.data()); }
   U const* data() const { return static_cast<U const*>(bytes_.data()); }
   std::size_t size() const { return size_; }
-  /// Overwrites the first values.
-  void upload(std::span<U const> values) {
-    check(values.size());
-    bytes_.copy_from(values.data(), values.size_bytes());
+  /// Overwrites the values from `first` on.
+  void upload(std::span<U const> values, std::size_t first = 0) {
+    check(first, values.size());
+    bytes_.copy_from(values.data(), values.size_bytes(), first * sizeof(U));
   }
   /// Reads the first values.
   void download(std::span<U> values) const {
-    check(values.size());
+    check(0, values.size());
     std::copy_n(data(), values.size(), values.data());
   }
 
  private:
-  void check(std::size_t count) const {
-    if (count > size())
-      throw Error("HostArray: copy of ", count, " values, but the array holds ", size(),
-                  "; make the array larger");
+  void check(std::size_t first, std::size_t count) const {
+    if (first > size() || count > size() - first)
+      throw Error("HostArray: copy of ", count, " values from ", first, " on, but the array holds ",
+                  size(), "; make the array larger");
   }
 
   detail::HostBytes bytes_;

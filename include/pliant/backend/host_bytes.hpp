@@ -35,9 +35,10 @@ class HostBytes {
       std::memset(static_cast<std::byte*>(data_) + first, 0, last - first);
     });
   }
-  void copy_from(void const* from, std::size_t size) {
+  /// To the bytes from `begin` on.
+  void copy_from(void const* from, std::size_t size, std::size_t begin) {
     in_parts(size, [&](std::size_t first, std::size_t last, int) {
-      std::memcpy(static_cast<std::byte*>(data_) + first,
+      std::memcpy(static_cast<std::byte*>(data_) + begin + first,
                   static_cast<std::byte const*>(from) + first, last - first);
     });
   }

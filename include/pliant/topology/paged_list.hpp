@@ -129,8 +129,7 @@ class PagedList {
           step = {static_cast<Index>(pages.size()), {few, to}};
         }))
       return step;
-    auto const put = upload<Page<V>*>(backend, pages);
-    detail::copy_values<B, Page<V>*>(backend, put.data(), to, pages.size());
+    table_.upload(pages, before);
     return step;
   }
   /// Puts `count` entries, which have no value, in the place of those from `first` on; those before stay. Gives the list as
@@ -212,13 +211,14 @@ class PagedList {
     reserve(backend, count, count);
     pages_.reserve_all_left();
     detail::grow(backend, table_before_, count);
-    auto const now = upload<Page<V>*>(backend, pages_.next(count));
+    table_before_.upload(pages_.next(count));
     pages_.replace_all();
     std::ranges::fill(is_noted_, 1);
-    copy_in_loops(backend, count, table_before_.data(), [&](std::size_t first) {
-      return detail::PagesOfTables<V>{table_.data(), now.data(), static_cast<Index>(first)};
-    });
     std::swap(table_, table_before_);
+    copy_in_loops(backend, count, nullptr, [&](std::size_t first) {
+      return detail::PagesOfTables<V>{table_before_.data(), table_.data(),
+                                      static_cast<Index>(first)};
+    });
   }
   static Page<V>* page_in(Array<V>& chunk, std::size_t p) {
     return reinterpret_cast<Page<V>*>(chunk.data() + p * per_page);

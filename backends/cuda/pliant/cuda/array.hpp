@@ -42,11 +42,7 @@ class DeviceArray {
     if (size_ == 0) return;
     auto const device = stream_->enter();
     allocate();
-    cudaError_t status = cudaMemcpyAsync(data_, values.data(), values.size_bytes(),
-                                         cudaMemcpyHostToDevice, stream_->get());
-    // Pageable memory is read before cudaMemcpyAsync returns; what the program has pinned is read later.
-    if (status == cudaSuccess && is_pinned(values.data()))
-      status = cudaStreamSynchronize(stream_->get());
+    cudaError_t const status = copy(values, 0);
     if (status != cudaSuccess) release();
     detail::check(status, "cudaMemcpyAsync");
   }
@@ -70,20 +66,17 @@ class DeviceArray {
   U const* data() const { return data_; }
   std::size_t size() const { return size_; }
 
-  /// Overwrites the first values, after all that was queued on the backend's stream before, and
-  /// waits for it.
-  void upload(std::span<U const> values) {
-    if (!has_room(values.size())) return;
+  /// Overwrites the values from `first` on, after all that was queued on the backend's stream before. What is given may go once
+  /// this returns.
+  void upload(std::span<U const> values, std::size_t first = 0) {
+    if (!has_room(first, values.size())) return;
     auto const device = stream_->enter();
-    detail::check(cudaMemcpyAsync(data_, values.data(), values.size_bytes(), cudaMemcpyHostToDevice,
-                                  stream_->get()),
-                  "cudaMemcpyAsync");
-    stream_->synchronize();
+    detail::check(copy(values, first), "cudaMemcpyAsync");
   }
   /// Reads the first values, after all that was queued on the backend's stream before, and waits
   /// for it.
   void download(std::span<U> values) const {
-    if (!has_room(values.size())) return;
+    if (!has_room(0, values.size())) return;
     auto const device = stream_->enter();
     stream_->download(values.data(), data_, values.size_bytes());
   }
@@ -101,11 +94,18 @@ class DeviceArray {
     detail::check_memory(status, bytes);
   }
   void release() noexcept { stream_->release(data_, size_ * sizeof(U)); }
+  cudaError_t copy(std::span<U const> values, std::size_t first) {
+    cudaError_t const status = cudaMemcpyAsync(data_ + first, values.data(), values.size_bytes(),
+                                               cudaMemcpyHostToDevice, stream_->get());
+    // Pageable memory is read before cudaMemcpyAsync returns; what the program has pinned is read later.
+    return status == cudaSuccess && is_pinned(values.data()) ? cudaStreamSynchronize(stream_->get())
+                                                             : status;
+  }
   /// Whether there is anything to copy. Throws Error where there is no room for it.
-  bool has_room(std::size_t count) const {
-    if (count > size_)
-      throw Error("CUDA: copy of ", count, " values, but the array holds ", size_,
-                  "; make the array larger");
+  bool has_room(std::size_t first, std::size_t count) const {
+    if (first > size_ || count > size_ - first)
+      throw Error("CUDA: copy of ", count, " values from ", first, " on, but the array holds ",
+                  size_, "; make the array larger");
     return count > 0;
   }
 
