@@ -12,7 +12,7 @@
 namespace pliant::detail {
 
 /// Which pages a list has, which it had when it was kept the last time, and which wait for others. Whoever has pages taken sees
-/// to it that there are enough, and room for those that are left.
+/// to it that there are enough, and room for them and for those that are left: then nothing here throws.
 template <class V>
 class KeptPages {
  public:
@@ -35,6 +35,10 @@ class KeptPages {
 
   /// Room for so many pages in all, of which some are in use.
   void reserve(std::size_t in_all) { free_.reserve(in_all); }
+  /// Room for so many in the list, and some for changes to come.
+  void reserve_places(std::size_t count) {
+    if (pages_.capacity() < count) pages_.reserve(count + count / 4);
+  }
   void add_free(Page<V>* page) { free_.push_back(page); }
   /// Room for so many pages more that are left one by one.
   void reserve_left(std::size_t more) { left_.reserve(left_.size() + more); }

@@ -24,7 +24,8 @@ struct CopiedPage {
 /// The pages of two tables from a place on, as a list of copies.
 template <class V>
 struct PagesOfTables {
-  Page<V>*const *before, *const *now;
+  Page<V>* const* before;
+  Page<V>* const* now;
   Index first;
   PLIANT_HOST_DEVICE CopiedPage<V> operator[](Index k) const {
     return {first + k, before[first + k], now[first + k]};

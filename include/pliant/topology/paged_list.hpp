@@ -192,6 +192,7 @@ class PagedList {
   /// Memory for so many pages more, and a table for so many in all, with some for changes to come, so that nothing is lost
   /// where memory runs out.
   void reserve(B const& backend, std::size_t more, std::size_t in_all) {
+    pages_.reserve_places(in_all);
     if (pages_.free_pages() < more) {
       auto const count = std::max({more - pages_.free_pages(), reserved_ / 4, std::size_t{16}});
       auto& chunk = chunks_.emplace_back(unset<V>(backend, count * per_page));
