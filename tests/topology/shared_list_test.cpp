@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <limits>
@@ -9,6 +10,9 @@
 #include <random>
 #include <vector>
 
+#include <pliant/error.hpp>
+#include <pliant/reference.hpp>
+#include <pliant/topology/paged_list.hpp>
 #include <pliant/topology/shared_list.hpp>
 
 #include "support/catch.hpp"
@@ -26,7 +30,16 @@ std::atomic<long> allocations_left{std::numeric_limits<long>::max()};
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t line,
+                                     std::nothrow_t const&) noexcept {
+  auto const each = static_cast<std::size_t>(line);
+  return allocations_left-- > 0 ? std::aligned_alloc(each, (size + each - 1) / each * each)
+                                : nullptr;
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 // Copies of a SharedList, and what changes in one of them.
@@ -152,6 +165,50 @@ TEST_CASE("a shared list is what it was where memory runs out", "[topology]") {
       },
       30);
   check([](auto& list) { list.replace_from(group + 300, 2000, [](std::size_t) { return 3; }); });
+}
+
+TEST_CASE("a list in pages takes back what did not end as memory ran out", "[topology]") {
+  using List = PagedList<Reference<double>, Index>;
+  constexpr std::size_t page = Page<Index>::entries;
+  Reference<double> const backend;
+  std::vector<Index> values(60 * page - 100);
+  std::iota(values.begin(), values.end(), 0);
+  SharedList<Index> const kept(values);
+  auto const check = [&](std::function<void(List&)> const& change) {
+    int failed = 0;
+    for (bool done = false; !done && failed < 1000;) {
+      List list(backend, kept);
+      allocations_left = failed;
+      try {
+        change(list);
+        done = true;
+      } catch (std::bad_alloc const&) {
+        ++failed;
+      } catch (Error const&) {
+        ++failed;
+      }
+      allocations_left = std::numeric_limits<long>::max();
+      list.take_back(backend);
+      REQUIRE(list.size() == values.size());
+      bool const is_as_it_was = list.download(backend) == values;
+      INFO("allocation " << failed);
+      CHECK(is_as_it_was);
+    }
+    CHECK(failed > 0);
+    CHECK(failed < 1000);
+  };
+  auto const changed = [&](std::size_t every) {
+    return [&backend, every](List& list) {
+      std::vector<std::uint8_t> touched(list.page_count(), 0);
+      for (std::size_t p = 0; p < touched.size(); p += every) touched[p] = 1;
+      list.change(backend, touched);
+    };
+  };
+  check(changed(1));
+  check(changed(2));
+  check([&](List& list) { (void)list.extend(backend, 50 * page); });
+  check([&](List& list) { (void)list.replace_from(backend, 20 * page + 5, 70 * page); });
+  check([&](List& list) { (void)list.replace_from(backend, 20 * page + 5, 3 * page); });
 }
 
 }  // namespace pliant::test

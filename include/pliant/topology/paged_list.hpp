@@ -142,9 +142,10 @@ class PagedList {
     detail::grow(backend, table_before_, in_all);
     std::vector<Page<V>*> const left(pages_.now().begin() + static_cast<std::ptrdiff_t>(staying),
                                      pages_.now().end());
+    copied_.clear();
+    copied_.reserve(in_all - staying);
     pages_.cut(staying);
     pages_.extend(needed);
-    copied_.clear();
     for (std::size_t p = staying; p < std::max(needed, staying + left.size()); ++p)
       copied_.push_back({static_cast<Index>(p),
                          p - staying < left.size() ? left[p - staying] : nullptr,
