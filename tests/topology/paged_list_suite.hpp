@@ -148,8 +148,10 @@ TEST_CASE("lists in pages take back changes of most pages at once, and others be
       on.change_some(random, round % 5 == 0 ? 3 : 7);
       if (random.below(2) == 0) on.change_some(random, 7);
       if (random.below(2) == 0) on.change(random.below(on.list.page_count()));
-      if (random.below(3) == 0)
-        on.replace_from(on.values.size() - random.below(4000), random.below(4000));
+      if (random.below(3) == 0) {
+        auto const first = on.values.size() - 1 - random.below(4000);
+        on.replace_from(first, random.below(4000));
+      }
       auto const size = on.values.size();
       if (size + 1000 < entries) on.extend(entries - size - random.below(1000));
       on.check();

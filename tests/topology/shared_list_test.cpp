@@ -42,8 +42,32 @@ std::atomic<long> allocations_left{std::numeric_limits<long>::max()};
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-// Copies of a SharedList, and what changes in one of them.
+// Copies of a SharedList, what changes in one of them, and lists where memory runs out.
 namespace pliant::test {
+
+/// Changes what make() gives again and again, where memory runs out one allocation later each time, until the change ends. Behind
+/// each there is check(what was made, whether the change ended).
+template <class Make, class Change, class Check>
+void fail_each_allocation(Make const& make, Change const& change, Check const& check) {
+  constexpr int most = 1000;
+  int failed = 0;
+  for (bool done = false; !done && failed < most;) {
+    auto own = make();
+    allocations_left = failed;
+    try {
+      change(own);
+      done = true;
+    } catch (std::bad_alloc const&) {
+      ++failed;
+    } catch (Error const&) {
+      ++failed;
+    }
+    allocations_left = std::numeric_limits<long>::max();
+    check(own, done);
+  }
+  CHECK(failed > 0);
+  CHECK(failed < most);
+}
 
 TEST_CASE("copies of a shared list change by themselves", "[topology]") {
   std::mt19937 random(1);
@@ -135,26 +159,18 @@ TEST_CASE("a shared list is what it was where memory runs out", "[topology]") {
   std::iota(values.begin(), values.end(), 0);
   SharedList<int> const kept(values);
   std::fill(values.end() - 1000, values.end(), -1);
+  auto const list_to_change = [&] {
+    SharedList<int> list = kept;  // of which pages at the end are its own
+    for (std::size_t i = values.size() - 1000; i < values.size(); ++i) list.edit(i) = -1;
+    return list;
+  };
   auto const check = [&](std::function<void(SharedList<int>&)> const& change, int pushed = 0) {
-    int failed = 0;
-    for (bool done = false; !done && failed < 1000;) {
-      SharedList<int> list = kept;  // of which pages at the end are its own
-      for (std::size_t i = values.size() - 1000; i < values.size(); ++i) list.edit(i) = -1;
-      allocations_left = failed;
-      try {
-        change(list);
-        done = true;
-      } catch (std::bad_alloc const&) {
-        ++failed;
-      }
-      allocations_left = std::numeric_limits<long>::max();
+    fail_each_allocation(list_to_change, change, [&](SharedList<int> const& list, bool done) {
       auto wanted = values;
       for (int k = 0; k < pushed && wanted.size() < list.size(); ++k) wanted.push_back(k);
       bool const is_as_it_was = std::vector<int>(list.begin(), list.end()) == wanted;
       CHECK((done || is_as_it_was));
-    }
-    CHECK(failed > 0);
-    CHECK(failed < 1000);
+    });
   };
   check([](auto& list) { list.shrink(group + 300); });
   check([](auto& list) { list.edit(5) = 7; });
@@ -175,27 +191,13 @@ TEST_CASE("a list in pages takes back what did not end as memory ran out", "[top
   std::iota(values.begin(), values.end(), 0);
   SharedList<Index> const kept(values);
   auto const check = [&](std::function<void(List&)> const& change) {
-    int failed = 0;
-    for (bool done = false; !done && failed < 1000;) {
-      List list(backend, kept);
-      allocations_left = failed;
-      try {
-        change(list);
-        done = true;
-      } catch (std::bad_alloc const&) {
-        ++failed;
-      } catch (Error const&) {
-        ++failed;
-      }
-      allocations_left = std::numeric_limits<long>::max();
+    auto const list_to_change = [&] { return List(backend, kept); };
+    fail_each_allocation(list_to_change, change, [&](List& list, bool) {
       list.take_back(backend);
       REQUIRE(list.size() == values.size());
       bool const is_as_it_was = list.download(backend) == values;
-      INFO("allocation " << failed);
       CHECK(is_as_it_was);
-    }
-    CHECK(failed > 0);
-    CHECK(failed < 1000);
+    });
   };
   auto const changed = [&](std::size_t every) {
     return [&backend, every](List& list) {

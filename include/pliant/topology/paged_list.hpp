@@ -271,7 +271,7 @@ class PagedList {
       is_noted_;                  // by place: whether a page changed since it began to note that
   std::vector<Copied> copied_;    // of a change
   Array<Page<V>*> table_;         // the same as pages_, and room
-  Array<Page<V>*> table_before_;  // the last replace_from
+  Array<Page<V>*> table_before_;  // of the last replace_from, or before all pages changed
   std::vector<Array<V>> chunks_;
   std::size_t reserved_ = 0;  // pages
 };
