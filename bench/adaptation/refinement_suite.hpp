@@ -50,6 +50,7 @@ enum class Beside {
   nothing,
   boundary,  // a pressure at the top, and a right end that is driven
   memory,    // what quadrature points keep
+  listener,  // a simulator's array, with a value for each node
   steps,  // nothing, and sixteen steps are counted, with what the first needs to know of the mesh
   sleep   // all patches sleep; steps until they do so again are counted
 };
@@ -59,6 +60,8 @@ inline std::string in_words(Beside beside) {
       return ", pressed and driven";
     case Beside::memory:
       return ", viscous";
+    case Beside::listener:
+      return ", and carry an array";
     case Beside::steps:
       return ", and 16 steps";
     case Beside::sleep:
@@ -98,6 +101,11 @@ void time_change(benchmark::State& state, B const& backend, int cells,
       return u;
     });
   }
+  std::vector<double> temperature(static_cast<std::size_t>(body.nodes()), 1.0);
+  if (beside == Beside::listener)
+    body.on_change([&](auto const& change) {
+      temperature = change.transfer.carry_nodes(std::move(temperature));
+    });
   CentralDifference step;
   auto adapt = Adaptation{sleep({.below = 1e6, .for_steps = 2})}.every(1);
   auto const go_on = [&] {
@@ -204,6 +212,7 @@ inline void add_refinements() {
         };
         change_beside.template operator()<Beside::boundary>();
         change_beside.template operator()<Beside::memory>();
+        change_beside.template operator()<Beside::listener>();
         change_beside.template operator()<Beside::steps>();
         change_beside.template operator()<Beside::sleep>();
         change.template operator()<Beside::steps>("each ten thousandth", each_of(count, 10000));

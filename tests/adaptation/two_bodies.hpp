@@ -23,7 +23,7 @@ void make_viscous(Group<F>& group) {
 }
 
 /// A body with elements of two groups, displacements and velocities; some nodes are held if it `is_held`. `on_host`: it is refined
-/// on the host, as a listener wants to know.
+/// on the host.
 template <class F, class Other = Stiffer<F>, class B>
 auto body_of(B const& backend, bool on_host, Index cells, bool is_held = true) {
   using E = typename F::element;
@@ -61,7 +61,7 @@ auto body_of(B const& backend, bool on_host, Index cells, bool is_held = true) {
     stiff.push_back(e);
   body.template assign<Other>(stiff);
   body.set_loads(std::vector<Point<dim>>(mesh.nodes.size(), u[1]));
-  if (on_host) body.on_change([](auto const&) {});
+  if (on_host) change_on_host(body);
   return body;
 }
 

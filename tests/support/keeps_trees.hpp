@@ -13,6 +13,12 @@ struct KeepsTrees : B {
   KeepsTrees() = default;
 };
 
+/// Lets the host change a body's mesh, beside which others are compared.
+template <class TheBody>
+void change_on_host(TheBody& body) {
+  body.parts().mesh_is_on_host = true;
+}
+
 #if defined(__CUDACC__)
 using KeepingBackends = DoubleBackends;
 using KeepingFloat = Cuda<float>;

@@ -17,11 +17,18 @@ namespace pliant::detail {
 /// Elements to refine, and to coarsen, of a body with one element type, by the user's numbers.
 struct MarkedOn {
   std::span<Index const> refine{}, coarsen{};
+
+  [[nodiscard]] MarkedElements lists() const {
+    return {.refine = {{refine.begin(), refine.end()}},
+            .coarsen = {{coarsen.begin(), coarsen.end()}}};
+  }
 };
 
 /// What became of a change.
+template <class M>
 struct ChangeOn {
   std::size_t refined = 0, new_nodes = 0, merged = 0, gone_nodes = 0;
+  std::optional<TopologyPlan<M>> to_tell{};  // where a body has listeners, who do not know yet
 };
 
 /// Changes of a body's mesh in its backend's memory. What goes wrong leaves the body as it was, but for elements that were merged
@@ -29,7 +36,8 @@ struct ChangeOn {
 template <class Parts>
 class ChangesOnBackend {
   using B = typename Parts::backend_type;
-  using On = TopologyOn<typename Parts::mesh_type, B>;
+  using M = typename Parts::mesh_type;
+  using On = TopologyOn<M, B>;
   using Cells = typename B::template Array<Index>;
 
  public:
@@ -37,20 +45,25 @@ class ChangesOnBackend {
       : parts_(parts), limits_{parts.limits.nodes, parts.limits.elements, max_level} {}
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
-  std::optional<ChangeOn> operator()(MarkedOn const& marked) {
+  std::optional<ChangeOn<M>> operator()(MarkedOn const& marked) {
     if (!parts_.topology_on) {
       if (marked.refine.empty() && !parts_.state.topology->tree)
-        return ChangeOn{};  // nothing to merge
+        return ChangeOn<M>{};  // nothing to merge
       HostThreads const threads(backend(), *parts_.state.topology);
       parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
     }
     if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
+    if (!parts_.listeners.empty()) {
+      plan_for_listeners(marked);
+      if (!plan_) return ChangeOn<M>{};
+    }
     Changing const changing(parts_.topology_on);
     try {
       return change(marked);
     } catch (...) {
       if (parts_.topology_on) on().tree.take_back();
+      if (!merged_.empty()) tell_of_merged();
       throw;
     }
   }
@@ -79,8 +92,14 @@ class ChangesOnBackend {
     return cells;
   }
 
-  std::optional<ChangeOn> change(MarkedOn const& marked) {
-    ChangeOn done;
+  /// The same change on the host, before anything has changed.
+  void plan_for_listeners(MarkedOn const& marked) {
+    plan_ = plan_change(std::as_const(parts_), marked.lists(), limits_.max_level);
+    if (plan_) planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
+  }
+
+  std::optional<ChangeOn<M>> change(MarkedOn const& marked) {
+    ChangeOn<M> done;
     auto to_refine = cells_of(marked.refine), to_merge = cells_of(marked.coarsen);
     if (to_refine.size() > 0 && to_merge.size() > 0) leave_what_is_refined(to_refine, to_merge);
     if (to_merge.size() > 0) {
@@ -93,8 +112,11 @@ class ChangesOnBackend {
         done.merged = static_cast<std::size_t>(merged.merged);
         done.gone_nodes = static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
         renumber(to_refine, merged);
-        commit("coarsen", done.merged, merged,
+        bool const is_all = plan_ && plan_->counts.refined == 0;
+        auto parents = plan_ && !is_all ? parents_of(merged) : std::vector<Index>{};
+        commit("coarsen", done.merged, merged, is_all,
                [&](auto& parts) { return parts.coarsened(merged); });
+        merged_ = std::move(parents);
       }
     }
     if (to_refine.size() > 0) {
@@ -102,12 +124,26 @@ class ChangesOnBackend {
       if (refined.leaves > 0) {
         done.refined = static_cast<std::size_t>(refined.leaves);
         done.new_nodes = static_cast<std::size_t>(refined.new_nodes);
-        commit("refine", done.refined, refined,
+        commit("refine", done.refined, refined, plan_.has_value(),
                [&](auto& parts) { return parts.refined(refined); });
+        merged_.clear();
       }
     }
     if (done.merged > 0 && done.refined > 0) enter_as_one();
+    done.to_tell = std::move(plan_);
     return done;
+  }
+  std::vector<Index> parents_of(Coarsened const& merged) const {
+    auto const count = static_cast<std::size_t>(merged.merged);
+    auto parents = unset<Index>(backend(), count);
+    copy_values<B, Index>(backend(), merged.parents, parents.data(), count);
+    return download<Index>(parents);
+  }
+  /// Where what was to be refined beside elements that were merged is not.
+  void tell_of_merged() {
+    auto const plan =
+        plan_on_host(plan_->before, merged_, true, element_values_of(std::as_const(parts_)));
+    tell_listeners(parts_, plan);
   }
   void renumber(Cells& cells, Coarsened const& merged) {
     backend().for_each(size(cells),
@@ -149,12 +185,14 @@ class ChangesOnBackend {
     }
   }
 
-  /// Makes a change, `done` on the tree, of `count` elements.
+  /// Makes a change, `done` on the tree, of `count` elements. `is_planned`: whether the host's mesh behind it is that which was
+  /// planned for listeners.
   template <class Done, class Change>
-  void commit(char const* action, std::size_t count, Done const& done, Change const& make) {
+  void commit(char const* action, std::size_t count, Done const& done, bool is_planned,
+              Change const& make) {
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
     commit_change(parts_, action, count, [&] {
-      ChangedPartsOn<Parts> parts(parts_, kept);
+      ChangedPartsOn<Parts> parts(parts_, kept, is_planned ? planned_ : MeshOnHost<M>{});
       auto changed = make(parts);
       // Patches are there now, beside whose plans this takes longer.
       kept->numbers.follow(backend(), kept->tree, done);
@@ -164,6 +202,7 @@ class ChangesOnBackend {
     ++kept->on_host.version;
     ++kept->on_host.changes;
     kept->on_host.cells += count;
+    if (is_planned) kept->set_on_host(planned_);
   }
   /// The last two entries of the ledger become one.
   void enter_as_one() {
@@ -180,12 +219,17 @@ class ChangesOnBackend {
 
   Parts& parts_;
   RefinementLimits limits_;
+  std::optional<TopologyPlan<M>> plan_{};  // for listeners
+  MeshOnHost<M> planned_{};                // behind it
+  std::vector<Index> merged_{};            // cells, while the rest of the plan is not made
 };
 
 /// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.
 template <class Parts>
-std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedOn const& marked,
-                                          int max_level = 30) {
+std::optional<ChangeOn<typename Parts::mesh_type>> change_on_backend(Parts& parts,
+                                                                     MarkedOn const& marked,
+                                                                     int max_level = 30) {
+  using Done = ChangeOn<typename Parts::mesh_type>;
   if constexpr (changes_on_backend<Parts>) {
     if (!can_change_on_backend(parts)) return std::nullopt;
     auto const& table = std::get<0>(parts.layout.tables);
@@ -193,7 +237,7 @@ std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedOn const& marked,
     auto const count = static_cast<std::size_t>(table.count());
     check_numbers<E>("refine", marked.refine, count);
     check_numbers<E>("coarsen", marked.coarsen, count);
-    if (marked.refine.empty() && marked.coarsen.empty()) return ChangeOn{};
+    if (marked.refine.empty() && marked.coarsen.empty()) return Done{};
     return ChangesOnBackend<Parts>(parts, max_level)(marked);
   } else {
     return std::nullopt;
@@ -201,8 +245,9 @@ std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedOn const& marked,
 }
 /// The same where nothing else is marked.
 template <class Parts>
-std::optional<ChangeOn> change_on_backend(Parts& parts, MarkedElements const& marked,
-                                          int max_level) {
+std::optional<ChangeOn<typename Parts::mesh_type>> change_on_backend(Parts& parts,
+                                                                     MarkedElements const& marked,
+                                                                     int max_level) {
   if (!marked.only_refines_and_coarsens()) return std::nullopt;
   auto const first = [](auto const& lists) {
     return lists.empty() ? std::span<Index const>{} : std::span<Index const>(lists[0]);

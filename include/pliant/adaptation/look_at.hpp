@@ -146,11 +146,12 @@ class LookAt {
         auto const& marked = find_marked(max_level);
         auto const measured = parts_.timers.migration.measure();
         std::optional<TopologyPlan<typename Parts::mesh_type>> found;
-        if (change_on_backend(parts_, marked, max_level)) return found;
+        if (auto done = change_on_backend(parts_, marked, max_level))
+          return std::move(done->to_tell);
         found = plan_change(parts_, marked, max_level);
         if (found) commit(parts_, *found);
         return found;
-      } catch (...) {  // the mesh is the one of before
+      } catch (...) {  // where some of the mesh has changed, what was kept is gone, and moves stay
         if (moved) {
           for_each_check([](auto const& check) { check.put_back(); });
           regroup();

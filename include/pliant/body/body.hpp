@@ -180,7 +180,8 @@ class Body {
     pliant::commit(*parts_, u, dt, stride);
   }
   /// Calls listener(TopologyChange) after each change of the mesh. What it throws leaves refine or the
-  /// Adaptation, with the body changed all the same.
+  /// Adaptation, with the body changed all the same. Where a mesh is changed in a GPU's memory, the host plans each change, too,
+  /// for those who listen.
   void on_change(std::function<void(TopologyChange<M> const&)> listener) {
     parts_->listeners.push_back(std::move(listener));
   }

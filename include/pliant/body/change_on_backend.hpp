@@ -37,36 +37,40 @@ inline constexpr bool is_of_one_refinable_type<Mesh<E>> =
 template <class Parts>
 inline constexpr bool changes_on_backend = keeps_trees<typename Parts::backend_type> &&
                                            is_of_one_refinable_type<typename Parts::mesh_type>;
-/// Whether nothing of a body has to look at lists of the host when its mesh changes, and the host has not changed it: what it
+/// Whether nothing of a body has to be made from lists of the host when its mesh changes, and the host has not changed it: what it
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>
 bool can_change_on_backend(Parts const& parts) {
-  if (parts.mesh_is_on_host || !parts.listeners.empty()) return false;
+  if (parts.mesh_is_on_host) return false;
   return parts.first->interpolation.empty() && !sets_values_by_place(parts);
 }
 
-/// The topology of a body, with some of its cells refined, or some merged, and conditions there. `numbers`: of those that are
-/// refined, or of which the children are merged.
+/// Of a topology, with some of its cells refined, or some merged. `numbers`: of those that are refined, or of which the children
+/// are merged.
 template <class M>
-MeshOnHost<M> changed_on_host(MeshOnHost<M> const& before, std::vector<Index> numbers, bool merged,
-                              ElementValues<M::dim> const& values) {
-  HostThreads const threads(*before.topology);
+TopologyPlan<M> plan_on_host(std::shared_ptr<Topology<M> const> const& before,
+                             std::vector<Index> numbers, bool merged,
+                             ElementValues<M::dim> const& values) {
+  HostThreads const threads(*before);
   if (merged) {
     std::vector<Index> children;
     for (Index const c : numbers) {
-      auto const& parent = before.topology->tree->cell(c);
+      auto const& parent = before->tree->cell(c);
       for (Index k = 0; k < parent.divided().children; ++k)
         children.push_back(parent.first_child + k);
     }
     numbers = std::move(children);
   }
-  if (before.topology->tree)
-    for (Index& number : numbers) number = before.topology->cells[0].rank(number);
+  if (before->tree)
+    for (Index& number : numbers) number = before->cells[0].rank(number);
   MarkedElements marked;
   (merged ? marked.coarsen : marked.refine).push_back(std::move(numbers));
-  auto const plan = plan_change(before.topology, marked, {}, {}, values);
-  return {plan->after,
-          std::make_shared<Prescribed<M::dim> const>(carried(*before.prescribed, plan->transfer))};
+  return *plan_change(before, marked, {}, {}, values);
+}
+/// What the host knows of a mesh behind a change that was planned there.
+template <int Dim, class M>
+MeshOnHost<M> mesh_behind(TopologyPlan<M> const& plan, Prescribed<Dim> const& before) {
+  return {plan.after, std::make_shared<Prescribed<Dim> const>(carried(before, plan.transfer))};
 }
 /// The same when it is asked for, of cells in the backend's memory; or brought over from there, where that takes less time and `on`
 /// is still at the version behind the change. The latter in the thread that made the change alone: it is that which works with the
@@ -87,8 +91,8 @@ auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
         if constexpr (Table::Laws::value_count == 0)
           if (is_now && own->is_far_ahead()) mesh = brought_over(*own);
         if (!mesh)
-          mesh = changed_on_host<M>({before.shared(), prescribed.shared()}, download<Index>(*cells),
-                                    merged, values);
+          mesh = mesh_behind(plan_on_host(before.shared(), download<Index>(*cells), merged, values),
+                             *prescribed);
         if (is_now) own->set_on_host(*mesh);
         return std::make_shared<MeshOnHost<M> const>(std::move(*mesh));
       });

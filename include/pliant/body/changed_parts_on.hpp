@@ -41,8 +41,14 @@ class ChangedPartsOn {
   using Array = typename Parts::template Array<U>;
 
  public:
-  ChangedPartsOn(Parts& parts, std::shared_ptr<On> on)
-      : parts_(parts), on_(std::move(on)), backend_(parts.backend), energies_(backend_) {}
+  /// `on_host`: what the host knows of the mesh behind the change already; nothing: it makes the change, too, when it is asked.
+  ChangedPartsOn(Parts& parts, std::shared_ptr<On> on, MeshOnHost<M> on_host)
+      : parts_(parts),
+        on_(std::move(on)),
+        backend_(parts.backend),
+        energies_(backend_),
+        topology_(std::move(on_host.topology)),
+        prescribed_(std::move(on_host.prescribed)) {}
 
   /// Linear elements keep their momentum: what their children interpolate is what they did, and lumped masses are the integrals
   /// of shape functions.
@@ -143,9 +149,11 @@ class ChangedPartsOn {
   NodeField<double const, dim> at_rest() const { return {on_->points.data()}; }
 
   void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
-    auto const changed = changed_when_asked(parts_, on_, std::move(cells), merged);
-    topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
-    prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
+    if (!topology_) {
+      auto const changed = changed_when_asked(parts_, on_, std::move(cells), merged);
+      topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
+      prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
+    }
     on_->prescribed = prescribed_;
   }
   /// Of nodes; empty where there is none.

@@ -1,0 +1,199 @@
+#pragma once
+
+#include <stdexcept>
+
+#include "adaptation/two_bodies.hpp"
+#include "support/spring.hpp"
+
+// What listeners are told of bodies whose mesh is changed in their backend's memory, beside bodies that the host changes.
+namespace pliant::test::listeners_on_backend_suite {
+using namespace two_bodies;
+
+using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+using M = Mesh<Tri3>;
+
+/// What a simulator keeps of a body's nodes and elements, and is told.
+struct Told {
+  std::vector<double> of_nodes, of_elements;
+  int calls = 0;
+
+  template <class TheBody>
+  explicit Told(TheBody const& body) : of_nodes(at(body.nodes())), of_elements(at(count(body))) {
+    for (std::size_t i = 0; i < of_nodes.size(); ++i) of_nodes[i] = std::sin(1.0 + double(i));
+    for (std::size_t e = 0; e < of_elements.size(); ++e) of_elements[e] = double(e);
+  }
+  template <class TheBody>
+  void listen_to(TheBody& body) {
+    body.on_change([this, &body](TopologyChange<M> const& change) {
+      ++calls;
+      CHECK(change.after.mesh().tables == body.mesh().tables);
+      CHECK(change.before.nodes() == static_cast<Index>(of_nodes.size()));
+      of_nodes = change.transfer.carry_nodes(std::move(of_nodes));
+      of_elements = change.transfer.carry_elements(of_elements);
+    });
+  }
+};
+
+/// Two bodies with listeners.
+template <class B>
+struct TwoWithListeners : TwoBodies<F, B> {
+  Told told{this->body}, wanted{this->host};
+
+  explicit TwoWithListeners(B const& backend) : TwoBodies<F, B>(backend, 6) {}
+  void listen() {
+    told.listen_to(this->body);
+    wanted.listen_to(this->host);
+  }
+  void check_told(int calls) {
+    CHECK(told.calls == calls);
+    CHECK(wanted.calls == calls);
+    CHECK(told.of_nodes == wanted.of_nodes);
+    CHECK(told.of_elements == wanted.of_elements);
+    this->check_place();
+    this->check_all();
+  }
+};
+
+TEST_CASE("listeners are told of what is changed in a backend's memory as of what the host changes",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    TwoWithListeners<B> both(backend);
+    both.listen();
+    both.body.on_change([&](TopologyChange<M> const& change) {
+      CHECK(&change.after.mesh() == &both.body.mesh());  // one for both
+    });
+    int calls = 0;
+    for (int round = 0; round < 3; ++round) {
+      both.refine_one_in(5);
+      both.check_told(++calls);
+      if (both.coarsen_all_but_one_in(8) > 0) ++calls;
+      both.check_told(calls);
+    }
+    CHECK(calls == 6);
+    refine(both.body, {{}});
+    coarsen(both.body, {{0}});  // one of a family
+    CHECK(both.told.calls == calls);
+  });
+}
+
+TEST_CASE("who listens later is told of what comes then", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    TwoWithListeners<B> both(backend);
+    both.refine_one_in(5);
+    both.refine_one_in(7);  // the host knows of neither
+    both.told = Told(both.body);
+    both.wanted = Told(both.host);
+    both.listen();
+    both.refine_one_in(6);
+    both.check_told(1);
+    CHECK(both.coarsen_all_but_one_in(8) > 0);
+    both.check_told(2);
+  });
+}
+
+TEST_CASE("listeners are told at once of what rules refine and coarsen", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    TwoWithListeners<B> both(backend);
+    both.listen();
+    int calls = 0;
+    both.refine_one_in(3);
+    both.check_told(++calls);
+    for (int round = 0; round < 3; ++round) {
+      MarkedElements marked{.refine = {{}}, .coarsen = {{}}};
+      for (Index e = 0; e < count(both.host); ++e) {
+        bool const finer = both.random.below(12) == 0;
+        (finer ? marked.refine : marked.coarsen)[0].push_back(e);
+      }
+      auto const plan = plan_change(both.host.parts(), marked, 3);
+      REQUIRE(plan);
+      REQUIRE(plan->counts.refined > 0);
+      REQUIRE(plan->counts.coarsened > 0);
+      commit(both.host.parts(), *plan);
+      tell_listeners(both.host.parts(), *plan);
+      auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
+      REQUIRE(done);
+      REQUIRE(done->to_tell);
+      tell_listeners(both.body.parts(), *done->to_tell);
+      both.check_told(++calls);
+    }
+  });
+}
+
+/// The strain along x of an element.
+struct Longer {
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    return e.gradient()(0, 0);
+  }
+};
+
+/// Springs, which are made so many times.
+template <class B>
+auto springs(int& left) {
+  return [&left](B const& b, NodeRows const& rows) -> std::unique_ptr<AnyForceTerm<B, 2>> {
+    if (left-- == 0) throw std::runtime_error("no springs");
+    return std::make_unique<ConnectedTerm<B, Spring>>(
+        b, std::vector<std::array<Index, 2>>{{rows.of_node[0], rows.of_node[1]}}, Spring<double>{2},
+        rows.count());
+  };
+}
+
+TEST_CASE("what is merged where memory runs out as others are refined is told, and stays switched",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using Other = Stiffer<F>;
+    auto body = body_of<F>(backend, false, 6, false), twin = body_of<F>(backend, false, 6, false);
+    int left = 3, enough = 100;
+    body.add(springs<B>(left));
+    twin.add(springs<B>(enough));
+    for (auto* one : {&body, &twin}) {
+      std::vector<Index> all(at(count(*one)));
+      for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+      refine(*one, {all});
+      auto u = one->mesh().nodes;
+      for (auto& x : u) x = {0.25 * square(x[0]), 0};
+      one->set_displacements(u);
+    }
+    Told told(body);
+    told.listen_to(body);
+    Adaptation adapt{when<F>(Longer{}).above(0.2).template become<Other>(),
+                     when<Other>(Longer{}).above(0.3).refine({.max_level = 2}),
+                     when<F>(Longer{}).below(0.15).coarsen(),
+                     when<Other>(Longer{}).below(0.15).coarsen()};
+    auto const before = count(body);
+    auto const entries = ledger(body).size();
+
+    CHECK_THROWS_WITH(adapt.now(body), says("no springs"));
+
+    REQUIRE(count(body) < before);
+    CHECK(told.calls == 1);
+    CHECK(told.of_nodes.size() == at(body.nodes()));
+    CHECK(told.of_elements.size() == at(count(body)));
+    CHECK(ledger(body).size() == entries + 2);
+    auto const is_merging = [](auto const& entry) { return entry.action == "coarsen"; };
+    CHECK(std::ranges::count_if(ledger(body), is_merging) == 1);
+    auto const groups = body.template groups_of<Tri3>();
+    auto const longer = evaluate<Tri3>(body, Longer{});
+    REQUIRE(groups.size() == longer.size());
+    int switched = 0;
+    for (std::size_t e = 0; e < groups.size(); ++e)
+      if (longer[e] > 0.2) {
+        ++switched;
+        CHECK(groups[e] == 1);
+      }
+    CHECK(switched > 20);
+    left = 100;
+    adapt.now(body);  // refines
+    adapt.now(twin);
+    CHECK(told.calls == 2);
+    REQUIRE(count(body) > before);
+    CHECK(body.mesh().nodes == twin.mesh().nodes);
+    CHECK(body.mesh().tables == twin.mesh().tables);
+    CHECK(body.template groups_of<Tri3>() == twin.template groups_of<Tri3>());
+    CHECK(largest_difference(body.displacements(), twin.displacements()) < 1e-14);
+    CHECK(largest_difference(body.forces(), twin.forces()) < 1e-12);
+    REQUIRE(is_on_backend(body));
+  });
+}
+
+}  // namespace pliant::test::listeners_on_backend_suite
