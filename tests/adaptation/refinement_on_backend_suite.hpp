@@ -252,7 +252,7 @@ TEST_CASE("what moves as one goes on to the bit where it is refined on a backend
   });
 }
 
-TEST_CASE("where a condition holds a part of what would be merged, the host does it",
+TEST_CASE("where a condition holds a part of what would be merged, the rest is merged",
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
@@ -276,7 +276,25 @@ TEST_CASE("where a condition holds a part of what would be merged, the host does
       auto const merged = coarsen(both.body, {all}).merged;
       CHECK(merged == coarsen(both.host, {all}).merged);
       CHECK(merged > 20);
-      CHECK(!is_on_backend(both.body));
+      both.check_place();
+      both.check_all();
+      // What is refined beside it, too.
+      std::vector<Index> all_but_one;
+      for (Index e = 1; e < count(both.body); ++e) all_but_one.push_back(e);
+      auto const again = refine(both.body, {all_but_one}).refined;
+      CHECK(again == refine(both.host, {all_but_one}).refined);
+      MarkedElements marked{.refine = {{0}}, .coarsen = {{}}};
+      for (Index e = 1; e < count(both.body); ++e) marked.coarsen[0].push_back(e);
+      auto const plan = plan_change(both.host.parts(), marked, 3);
+      REQUIRE(plan);
+      REQUIRE(plan->counts.refined > 0);
+      commit(both.host.parts(), *plan);
+      auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
+      REQUIRE(done);
+      CHECK(done->refined == plan->counts.refined);
+      CHECK(done->merged == plan->counts.coarsened);
+      CHECK(!done->to_tell);
+      both.check_place();
       both.check_all();
     }
   });

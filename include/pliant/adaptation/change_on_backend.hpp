@@ -54,18 +54,17 @@ class ChangesOnBackend {
     }
     if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
-    if (!parts_.listeners.empty()) {
-      plan_for_listeners(marked);
-      if (!plan_) return ChangeOn<M>{};
-    }
-    Changing const changing(parts_.topology_on);
-    try {
-      return change(marked);
-    } catch (...) {
-      if (parts_.topology_on) on().tree.take_back();
-      if (!merged_.empty()) tell_of_merged();
-      throw;
-    }
+    bool const tells = !parts_.listeners.empty();
+    if (!tells)
+      if (auto done = make(marked)) return done;
+    // The host knows what conditions forbid to merge.
+    plan_ = plan_change(std::as_const(parts_), marked.lists(), limits_.max_level);
+    if (!plan_) return ChangeOn<M>{};
+    planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
+    auto const merged = merged_by(*plan_);
+    auto done = make({marked.refine, merged});
+    if (done && tells) done->to_tell = std::move(plan_);
+    return done;
   }
 
  private:
@@ -92,16 +91,31 @@ class ChangesOnBackend {
     return cells;
   }
 
-  /// The same change on the host, before anything has changed.
-  void plan_for_listeners(MarkedOn const& marked) {
-    plan_ = plan_change(std::as_const(parts_), marked.lists(), limits_.max_level);
-    if (plan_) planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
+  /// The elements of families that a plan merges.
+  static std::vector<Index> merged_by(TopologyPlan<M> const& plan) {
+    std::vector<Index> merged;
+    for (auto const& family : plan.transfer.families())
+      if (family.after.size() == 1)
+        for (auto const& member : family.before) merged.push_back(member.element);
+    return merged;
   }
 
+  /// Nothing where conditions forbid some of it; then nothing has changed.
+  std::optional<ChangeOn<M>> make(MarkedOn const& marked) {
+    Changing const changing(parts_.topology_on);
+    try {
+      return change(marked);
+    } catch (...) {
+      if (parts_.topology_on) on().tree.take_back();
+      if (!merged_.empty()) tell_of_merged();
+      throw;
+    }
+  }
   std::optional<ChangeOn<M>> change(MarkedOn const& marked) {
     ChangeOn<M> done;
     auto to_refine = cells_of(marked.refine), to_merge = cells_of(marked.coarsen);
-    if (to_refine.size() > 0 && to_merge.size() > 0) leave_what_is_refined(to_refine, to_merge);
+    if (!plan_ && to_refine.size() > 0 && to_merge.size() > 0)
+      leave_what_is_refined(to_refine, to_merge);
     if (to_merge.size() > 0) {
       auto const merged = on().tree.coarsen(to_merge.data(), size(to_merge));
       if (merged.merged > 0) {
@@ -130,7 +144,6 @@ class ChangesOnBackend {
       }
     }
     if (done.merged > 0 && done.refined > 0) enter_as_one();
-    done.to_tell = std::move(plan_);
     return done;
   }
   std::vector<Index> parents_of(Coarsened const& merged) const {
@@ -219,7 +232,7 @@ class ChangesOnBackend {
 
   Parts& parts_;
   RefinementLimits limits_;
-  std::optional<TopologyPlan<M>> plan_{};  // for listeners
+  std::optional<TopologyPlan<M>> plan_{};  // where the host has made one
   MeshOnHost<M> planned_{};                // behind it
   std::vector<Index> merged_{};            // cells, while the rest of the plan is not made
 };
