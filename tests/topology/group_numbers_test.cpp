@@ -10,9 +10,15 @@ namespace pliant::test {
 
 template <std::size_t N, class Draw>
 void check_numbers(int count, Draw const& draw) {
-  std::vector<std::array<Index, N>> groups;
+  UnsetVector<std::array<Index, N>> groups;
   for (int k = 0; k < count; ++k) groups.push_back(draw());
-  auto const numbers = detail::number_groups(groups, 80000);
+  auto const numbers = [&] {
+    HostThreads const threads(3);
+    return detail::number_groups(groups, 80000);
+  }();
+  auto const alone = detail::number_groups(groups, 80000);
+  CHECK(alone.number == numbers.number);
+  CHECK(alone.first == numbers.first);
   std::map<std::array<Index, N>, Index> expected;
   int wrong = 0;
   for (std::size_t k = 0; k < groups.size(); ++k) {

@@ -46,13 +46,9 @@ class ChangesOnBackend {
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
   std::optional<ChangeOn<M>> operator()(MarkedOn const& marked) {
-    if (!parts_.topology_on) {
-      if (marked.refine.empty() && !parts_.state.topology->tree)
-        return ChangeOn<M>{};  // nothing to merge
-      HostThreads const threads(backend(), *parts_.state.topology);
-      parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
-    }
-    if (!on().follow_conditions(std::as_const(parts_))) return std::nullopt;
+    if (!parts_.topology_on && marked.refine.empty() && !parts_.state.topology->tree)
+      return ChangeOn<M>{};  // nothing to merge
+    if (!follow_body()) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
     bool const tells = !parts_.listeners.empty();
     if (!tells)
@@ -89,6 +85,15 @@ class ChangesOnBackend {
     auto cells = upload(backend(), numbers);
     backend().for_each(size(numbers), LookUpCells{on().element_numbers(), cells.data()});
     return cells;
+  }
+
+  /// Brings what is kept of the mesh up to the body, where the body has changed otherwise; whether that can be.
+  bool follow_body() {
+    bool const is_there = parts_.topology_on != nullptr;
+    if (is_there && on().is_of_conditions(std::as_const(parts_))) return true;
+    HostThreads const threads(backend(), *parts_.state.topology);
+    if (!is_there) parts_.topology_on = std::make_shared<On>(std::as_const(parts_));
+    return on().follow_conditions(std::as_const(parts_));
   }
 
   /// The elements of families that a plan merges.

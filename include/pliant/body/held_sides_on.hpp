@@ -9,6 +9,7 @@
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/is_marked.hpp>
 #include <pliant/backend/read_back.hpp>
@@ -73,14 +74,18 @@ class HeldSidesOn {
       return own == known.end() ? detail::ConditionBits{0} : own->second;
     };
     detail::SidesView<Dim> const sides{tree.tree().lists().view()};
-    std::vector<detail::ConditionBits> bits;
-    if constexpr (Dim == 2)
-      for (auto const& edge : tree.tree().edges()) bits.push_back(bits_of(edge.nodes));
-    else
-      for (auto const& side : tree.tree().sides())
-        bits.push_back(bits_of(sides.tree.corners_of(side)));
+    auto const& lists = tree.tree().lists();
+    std::vector<detail::ConditionBits> bits(Dim == 2 ? lists.edges.size() : lists.sides.size(), 0);
+    count_ = static_cast<Index>(bits.size());
+    if (!known.empty())
+      detail::for_each_on_host(count_, 16384, [&](Index side) {
+        if constexpr (Dim == 2)
+          bits[at(side)] = bits_of(lists.edges[at(side)].nodes);
+        else
+          bits[at(side)] = bits_of(sides.tree.corners_of(lists.sides[at(side)]));
+      });
     // Sides know of their parts, which come behind them.
-    for (auto side = static_cast<Index>(bits.size()) - 1; side >= 0; --side) {
+    for (Index side = known.empty() || lists.divided.empty() ? -1 : count_ - 1; side >= 0; --side) {
       Index const first = sides.first_part(side);
       if (first < 0) continue;
       bool same = true;
@@ -88,7 +93,6 @@ class HeldSidesOn {
       bits[at(side)] = same ? bits[at(first)] : detail::differs;
     }
     bits_ = upload(backend, bits);
-    count_ = static_cast<Index>(bits.size());
     return true;
   }
 

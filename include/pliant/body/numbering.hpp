@@ -67,7 +67,8 @@ struct Numbering {
                                    first_on_curve(elements[static_cast<std::size_t>(e)], place);
                              });
     if constexpr (LinearSimplex<E> && E::dim == 3) keep_together(mesh, elements, first);
-    return detail::group_by_key(first, static_cast<Index>(mesh.nodes.size())).order;
+    auto const order = detail::group_by_key(first, static_cast<Index>(mesh.nodes.size())).order;
+    return {order.begin(), order.end()};
   }
   /// Nodes of no element come last.
   void number_others() {

@@ -70,10 +70,15 @@ struct TopologyOn<Mesh<E>, B> {
 
   [[nodiscard]] ElementNumbersView element_numbers() const { return numbers.of(order); }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
-  /// Brings what is prescribed up to a body's conditions and pressures, where these have changed; whether that can be.
+  /// Whether what is prescribed is what a body's conditions and pressures are now.
+  template <class Parts>
+  [[nodiscard]] bool is_of_conditions(Parts const& parts) const {
+    return prescribed.is(parts.state.prescribed);
+  }
+  /// Brings it up to them; whether that can be.
   template <class Parts>
   bool follow_conditions(Parts const& parts) {
-    if (prescribed.is(parts.state.prescribed)) return true;
+    if (is_of_conditions(parts)) return true;
     auto const row_of = [&](Index node) { return parts.layout.internal_of(node); };
     if (!held.set(parts.backend, *detail::tree_of(parts.state.topology.shared()).tree,
                   *parts.state.prescribed, row_of, rows.count()))

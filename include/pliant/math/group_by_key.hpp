@@ -3,17 +3,19 @@
 #include <bit>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/host_threads.hpp>
+#include <pliant/math/unset_vector.hpp>
 
 namespace pliant::detail {
 
 /// The positions of a list's entries, grouped by a key: those of key k are order[first[k]] to
 /// order[first[k + 1] − 1], ascending.
 struct GroupedByKey {
-  std::vector<Index> first, order;
+  UnsetVector<Index> first, order;
 };
 
 /// Distributes the entries 0 to n − 1 to places, ordered by their keys, those of one key in their order: where each key's
@@ -43,7 +45,7 @@ inline int shift_to_few(Index count) {
 }
 
 /// On several threads: entries go to ranges of keys first, then each range is counted and filled by one thread.
-inline GroupedByKey group_by_ranges(std::vector<Index> const& keys, Index count) {
+inline GroupedByKey group_by_ranges(std::span<Index const> keys, Index count) {
   struct Entry {
     Index key, position;
   };
@@ -89,11 +91,11 @@ inline GroupedByKey group_by_ranges(std::vector<Index> const& keys, Index count)
 }
 
 /// Keys lie in [0, count); one pass counts, another fills.
-inline GroupedByKey group_by_key(std::vector<Index> const& keys, Index count) {
+inline GroupedByKey group_by_key(std::span<Index const> keys, Index count) {
   constexpr std::size_t few = 65536;
   if (keys.size() >= few && has_many_host_threads()) return group_by_ranges(keys, count);
   GroupedByKey grouped;
-  grouped.first.resize(static_cast<std::size_t>(count) + 1);
+  grouped.first.assign(static_cast<std::size_t>(count) + 1, 0);
   grouped.order.resize(keys.size());
   for (Index key : keys) ++grouped.first[static_cast<std::size_t>(key) + 1];
   for (std::size_t k = 1; k < grouped.first.size(); ++k) grouped.first[k] += grouped.first[k - 1];

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include <pliant/backend/host_threads.hpp>
 #include <pliant/config.hpp>
+#include <pliant/math/first_of_each.hpp>
+#include <pliant/math/group_by_key.hpp>
+#include <pliant/math/unset_vector.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
 namespace pliant {
@@ -95,23 +100,28 @@ struct CellsAtEdgesView {
 /// divided there, so that they are found without a look at all cells.
 class CellsAtEdges {
  public:
-  explicit CellsAtEdges(TreeLists const& lists) : first_(at(lists.initial.edges) + 1) {
-    auto const for_each_edge = [&](auto const& visit) {
-      for (Index c = 0; c < lists.initial.cells; ++c) {
-        auto const own = lists.row(c);
-        for (std::size_t e = 0; e < at(lists.cells[at(c)].pattern().edges); ++e)
-          visit(at(own.edges[e]), c);
+  /// On the threads of the host.
+  explicit CellsAtEdges(TreeLists const& lists) {
+    Index const cells = lists.initial.cells;
+    auto const first_edge = detail::first_of_each(  // among the edges of all cells
+        cells, [&](Index c) { return lists.cells[at(c)].pattern().edges; });
+    UnsetVector<Index> edges(at(first_edge.back())), cell_of(edges.size());
+    detail::for_each_on_host(cells, few, [&](Index c) {
+      auto const own = lists.row(c);
+      for (Index i = first_edge[at(c)]; i < first_edge[at(c) + 1]; ++i) {
+        edges[at(i)] = own.edges[i - first_edge[at(c)]];
+        cell_of[at(i)] = c;
       }
-    };
-    for_each_edge([&](std::size_t e, Index) { ++first_[e + 1]; });
-    for (std::size_t e = 1; e < first_.size(); ++e) first_[e] += first_[e - 1];
-    cells_.resize(at(first_.back()));
-    auto next = first_;
-    for_each_edge([&](std::size_t e, Index c) { cells_[at(next[e]++)] = c; });
+    });
+    auto by_edge = detail::group_by_key(edges, lists.initial.edges);
+    first_ = std::move(by_edge.first);
+    cells_ = std::move(by_edge.order);
+    detail::for_each_on_host(static_cast<Index>(cells_.size()), 8 * few,
+                             [&](Index k) { cells_[at(k)] = cell_of[at(cells_[at(k)])]; });
   }
 
-  [[nodiscard]] std::vector<Index> const& first() const { return first_; }
-  [[nodiscard]] std::vector<Index> const& cells() const { return cells_; }
+  [[nodiscard]] std::span<Index const> first() const { return first_; }
+  [[nodiscard]] std::span<Index const> cells() const { return cells_; }
   /// Those of a tree as loops see them.
   [[nodiscard]] detail::CellsAtEdgesView view(TreeLists const& lists) const {
     return {lists.view(), lists.initial.edges, first_.data(), cells_.data()};
@@ -125,9 +135,11 @@ class CellsAtEdges {
   }
 
  private:
+  static constexpr Index few = 2048;  // cells that are worth a thread
+
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  std::vector<Index> first_, cells_;  // by the edge
+  UnsetVector<Index> first_, cells_;  // by the edge
 };
 
 }  // namespace pliant

@@ -220,14 +220,15 @@ class Hierarchy {
 
   template <Element E>
   void add(std::vector<Connectivity<E>> const& elements) {
-    for (auto c = size(cells()); auto const& nodes : elements) {
+    Index const first = size(cells());
+    detail::for_each_on_host(size(elements), detail::few_elements(E::nodes), [&](Index e) {
+      auto const& nodes = elements[at(e)];
       for (Index const n : nodes)
         if (n < 0 || n >= size(points_))
-          throw Error("Hierarchy: cell ", c, " has the node ", n, ", but nodes go from 0 to ",
-                      size(points_) - 1, "; mend its node numbers");
-      if constexpr (Dim == 2) detail::check_convex<E>(c, nodes, points_);
-      ++c;
-    }
+          throw Error("Hierarchy: cell ", first + e, " has the node ", n,
+                      ", but nodes go from 0 to ", size(points_) - 1, "; mend its node numbers");
+      if constexpr (Dim == 2) detail::check_convex<E>(first + e, nodes, points_);
+    });
     tree_.add(kind_of<typename E::cell>, nodes_on_cell<E>, elements);
   }
   /// Divides leaves, and gives the nodes that it takes. Throws Error where that is more than a limit.

@@ -4,10 +4,14 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/atomic.hpp>
+#include <pliant/backend/host_array.hpp>
 #include <pliant/error.hpp>
+#include <pliant/math/first_of_each.hpp>
+#include <pliant/math/unset_vector.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/group_numbers.hpp>
 #include <pliant/topology/tree_lists.hpp>
@@ -64,12 +68,8 @@ class InitialCells {
   }
   /// Where what each cell has so many of begins, and behind the last.
   template <class Count>
-  std::vector<Index> starts(Count const& count_of) const {
-    std::vector<Index> first{0};
-    first.reserve(lists_.cells.size() + 1);
-    for (auto const& cell : lists_.cells)
-      first.push_back(first.back() + static_cast<Index>(count_of(cell)));
-    return first;
+  UnsetVector<Index> starts(Count const& count_of) const {
+    return first_of_each(count(), [&](Index c) { return count_of(lists_.cells[at(c)]); });
   }
 
   void join_edges() {
@@ -80,7 +80,7 @@ class InitialCells {
       auto const* const nodes = view.row(c).nodes;
       return std::array{nodes[at(ends[0])], nodes[at(ends[1])]};
     };
-    std::vector<std::array<Index, 2>> groups(at(first.back()));
+    UnsetVector<std::array<Index, 2>> groups(at(first.back()));
     for_each_cell([&](Index c) {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t e = 0; e < at(cell.pattern().edges); ++e) {
@@ -159,28 +159,35 @@ class InitialCells {
   }
 
   /// Of side s of a cell; −1 behind those of a triangle.
-  [[nodiscard]] std::array<Index, 4> corners_of(Index c, std::size_t s) const {
+  static std::array<Index, 4> corners_of(CellRow const& cell, RefinementPattern const& p,
+                                         std::size_t s) {
     std::array<Index, 4> nodes{-1, -1, -1, -1};
     for (std::size_t k = 0; k < 4; ++k)
-      if (int const corner = lists_.cells[at(c)].pattern().side[s][k]; corner >= 0)
-        nodes[k] = lists_.row(c).nodes[at(corner)];
+      if (int const corner = p.side[s][k]; corner >= 0) nodes[k] = cell.nodes[at(corner)];
+    return nodes;
+  }
+  /// Ascending; without a branch, which would go one way as often as the other.
+  static std::array<Index, 4> sorted(std::array<Index, 4> nodes) {
+    for (auto const& [a, b] : {std::pair{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}}) {
+      Index const one = nodes[at(a)], other = nodes[at(b)];
+      nodes[at(a)] = std::min(one, other);
+      nodes[at(b)] = std::max(one, other);
+    }
     return nodes;
   }
   void join_sides() {
     auto const first = starts([](TreeCell const& cell) { return cell.pattern().sides; });
-    std::vector<std::array<Index, 4>> groups(at(first.back()));
+    UnsetVector<std::array<Index, 4>> groups(at(first.back()));
     for_each_cell([&](Index c) {
-      auto const& cell = lists_.cells[at(c)];
-      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
-        auto& key = groups[at(first[at(c)]) + s];
-        key = corners_of(c, s);
-        std::ranges::sort(key);
-      }
+      auto const& p = lists_.cells[at(c)].pattern();
+      auto const own = lists_.row(c);
+      for (std::size_t s = 0; s < at(p.sides); ++s)
+        groups[at(first[at(c)]) + s] = sorted(corners_of(own, p, s));
     });
     auto const numbers = number_groups(groups, lists_.nodes);
     lists_.sides.extend(numbers.first.size());
     auto const view = lists_.view();
-    std::vector<Index> cells_at(numbers.first.size(), 0);
+    HostArray<Index> cells_at(numbers.first.size());
     std::atomic<bool> crowded = false;
     // f(the number of a cell, the cell, which of its sides, that side's number, whether the cell is the first to have it)
     auto const for_each_side = [&](auto const& f) {
@@ -194,7 +201,7 @@ class InitialCells {
     };
     for_each_side([&](Index c, TreeCell const& cell, std::size_t s, Index number, bool is_first) {
       view.row(c).sides[s] = number;
-      if (atomic_add(cells_at[at(number)], 1) >= 2) crowded = true;
+      if (atomic_add(cells_at.data()[number], 1) >= 2) crowded = true;
       if (!is_first) return;
       auto& side = lists_.sides.edited(at(number));
       side = view.side_of(view.row(c), cell.level, s, cell.pattern());
@@ -217,7 +224,7 @@ class InitialCells {
       auto const& cell = lists_.cells[at(c)];
       for (std::size_t s = 0; s < at(cell.pattern().sides); ++s) {
         if (++cells_at[at(lists_.row(c).sides[s])] <= 2) continue;
-        auto const nodes = corners_of(c, s);
+        auto const nodes = corners_of(lists_.row(c), cell.pattern(), s);
         throw Error("Hierarchy: cell ", c, " shares the side at the nodes ", nodes[0], ", ",
                     nodes[1], " and ", nodes[2],
                     " with two others; give each side two cells at most");
@@ -230,7 +237,7 @@ class InitialCells {
 
   TreeLists& lists_;
   std::vector<Index> const& others_;
-  std::vector<Index> first_other_;
+  UnsetVector<Index> first_other_;
 };
 
 }  // namespace pliant::detail

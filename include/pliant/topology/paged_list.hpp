@@ -11,6 +11,7 @@
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/math/unset_vector.hpp>
 #include <pliant/topology/kept_pages.hpp>
 #include <pliant/topology/page_copies.hpp>
 #include <pliant/topology/pages.hpp>
@@ -34,7 +35,7 @@ class PagedList {
     extend(backend, list.size()).run(backend);
     for_each_batch(
         backend, [&](std::size_t first, std::span<Page<V>* const> pages, Array<V>& batch) {
-          std::vector<V> values(std::min(size_ - first, pages.size() * per_page));
+          UnsetVector<V> values(std::min(size_ - first, pages.size() * per_page));
           detail::for_each_on_host(static_cast<Index>(values.size()), 16384, [&](Index i) {
             auto const k = static_cast<std::size_t>(i);
             values[k] = list[first + k];

@@ -11,6 +11,7 @@
 
 #include <pliant/backend/host_array.hpp>
 #include <pliant/math/group_by_key.hpp>
+#include <pliant/math/unset_vector.hpp>
 
 namespace pliant::detail {
 
@@ -167,9 +168,10 @@ class PatchRows {
 
   std::vector<std::ptrdiff_t> first_{0};  // (patches + 1), targets
   HostArray<Index> target_;
-  std::vector<Index> scratch_first_;                    // (patches + 1)
-  std::vector<Index> folded_, fold_first_, fold_rows_;  // compressed rows
-  std::vector<Index> row_folds_, row_patches_;          // (scratch rows)
+  std::vector<Index> scratch_first_;  // (patches + 1)
+  std::vector<Index> folded_;
+  UnsetVector<Index> fold_first_, fold_rows_;   // by these: compressed rows
+  std::vector<Index> row_folds_, row_patches_;  // (scratch rows)
 };
 
 }  // namespace pliant::detail
