@@ -121,12 +121,17 @@ class InitialCells {
   }
   /// Whether edges have not been counted by as many leaves as there are edges of leaves, or nearly too many.
   [[nodiscard]] bool may_be_crowded(std::size_t edges_of_leaves) const {
-    std::size_t counted = 0;
-    bool some = false;
-    for (auto const& edge : lists_.edges) {
-      counted += at(edge.cells.leaves());
-      some = some || edge.cells.leaves() > most_at_edge;
-    }
+    std::atomic<std::size_t> counted = 0;
+    std::atomic<bool> some = false;
+    HostParts(static_cast<Index>(lists_.edges.size()))([&](Index from, Index to, int) {
+      std::size_t own = 0;
+      for (Index e = from; e < to; ++e) {
+        auto const leaves = lists_.edges[at(e)].cells.leaves();
+        own += at(leaves);
+        if (leaves > most_at_edge) some = true;
+      }
+      counted += own;
+    });
     return some || counted != edges_of_leaves;
   }
   void refuse_crowd_at_edge() const {

@@ -33,16 +33,18 @@ class PagedList {
   /// With the entries of a list on the host.
   PagedList(B const& backend, SharedList<V> const& list) {
     extend(backend, list.size()).run(backend);
-    for_each_batch(
-        backend, [&](std::size_t first, std::span<Page<V>* const> pages, Array<V>& batch) {
-          UnsetVector<V> values(std::min(size_ - first, pages.size() * per_page));
-          detail::for_each_on_host(static_cast<Index>(values.size()), 16384, [&](Index i) {
-            auto const k = static_cast<std::size_t>(i);
-            values[k] = list[first + k];
-          });
-          batch.upload(values);
-          copy(backend, pages, batch, true);
-        });
+    UnsetVector<V> values;
+    for (std::size_t first = 0; first < size_; first += per_batch * per_page) {
+      values.resize(std::min(size_ - first, per_batch * per_page));
+      detail::for_each_on_host(static_cast<Index>(pages_for(values.size())), 64, [&](Index p) {
+        auto const from = static_cast<std::size_t>(p) * per_page;
+        std::copy_n(&list[first + from], std::min(per_page, values.size() - from),
+                    values.data() + from);
+      });
+      // The pages are those at the end of one chunk.
+      auto& chunk = chunks_.front();
+      chunk.upload(values, chunk.size() - pages_.size() * per_page + first);
+    }
     keep();
     begin_noting();
   }
@@ -58,12 +60,13 @@ class PagedList {
   /// The entries, on the host.
   [[nodiscard]] std::vector<V> download(B const& backend) {
     std::vector<V> values(size_);
-    for_each_batch(backend,
-                   [&](std::size_t first, std::span<Page<V>* const> pages, Array<V>& batch) {
-                     copy(backend, pages, batch, false);
-                     auto const count = std::min(size_ - first, pages.size() * per_page);
-                     batch.download(std::span(values).subspan(first, count));
-                   });
+    auto batch = unset<V>(backend, std::min(per_batch, pages_.size()) * per_page);
+    for (std::size_t p = 0; p < pages_.size(); p += per_batch) {
+      copy(backend, std::span(pages_.now()).subspan(p, std::min(per_batch, pages_.size() - p)),
+           batch);
+      batch.download(
+          std::span(values).subspan(p * per_page, std::min(size_ - p * per_page, batch.size())));
+    }
     return values;
   }
 
@@ -84,7 +87,7 @@ class PagedList {
           std::span(changed).subspan(first, std::min(per_batch, changed.size() - first));
       pages.clear();
       for (auto const p : some) pages.push_back(pages_[p]);
-      copy(backend, pages, batch, false);
+      copy(backend, pages, batch);
       values.resize(some.size() * per_page);
       batch.download(values);
       for (std::size_t k = 0; k < some.size(); ++k) {
@@ -247,23 +250,12 @@ class PagedList {
       backend.for_each(count * Copy::words, Copy{list_from(first), table});
     }
   }
-  /// Copies pages from a batch, where they lie one after another, or to it.
-  void copy(B const& backend, std::span<Page<V>* const> pages, Array<V>& batch, bool from_batch) {
+  /// Copies pages to a batch, one behind the other.
+  void copy(B const& backend, std::span<Page<V>* const> pages, Array<V>& batch) {
     std::vector<Copied> copies;
-    for (std::size_t p = 0; p < pages.size(); ++p) {
-      auto* const other = page_in(batch, p);
-      copies.push_back({0, from_batch ? other : pages[p], from_batch ? pages[p] : other});
-    }
+    for (std::size_t p = 0; p < pages.size(); ++p)
+      copies.push_back({0, pages[p], page_in(batch, p)});
     copy(backend, copies, nullptr);
-  }
-  /// visit(first entry, pages, batch) for some pages after the other.
-  template <class Visit>
-  void for_each_batch(B const& backend, Visit const& visit) {
-    auto batch = zeros<V>(backend, std::min(per_batch, pages_.size()) * per_page);
-    for (std::size_t p = 0; p < pages_.size(); p += per_batch)
-      visit(p * per_page,
-            std::span(pages_.now()).subspan(p, std::min(per_batch, pages_.size() - p)), batch);
-    backend.synchronize();  // before the batch goes
   }
 
   detail::KeptPages<V> pages_;
