@@ -49,6 +49,7 @@ struct TwoWithListeners : TwoBodies<F, B> {
     CHECK(wanted.calls == calls);
     CHECK(told.of_nodes == wanted.of_nodes);
     CHECK(told.of_elements == wanted.of_elements);
+    CHECK(this->body.parts().topology_on->on_host.changes == 0);  // the host does not fall behind
     this->check_place();
     this->check_all();
   }
