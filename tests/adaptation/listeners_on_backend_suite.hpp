@@ -100,11 +100,7 @@ TEST_CASE("listeners are told at once of what rules refine and coarsen", "[adapt
     both.refine_one_in(3);
     both.check_told(++calls);
     for (int round = 0; round < 3; ++round) {
-      MarkedElements marked{.refine = {{}}, .coarsen = {{}}};
-      for (Index e = 0; e < count(both.host); ++e) {
-        bool const finer = both.random.below(12) == 0;
-        (finer ? marked.refine : marked.coarsen)[0].push_back(e);
-      }
+      auto const marked = both.refine_one_in_and_coarsen(12);
       auto const plan = plan_change(both.host.parts(), marked, 3);
       REQUIRE(plan);
       REQUIRE(plan->counts.refined > 0);

@@ -212,11 +212,7 @@ TEST_CASE("rules refine and coarsen a body at once in its backend's memory as on
     for (int round = 0; round < 4; ++round) {
       both.refine_one_in(4);
       // Some of the families to merge lie beside what is refined.
-      MarkedElements marked{.refine = {{}}, .coarsen = {{}}};
-      for (Index e = 0; e < count(both.host); ++e) {
-        bool const finer = both.random.below(12) == 0;
-        (finer ? marked.refine : marked.coarsen)[0].push_back(e);
-      }
+      auto const marked = both.refine_one_in_and_coarsen(12);
       auto const plan = plan_change(both.host.parts(), marked, 3);
       REQUIRE(plan);
       commit(both.host.parts(), *plan);

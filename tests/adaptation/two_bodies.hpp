@@ -183,6 +183,13 @@ struct TwoBodies {
     check_place();
     return done.merged;
   }
+  /// Some elements to refine, and all others to coarsen.
+  MarkedElements refine_one_in_and_coarsen(std::size_t one_in) {
+    MarkedElements marked{.refine = {{}}, .coarsen = {{}}};
+    for (Index e = 0; e < count(host); ++e)
+      (random.below(one_in) == 0 ? marked.refine : marked.coarsen)[0].push_back(e);
+    return marked;
+  }
   /// Moves all nodes a little, so that those that come to hang are displaced by that.
   void displace() {
     auto u = host.displacements();
