@@ -1,7 +1,11 @@
 #pragma once
 
+#include <sstream>
+#include <stdexcept>
+
 #include "adaptation/plane_bodies.hpp"
 #include "support/flat.hpp"
+#include "support/keeps_trees.hpp"
 
 namespace pliant::test::on_change_suite {
 
@@ -114,6 +118,41 @@ TEST_CASE("forces of arrays that a simulator carried over are those of the body"
     double const rounding = 4096 * epsilon_of<decltype(body)>;
     REQUIRE(u.size() == own.size());
     CHECK(difference(per_node<2>(download<T>(f)), own) < rounding * largest(own));
+  });
+}
+
+TEST_CASE("a listener asks for no other change and no other listener", "[topology]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    for (bool const on_host : {false, true}) {
+      auto body = plane_body(backend, distorted_mesh<Tri3>(5));
+      if (on_host) change_on_host(body);
+      std::ostringstream saved(std::ios::binary);
+      body.save(saved);
+      auto const before = saved.str();
+      int told = 0;
+      bool asks = true;
+      body.on_change([&](auto const& change) {
+        ++told;
+        CHECK(change.after.nodes() == body.nodes());
+        if (!asks) return;
+        auto const nodes = body.nodes();
+        CHECK_THROWS_WITH(refine(body, {{1}}), says("change of the mesh: a listener"));
+        CHECK_THROWS_WITH(coarsen(body, {{1}}), says("change of the mesh: a listener"));
+        CHECK_THROWS_WITH(body.on_change([](auto const&) {}), says("on_change: a listener"));
+        std::istringstream file(before, std::ios::binary);
+        CHECK_THROWS_WITH(body.load(file), says("load: a listener"));
+        CHECK(body.nodes() == nodes);
+        throw std::runtime_error("asked");
+      });
+      CHECK_THROWS_WITH(refine(body, {{0}}), says("asked"));
+      CHECK(told == 1);
+      asks = false;
+      int also_told = 0;
+      body.on_change([&](auto const&) { ++also_told; });
+      refine(body, {{1}});
+      CHECK(told == 2);
+      CHECK(also_told == 1);
+    }
   });
 }
 

@@ -62,9 +62,10 @@ std::size_t count_actions(TopologyPlan<M> const& plan) {
 }  // namespace detail
 
 /// Plans a change of a body's mesh: see refine, coarsen, raise, lower, split and merge. Empty where nothing changes. Throws Error where an
-/// element is unknown or the body's limits would be exceeded.
+/// element is unknown, the body's limits would be exceeded, or a listener of a change asks for it.
 template <class Parts>
 auto plan_change(Parts const& parts, MarkedElements const& marked, int max_level = 30) {
+  detail::check_nobody_is_told(parts, "change of the mesh");
   HostThreads const threads(parts.backend, *parts.state.topology);
   return plan_change(parts.state.topology.shared(), marked,
                      {parts.limits.nodes, parts.limits.elements, max_level},
@@ -138,7 +139,14 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
 /// Tells a body's listeners of a change that was made. What one throws is the caller's: the mesh is changed,
 /// and listeners after it are not told.
 template <class Parts>
-void tell_listeners(Parts const& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+void tell_listeners(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+  struct Telling {
+    bool& is_telling;
+    explicit Telling(bool& flag) : is_telling(flag) { is_telling = true; }
+    Telling(Telling const&) = delete;
+    Telling& operator=(Telling const&) = delete;
+    ~Telling() { is_telling = false; }
+  } const telling(parts.is_telling);
   for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
 }
 

@@ -156,6 +156,7 @@ class Body {
   /// made anew.
   template <class Stream>
   void load(Stream& stream) {
+    detail::check_nobody_is_told(*parts_, "load");
     load_state(stream, *parts_);
   }
 
@@ -181,8 +182,10 @@ class Body {
   }
   /// Calls listener(TopologyChange) after each change of the mesh. What it throws leaves refine or the
   /// Adaptation, with the body changed all the same. Where a mesh is changed in a GPU's memory, the host plans each change, too,
-  /// for those who listen.
+  /// for those who listen. Throws Error, as another change and load do, where a listener asks for it that is told of a
+  /// change.
   void on_change(std::function<void(TopologyChange<M> const&)> listener) {
+    detail::check_nobody_is_told(*parts_, "on_change");
     parts_->listeners.push_back(std::move(listener));
   }
 

@@ -15,6 +15,7 @@
 #include <pliant/body/step_schedule.hpp>
 #include <pliant/body/timers.hpp>
 #include <pliant/constraint/driven_nodes.hpp>
+#include <pliant/error.hpp>
 #include <pliant/force/element_groups.hpp>
 #include <pliant/force/force_term.hpp>
 #include <pliant/topology/topology_change.hpp>
@@ -91,6 +92,7 @@ struct Parts {
   std::map<std::string, Motion<dim>> motions{};  // all that were ever given, by name
   Array<T> before_drives{};                      // see place_before_drives
   std::vector<std::function<void(TopologyChange<M> const&)>> listeners{};
+  bool is_telling = false;  // them of a change
 
   bool forces_current = false;   // while they are not, the nodes' rows of layout.f are zero
   bool forces_complete = false;  // whether these are the forces of sleeping patches too
@@ -181,6 +183,18 @@ struct Parts {
     }(std::make_index_sequence<std::tuple_size_v<std::remove_cvref_t<Tables>>>());
   }
 };
+
+namespace detail {
+
+/// Throws Error where a listener asks for something that is told of a change of the mesh: others are still to be told of that.
+template <class Parts>
+void check_nobody_is_told(Parts const& parts, char const* what) {
+  if (parts.is_telling)
+    throw Error(what, ": a listener (on_change) asks for it that is told of a change of the mesh; ",
+                "ask for it when that is done");
+}
+
+}  // namespace detail
 
 /// A body that integrators, solvers and adaptation take: it has parts, and a state that they advance.
 template <class TheBody>
