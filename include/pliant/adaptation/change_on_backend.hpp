@@ -250,7 +250,6 @@ std::optional<ChangeOn<typename Parts::mesh_type>> change_on_backend(Parts& part
   using Done = ChangeOn<typename Parts::mesh_type>;
   if constexpr (changes_on_backend<Parts>) {
     if (!can_change_on_backend(parts)) return std::nullopt;
-    check_nobody_is_told(parts, "change of the mesh");
     auto const& table = std::get<0>(parts.layout.tables);
     using E = typename std::remove_cvref_t<decltype(table)>::element;
     auto const count = static_cast<std::size_t>(table.count());
