@@ -275,8 +275,8 @@ auto upload(B const& backend, std::span<U const> values) {
   }
 }
 /// The same of a vector's.
-template <Backend B, class U>
-auto upload(B const& backend, std::vector<U> const& values) {
+template <Backend B, class U, class Memory>
+auto upload(B const& backend, std::vector<U, Memory> const& values) {
   return upload<U>(backend, std::span<U const>(values));
 }
 /// The values of an array, on the host.
