@@ -135,8 +135,9 @@ auto springs(int& left) {
   };
 }
 
-TEST_CASE("what is merged where memory runs out as others are refined is told, and stays switched",
-          "[adaptation]") {
+TEST_CASE(
+    "what is merged beside elements of which the refinement fails is told, and stays switched",
+    "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using Other = Stiffer<F>;
     auto body = body_of<F>(backend, false, 6, false), twin = body_of<F>(backend, false, 6, false);

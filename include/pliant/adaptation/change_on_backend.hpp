@@ -203,8 +203,8 @@ class ChangesOnBackend {
     }
   }
 
-  /// Makes a change, `done` on the tree, of `count` elements. `is_planned`: whether the host's mesh behind it is that which was
-  /// planned for listeners.
+  /// Makes a change, `done` on the tree, of `count` elements. `is_planned`: whether the host's mesh behind it is that of the
+  /// plan.
   template <class Done, class Change>
   void commit(char const* action, std::size_t count, Done const& done, bool is_planned,
               Change const& make) {

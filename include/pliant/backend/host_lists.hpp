@@ -37,9 +37,9 @@ class ListParts {
   Index n_, count_;
 };
 
-/// Sums within each part, to which those of the parts before are added.
-template <class F>
-void scan_in_parts(ListParts const& parts, F const& f, Index* to) {
+/// Sums within each part, to which those of the parts before are added. `Parts`: ListParts or HostParts.
+template <class Parts, class F>
+void scan_in_parts(Parts const& parts, F const& f, Index* to) {
   std::vector<Index> sums(parts.count());
   parts([&](Index first, Index last, std::size_t part) {
     F const own = f;

@@ -196,6 +196,7 @@ class HostParts {
           static_cast<int>(std::clamp<I>(n / std::max<I>(few, 1), 1, static_cast<I>(4 * threads)));
   }
   int count() const { return count_; }
+  I size() const { return n_; }
   I first(int part) const {
     return static_cast<I>(static_cast<std::uint64_t>(n_) * static_cast<unsigned>(part) /
                           static_cast<unsigned>(count_));
