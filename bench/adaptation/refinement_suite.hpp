@@ -222,6 +222,8 @@ inline void add_refinements() {
     one(Quad4{}, 2e4);
     one(Tet4{}, 2e4);
     one(Hex8{}, 2e4);
+    one(Tet10{}, 2e4);
+    one(Tet10{}, 2.5e5);
     one(Tet4{}, 1e6);
   });
 }

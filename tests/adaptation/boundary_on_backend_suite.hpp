@@ -3,56 +3,11 @@
 #include <limits>
 #include <string>
 
-#include "adaptation/two_bodies.hpp"
+#include "adaptation/changes_on_backend.hpp"
 
 // Pressures and driven nodes of bodies whose mesh is changed in their backend's memory, beside bodies that the host changes.
 namespace pliant::test::boundary_on_backend_suite {
 using namespace two_bodies;
-
-template <int Dim>
-Point<Dim> drawn(double time) {
-  Point<Dim> u{};
-  u[0] = 0.3 * time;
-  u[Dim - 1] = -0.1 * time * time;
-  return u;
-}
-template <int Dim>
-Point<Dim> turned(Point<Dim> const& x, double time) {
-  Point<Dim> u{};
-  u[0] = 0.1 * time * x[1];
-  u[1] = -0.1 * time * x[0];
-  return u;
-}
-
-/// Refines, coarsens and steps both. set_up(body).
-template <class F, class B, class SetUp>
-void check_changes(B const& backend, Index cells, std::size_t one_in, SetUp const& set_up) {
-  TwoBodies<F, B> both(backend, cells, false);
-  set_up(both.body);
-  set_up(both.host);
-  double const dt = 0.05 * stable_step(both.host);
-  CentralDifference steps({.step = dt}), of_host({.step = dt});
-  auto const step_both = [&] {
-    steps(both.body, 3);
-    of_host(both.host, 3);
-    CHECK(largest_difference(both.body.displacements(), both.host.displacements()) <
-          1000 * both.rounding);
-    auto const work = external_work(both.body), wanted = external_work(both.host);
-    CHECK(work.motions == Approx(wanted.motions).margin(1000 * both.rounding));
-    CHECK(work.pressures == Approx(wanted.pressures).margin(1000 * both.rounding));
-  };
-  std::size_t merged = 0;
-  for (int round = 0; round < 2; ++round) {
-    both.refine_one_in(one_in);
-    both.refine_one_in(one_in);
-    step_both();
-    merged += both.coarsen_all_but_one_in(12);
-    step_both();
-  }
-  CHECK(merged > 4);
-  CHECK(both.body.parts().pressures.size() == both.host.parts().pressures.size());
-  CHECK(both.body.parts().driven.size() == both.host.parts().driven.size());
-}
 
 template <class E>
 using Soft = Formulation<E, Gauss<TensorCell<typename E::cell> ? 2 : 1>, NeoHookean>;

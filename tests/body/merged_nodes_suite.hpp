@@ -362,7 +362,7 @@ void on_rounds(B const& backend, Mesh<E> const& mesh, std::size_t one_in, Check 
   CHECK(hung > 0);
   CHECK(freed > 0);
 }
-/// Does so on meshes of each linear element that can be refined.
+/// Does so on meshes of each linear element that can be refined, and of some quadratic ones.
 template <class Check>
 void on_meshes(Check const& check) {
   on_each_backend<AllBackends>([&]<class B>(B const& backend) {
@@ -370,6 +370,8 @@ void on_meshes(Check const& check) {
     on_rounds(backend, shaken(regular_mesh<Quad4>(8), 0.01), 4, check);
     on_rounds(backend, shaken(regular_mesh<Tet4>(3), 0.03), 6, check);
     on_rounds(backend, shaken(regular_mesh<Hex8>(3), 0.03), 6, check);
+    on_rounds(backend, mesh::raised<Quad8>(shaken(regular_mesh<Quad4>(6), 0.01)), 4, check);
+    on_rounds(backend, mesh::raised<Tet10>(shaken(regular_mesh<Tet4>(2), 0.03)), 6, check);
   });
 }
 

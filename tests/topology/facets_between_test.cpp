@@ -11,8 +11,12 @@ namespace pliant::test {
 /// The same, of which every other one runs round the other way.
 template <int Dim>
 std::vector<Facet<Dim>> turned(std::vector<Facet<Dim>> facets) {
-  for (std::size_t i = 0; i < facets.size(); i += 2)
-    std::reverse(facets[i].begin() + (Dim == 2 ? 0 : 1), facets[i].begin() + facets[i].size());
+  for (std::size_t i = 0; i < facets.size(); i += 2) {
+    auto* const nodes = facets[i].begin();
+    auto const n = facets[i].corners();
+    std::reverse(nodes + (Dim == 2 ? 0 : 1), nodes + n);
+    if (Dim == 3 && facets[i].size() > n) std::reverse(nodes + n, nodes + 2 * n);
+  }
   return facets;
 }
 
@@ -59,6 +63,9 @@ TEST_CASE("facets of a tree are taken over to another one of the same mesh", "[t
   check_facets(regular_mesh<Quad4>(6), 8);
   check_facets(regular_mesh<Tet4>(3), 8);
   check_facets(regular_mesh<Hex8>(4), 8);
+  check_facets(mesh::raised<Tri6>(regular_mesh<Tri3>(6)), 8);
+  check_facets(mesh::raised<Tet10>(regular_mesh<Tet4>(3)), 8);
+  check_facets(mesh::raised<Hex27>(regular_mesh<Hex8>(4)), 8);
 }
 
 TEST_CASE("facets inside of divided cells are not taken over", "[topology]") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,19 +17,17 @@ namespace pliant {
 
 namespace detail {
 
-/// The face that sides of linear elements have.
-template <class Cell>
-struct LinearFaceOf {
-  using type = Line2;
-};
-template <>
-struct LinearFaceOf<Tetrahedron> {
-  using type = Tri3;
-};
-template <>
-struct LinearFaceOf<Hexahedron> {
-  using type = Quad4;
-};
+/// The face that the sides of an element are, all alike.
+template <Element E>
+constexpr auto face_of() {
+  constexpr auto nodes = mesh::nodes_on_side<E>(0).size();
+  if constexpr (E::dim == 2)
+    return std::conditional_t<nodes == 2, Line2, Line3>{};
+  else if constexpr (SimplexCell<typename E::cell>)
+    return std::conditional_t<nodes == 3, Tri3, Tri6>{};
+  else
+    return std::conditional_t<nodes == 4, Quad4, std::conditional_t<nodes == 8, Quad8, Quad9>>{};
+}
 
 }  // namespace detail
 
@@ -78,15 +77,15 @@ class ActingOn {
   /// Makes the force terms of pressures of such parts.
   template <class Parts, class On>
   void press(Parts& parts, On const& on) const {
-    using Cell = typename On::element::cell;
-    using Face = typename detail::LinearFaceOf<Cell>::type;
+    using E = typename On::element;
+    using Face = decltype(detail::face_of<E>());
     using Physics = detail::PressureOn<Dim, Face>;
     using Term = ConnectedTerm<B, Physics::template physics>;
     constexpr int width = row_width<typename Term::Elements>;
     for (auto const& own : pressed_) {
       if (own.pascals == 0) continue;
-      auto rows = on.held.template facets_of_set<Cell, width>(parts.backend, on.tree, on.order,
-                                                              on.rows.of_node(), own.set);
+      auto rows = on.held.template facets_of_set<typename E::cell, width>(
+          parts.backend, on.tree, on.order, on.rows.of_node(), own.set);
       parts.pressures.push_back(Term::of_rows(
           parts.backend, std::move(rows), typename Physics::template physics<double>{own.pascals},
           parts.layout.rows));

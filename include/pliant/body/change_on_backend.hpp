@@ -13,6 +13,7 @@
 #include <pliant/body/change_topology.hpp>
 #include <pliant/body/topology_on.hpp>
 #include <pliant/topology/plan.hpp>
+#include <pliant/topology/refinable.hpp>
 
 // Which bodies are refined and coarsened in their backend's memory, and what the host knows of their meshes, which follows when
 // it is asked for.
@@ -31,7 +32,7 @@ template <class M>
 inline constexpr bool is_of_one_refinable_type = false;
 template <Element E>
 inline constexpr bool is_of_one_refinable_type<Mesh<E>> =
-    E::degree == 1 && (LinearSimplex<E> || TensorCell<typename E::cell>);
+    Refinable<E> && (SimplexCell<typename E::cell> || TensorCell<typename E::cell>);
 
 /// Whether bodies of a kind may be refined and coarsened in their backend's memory.
 template <class Parts>

@@ -37,6 +37,9 @@ class ChangedPartsOn {
   using Energies = EnergySumsOn<Parts>;
   static constexpr int dim = Parts::dim;
   static constexpr Index few_hung = 2048;  // edges and sides on which nodes hang
+  /// Whether elements that are refined have to be given momentum back. Linear ones keep theirs: what their children interpolate is
+  /// what they did, and lumped masses are the integrals of shape functions.
+  static constexpr bool moves_momentum = E::degree > 1;
   template <class U>
   using Array = typename Parts::template Array<U>;
 
@@ -50,8 +53,6 @@ class ChangedPartsOn {
         topology_(std::move(on_host.topology)),
         prescribed_(std::move(on_host.prescribed)) {}
 
-  /// Linear elements keep their momentum: what their children interpolate is what they did, and lumped masses are the integrals
-  /// of shape functions.
   ChangedTopology<Parts> refined(typename TreeOn<B>::Refined const& done) {
     synchronize_velocities(parts_);
     energies_.add_kinetic(Energies::before, parts_);
@@ -63,6 +64,7 @@ class ChangedPartsOn {
     on_->rows.refine(on_->tree, on_->order, done);
     if (done.new_nodes == 0) backend_.synchronize();  // rows of new nodes were waited for
     rows_ = on_->rows.count();
+    double const speed = moves_momentum ? largest_speed() : 0;
     Copies copies(backend_);
     auto points = copies.template extended<double>(on_->points, values());
     auto u = copies.template extended<T>(parts_.state.u, values());
@@ -74,22 +76,29 @@ class ChangedPartsOn {
     on_->points = std::move(points);
     on_->masses.extend(rows_);
     auto const come = refined_elements<E>(on_->tree, done, on_->rows.of_node(), at_rest());
-    on_->masses.exchange(
-        come,
+    auto const filling =
         filling_new_nodes<E>(on_->tree, done, on_->rows.of_node(), on_->point_field(),
-                             node_field<dim>(u), node_field<dim>(v)),
-        LoopStep{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
-                                                     on_->rows.of_node(),
-                                                     {on_->points.data()},
-                                                     layout.middle,
-                                                     node_field<dim>(layout.rest)}});
-    read_masses(layout, MassWeightsOn<B>(backend_, layout.interpolation, rows_));
+                             node_field<dim>(u), node_field<dim>(v));
+    LoopStep const placing{done.new_nodes, PlaceAtRest<T, dim>{done.nodes,
+                                                               on_->rows.of_node(),
+                                                               {on_->points.data()},
+                                                               layout.middle,
+                                                               node_field<dim>(layout.rest)}};
+    MassWeightsOn<B> const weights(backend_, layout.interpolation, rows_);
+    if constexpr (moves_momentum) {
+      in_turn(backend_, filling, placing);
+      exchange_masses(come, weights, layout, speed, v);
+    } else {
+      on_->masses.exchange(come, filling, placing);
+      read_masses(layout, weights);
+    }
     RefinedPlaces<B> const places(backend_, on_->order, done);
     energies_.add_strain_at(Energies::before, parts_, places.go.data(), places.go_count);
     auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
     changed.changed_rows = changed_rows<E>(parts_, come, rows_, false);
     energies_.add_strain_at(Energies::after, changed.parts, places.come.data(), places.come_count);
     read_energies(changed);
+    if constexpr (moves_momentum) changed.taken = on_->momentum.taken();
     return changed;
   }
 
@@ -102,9 +111,7 @@ class ChangedPartsOn {
     on_->hanging.find_after(on_->tree, done);
     on_->order.coarsen(on_->tree, done);
     on_->rows.coarsen(done);
-    double const speed =  // m/s
-        backend_.maximum(parts_.layout.rows, RowSize<T, dim>{std::as_const(parts_).v()});
-    if (!is_finite(speed)) check_fields(std::as_const(parts_));
+    double const speed = largest_speed();
     rows_ = on_->rows.count();
     Copies copies(backend_);
     auto u = copies.template extended<T>(parts_.state.u, values());
@@ -117,15 +124,8 @@ class ChangedPartsOn {
                                      std::get<0>(parts_.layout.tables).elements.rows_of_nodes(),
                                      std::get<0>(layout.tables).elements.rows_of_nodes(),
                                      ElementsByRows<E>(at_rest())};
-    MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_),
-        weights(backend_, layout.interpolation, rows_);
-    on_->masses.take_gone(families);
-    on_->momentum.begin(families, weights_before, weights, on_->masses);
-    on_->masses.add_come(families);
-    read_masses(layout, weights);
-    double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);
-    on_->momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
-                            kilograms_->data(), layout.held.data(), node_field<dim>(v));
+    exchange_masses(families, MassWeightsOn<B>(backend_, layout.interpolation, rows_), layout,
+                    speed, v);
     auto const clear = [&](Array<T>& field) {
       return LoopStep{on_->rows.freed_count(),
                       ClearListed<T, dim>{on_->rows.freed(), node_field<dim>(field)}};
@@ -222,6 +222,27 @@ class ChangedPartsOn {
           return std::make_shared<ElementNumbers>(std::move(ordered.cells[0]), first,
                                                   topology->cells[0]);
         });
+  }
+  /// m/s. Throws Error for velocities that are not finite.
+  [[nodiscard]] double largest_speed() const {
+    auto const& parts = std::as_const(parts_);
+    double const speed = backend_.maximum(parts.layout.rows, RowSize<T, dim>{parts.v()});
+    if (!is_finite(speed)) check_fields(parts);
+    return speed;
+  }
+  /// Gives nodes the masses of elements that come for those of elements that go, and these the momentum of those. `speed`: the
+  /// largest; `v`: of the layout.
+  template <class Families>
+  void exchange_masses(Families const& families, MassWeightsOn<B> const& weights, Layout& layout,
+                       double speed, Array<T>& v) {
+    MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_);
+    on_->masses.take_gone(families);
+    on_->momentum.begin(families, weights_before, weights, on_->masses);
+    on_->masses.add_come(families);
+    read_masses(layout, weights);
+    double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);
+    on_->momentum.give_back(families, weights_before, weights, parts_.material.density, bound,
+                            kilograms_->data(), layout.held.data(), node_field<dim>(v));
   }
   void read_masses(Layout& layout, MassWeightsOn<B> const& weights) {
     *own_masses_ = unset<ExactSum>(backend_, at(rows_));

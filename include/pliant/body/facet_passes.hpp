@@ -19,7 +19,7 @@ struct MarkNodesOfSet {
 
   PLIANT_HOST_DEVICE void operator()(Index side) const {
     if ((bits[side] & set) == 0 || sides.first_part(side) >= 0) return;
-    sides.visit_corners(side, [&](Index node) { atomic_store(marks[of_node[node]], 1); });
+    sides.visit_nodes(side, [&](Index node) { atomic_store(marks[of_node[node]], 1); });
   }
 };
 /// Which sides of a tree belong to a set.
@@ -74,14 +74,28 @@ struct PutFacet {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     Index const number = of_cells.cells[places[k] / Sides];
     auto const& cell = of_cells.in_set.cell(number);
-    auto const* const nodes = of_cells.in_set.sides.tree.row(number).nodes;
+    auto const& sides = of_cells.in_set.sides;
+    auto const& tree = sides.tree;
+    auto const row = tree.row(number);
     auto const s = static_cast<std::size_t>(places[k] % Sides);
     auto const& p = cell.pattern();
     int const corners = Dim == 2 ? 2 : p.corners_of_side(static_cast<int>(s));
+    auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+    auto next = std::ptrdiff_t{Width} * k;
+    auto const put = [&](Index node) { rows[next++] = of_node[node]; };
     for (int a = 0; a < corners; ++a) {
-      auto const c = static_cast<std::size_t>(cell.mirrored ? corners - 1 - a : a);
-      int const corner = Dim == 2 ? p.edge[s][c] : p.side[s][c];
-      rows[std::ptrdiff_t{Width} * k + a] = of_node[nodes[corner]];
+      auto const c = at(cell.mirrored ? corners - 1 - a : a);
+      put(row.nodes[at(Dim == 2 ? p.edge[s][c] : p.side[s][c])]);
+    }
+    if (sides.has == CellNodes::corners) return;
+    if constexpr (Dim == 2) {
+      put(tree.edges[at(row.edges[s])].middle);
+    } else {
+      for (int a = 0; a < corners; ++a) {  // each between corners a and a + 1
+        auto const c = at(cell.mirrored ? (2 * corners - 2 - a) % corners : a);
+        put(tree.edges[at(row.edges[at(p.edges_of_side[s][c])])].middle);
+      }
+      if (sides.has == CellNodes::all && corners == 4) put(tree.sides[at(row.sides[s])].centre);
     }
   }
 };

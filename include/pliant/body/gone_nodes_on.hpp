@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/body/merged_elements.hpp>
 #include <pliant/constraint/rows_on.hpp>
-#include <pliant/element/linear.hpp>
+#include <pliant/topology/patterns.hpp>
 #include <pliant/topology/tree_claims.hpp>
 
 // Nodes that went as elements were merged, between nodes that stay, in a backend's memory.
@@ -15,57 +16,68 @@ namespace pliant {
 
 namespace detail {
 
-/// The weights that the nodes of a linear element have in the middle between two of them: dyadic numbers, without rounding.
+/// Where the nodes of children lie on their parent's element: (2: whether the parent is mirrored, children, nodes).
 template <Element E>
-PLIANT_HOST_DEVICE Vector<double, E::nodes> weights_between(int a, int b) {
-  return E::shape(0.5 * (E::cell::corner(a) + E::cell::corner(b)));
+std::vector<Vector<double, E::dim>> places_on_parent() {
+  auto const& pattern = pattern_of(kind_of<typename E::cell>, Division::refined);
+  std::vector<Vector<double, E::dim>> places;
+  for (bool const mirrored : {false, true})
+    for (int child = 0; child < pattern.children; ++child)
+      for (int a = 0; a < E::nodes; ++a)
+        places.push_back(on_parent<typename E::cell>(E::place(a), pattern, child, mirrored));
+  return places;
 }
 
-/// Nodes that went as linear elements were merged. The child in a corner of its parent has the same order of nodes as that, and
-/// half its size, so that its node b lies in the middle between the corner and node b of the parent; all of these are there.
+/// Nodes that went as elements were merged; those of the parent are all there.
 template <Element E>
 struct GoneBetween {
-  static constexpr Index nodes = E::nodes;
   MergedElements<E> families;
+  Vector<double, E::dim> const* on_parent;  // see places_on_parent
   Index const* place;  // by row: of a node that went among these, one more; else 0
   Index* claims;       // by node that went: see tree_claims.hpp
-  Index* pair;         // nodes · a + b, of the family whose claim it is
-  Index* entries;      // how many weights are not zero
+  Index* from;     // where it lies on the parent of the family whose claim it is, of `on_parent`
+  Index* entries;  // how many weights are not zero
 
-  /// visit(k, a, b) for the nodes that went between nodes a and b of the parent, which k is among them. Some come again.
+  /// visit(k, from) for the nodes that went of a family, which k is among them. Some come again.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit(Index r, Visit const& visit_one) const {
-    for (int a = 0; a < nodes - 1; ++a) {
-      auto child = families.rows_gone(r, a);
-      // Mirrored tetrahedra have the nodes of their last two corners in the other order.
-      if constexpr (SimplexCell<typename E::cell> && E::dim == 3) {
-        auto const at = static_cast<std::size_t>(a);
-        if (child[at] != families.rows_come(r, 0)[at]) child = families.rows_gone(r, 5 - a);
+    Index from = is_mirrored(r) ? MergedElements<E>::most_gone * E::nodes : 0;
+    for (Index child = 0; child < families.gone(r); ++child)
+      for (Index const row : families.rows_gone(r, child)) {
+        if (Index const k = place[row] - 1; k >= 0) visit_one(k, from);
+        ++from;
       }
-      for (int b = a + 1; b < nodes; ++b) {
-        Index const k = place[child[static_cast<std::size_t>(b)]] - 1;
-        if (k >= 0) visit_one(k, a, b);
-      }
-    }
+  }
+  /// The weights that the nodes of the parent have there: dyadic numbers, without rounding.
+  [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, E::nodes> weights(Index k) const {
+    return E::shape(on_parent[from[k]]);
+  }
+
+ private:
+  /// Mirrored tetrahedra have their last two corners in the other order, and other children there.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_mirrored(Index r) const {
+    if constexpr (SimplexCell<typename E::cell> && E::dim == 3)
+      return families.rows_gone(r, 2)[2] != families.rows_come(r, 0)[2];
+    return false;
   }
 };
 template <Element E>
 struct ClaimGone {
   GoneBetween<E> gone;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    gone.visit(r, [&](Index k, int, int) { claim(gone.claims[k], r, true); });
+    gone.visit(r, [&](Index k, Index) { claim(gone.claims[k], r, true); });
   }
 };
 template <Element E>
-struct FindPairs {
+struct FindOnParents {
   GoneBetween<E> gone;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    gone.visit(r, [&](Index k, int a, int b) {
+    gone.visit(r, [&](Index k, Index from) {
       if (!makes(r, gone.claims[k]) || gone.entries[k] != 0) return;
-      auto const weights = weights_between<E>(a, b);
+      gone.from[k] = from;
+      auto const weights = gone.weights(k);
       Index count = 0;
       for (int c = 0; c < E::nodes; ++c) count += weights[c] != 0 ? 1 : 0;
-      gone.pair[k] = GoneBetween<E>::nodes * a + b;
       gone.entries[k] = count;
     });
   }
@@ -79,8 +91,7 @@ struct PutWeights {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     if (gone.entries[k] == 0) return;
     auto const parent = gone.families.rows_come(claimant(gone.claims[k]), 0);
-    auto const weights = weights_between<E>(gone.pair[k] / GoneBetween<E>::nodes,
-                                            gone.pair[k] % GoneBetween<E>::nodes);
+    auto const weights = gone.weights(k);
     Index to = first[k];
     for (int c = 0; c < E::nodes; ++c) {
       if (weights[c] == 0) continue;
@@ -116,14 +127,14 @@ struct ForgetRows {
 /// hands them what these had (see apply_transpose), as Transfer::carry_sums does. Several merged elements may have had one;
 /// their weights are the same. Has what passes take between them.
 template <Element E, Backend B>
-  requires(LinearSimplex<E> || Multilinear<E>)
 class GoneNodesOn {
   using T = typename B::scalar;
   template <class U>
   using Array = typename B::template Array<U>;
 
  public:
-  explicit GoneNodesOn(B const& backend) : backend_(backend) {}
+  explicit GoneNodesOn(B const& backend)
+      : backend_(backend), on_parent_(upload(backend, detail::places_on_parent<E>())) {}
 
   /// The nodes that went, by their rows in the order of the list `gone`, (count), in the backend's memory: these had all been
   /// nodes of merged elements. `rows`: how many fields have.
@@ -134,17 +145,17 @@ class GoneNodesOn {
     auto const n = at(count);
     detail::grow_zeroed(backend_, place_, at(rows));
     detail::grow(backend_, claims_, n);
-    detail::grow(backend_, pair_, n);
+    detail::grow(backend_, from_, n);
     auto entries = zeros<Index>(backend_, n);
     weights.count = count;
     weights.node = unset<Index>(backend_, n);
     weights.first = unset<Index>(backend_, n + 1);
     detail::copy_values<B, Index>(backend_, gone, weights.node.data(), n);
     backend_.for_each(count, detail::NotePlaces{gone, place_.data(), claims_.data()});
-    detail::GoneBetween<E> const between{merged, place_.data(), claims_.data(), pair_.data(),
-                                         entries.data()};
+    detail::GoneBetween<E> const between{merged,         on_parent_.data(), place_.data(),
+                                         claims_.data(), from_.data(),      entries.data()};
     backend_.for_each(merged.count, detail::ClaimGone<E>{between});
-    backend_.for_each(merged.count, detail::FindPairs<E>{between});
+    backend_.for_each(merged.count, detail::FindOnParents<E>{between});
     backend_.scan(count, detail::CountAt{entries.data()}, weights.first.data());
     auto total = zeros<Index>(backend_, 1);
     backend_.for_each(1, detail::CopyValue<Index>{weights.first.data() + count, total.data()});
@@ -161,8 +172,9 @@ class GoneNodesOn {
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   B backend_;
+  Array<Vector<double, E::dim>> on_parent_;  // see places_on_parent
   Array<Index> place_;  // by row: in the list, one more; zero, as between two calls: not there
-  Array<Index> claims_, pair_;
+  Array<Index> claims_, from_;
 };
 
 }  // namespace pliant

@@ -23,6 +23,7 @@ inline constexpr ConditionBits differs = ConditionBits{1} << most_conditions;
 template <int Dim>
 struct SidesView {
   TreeView tree;
+  CellNodes has;  // that elements have, all alike
 
   /// Calls visit(side) for the sides of a cell.
   template <class Visit>
@@ -43,14 +44,19 @@ struct SidesView {
       return tree.sides[at(side)].first_child;
   }
   static constexpr Index parts = Dim == 2 ? 2 : 4;
-  /// Calls visit(node) for the corners of a side.
+  /// Calls visit(node) for the nodes that elements have on a side.
   template <class Visit>
-  PLIANT_HOST_DEVICE void visit_corners(Index side, Visit const& visit) const {
+  PLIANT_HOST_DEVICE void visit_nodes(Index side, Visit const& visit) const {
     if constexpr (Dim == 2) {
-      for (Index const node : tree.edges[at(side)].nodes) visit(node);
+      auto const& own = tree.edges[at(side)];
+      for (Index const node : own.nodes) visit(node);
+      if (has != CellNodes::corners) visit(own.middle);
     } else {
       auto const& own = tree.sides[at(side)];
       for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.corner_of(own, k));
+      if (has == CellNodes::corners) return;
+      for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.edges[at(own.edges[k])].middle);
+      if (has == CellNodes::all && own.corners() == 4) visit(own.centre);
     }
   }
 
@@ -96,7 +102,7 @@ struct InheritConditions {
     });
   }
 };
-/// Holds the corners of the parts of held sides of refined cells in some directions, the same for all of them: then all
+/// Holds the nodes of the parts of held sides of refined cells in some directions, the same for all of them: then all
 /// that is written to a byte at once is the same.
 template <int Dim>
 struct HoldParts {
@@ -112,7 +118,7 @@ struct HoldParts {
     sides.visit_sides(cells[r].cell, [&](Index side) {
       if (bits[side] == differs || !conditions.hold(bits[side], directions)) return;
       for (Index k = 0; k < sides.parts; ++k)
-        sides.visit_corners(sides.first_part(side) + k, [&](Index node) {
+        sides.visit_nodes(sides.first_part(side) + k, [&](Index node) {
           auto& own = held[of_node[node]];
           own = static_cast<DirectionMask>(own | directions);
         });
@@ -132,7 +138,7 @@ struct HoldSides {
   PLIANT_HOST_DEVICE void operator()(Index side) const {
     if (bits[side] == 0 || sides.first_part(side) >= 0) return;
     if (!conditions.hold(bits[side], directions)) return;
-    sides.visit_corners(side, [&](Index node) {
+    sides.visit_nodes(side, [&](Index node) {
       auto& own = held[of_node[node]];
       own = static_cast<DirectionMask>(own | directions);
     });

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -17,25 +17,29 @@
 #include <pliant/body/facet_passes.hpp>
 #include <pliant/body/held_passes.hpp>
 #include <pliant/body/leaf_order_on.hpp>
+#include <pliant/mesh/sides.hpp>
 #include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {
 
-/// What conditions hold, and pressures press, of a mesh of linear elements in a backend's memory: facets, as sides of its tree,
-/// and nodes. Sets of facets are numbered: those of conditions in their order, and those of pressures behind them.
+/// What conditions hold, and pressures press, of a mesh of elements of one type in a backend's memory: facets, as sides of its
+/// tree, and nodes. Sets of facets are numbered: those of conditions in their order, and those of pressures behind them.
 template <int Dim, Backend B>
 class HeldSidesOn {
   template <class U>
   using Array = typename B::template Array<U>;
 
  public:
+  /// `has`: the nodes of elements.
+  explicit HeldSidesOn(CellNodes has) : has_(has) {}
+
   /// Finds what is prescribed; whether there is room for so many sets. `tree`: as it is in the backend's memory; row_of(the
   /// user's number): the row of a node, of `rows`.
   template <class RowOf>
   bool set(B const& backend, Hierarchy<Dim> const& tree, Prescribed<Dim> const& prescribed,
            RowOf const& row_of, Index rows) {
-    std::map<std::vector<Index>, detail::ConditionBits> known;
+    std::map<std::array<Index, 4>, detail::ConditionBits> known;  // by the corners of facets
     std::vector<char> is_corner(tree.points().size(), 0);
     std::vector<DirectionMask> held(at(rows), 0);
     std::vector<std::uint8_t> named(at(rows), 0);
@@ -45,8 +49,8 @@ class HeldSidesOn {
       if (count == detail::most_conditions) return false;
       directions_.of_condition[count] = directions;
       for (auto const& facet : facets) {
-        known[sorted(facet)] |= detail::ConditionBits{1} << count;
-        for (Index const node : facet) is_corner[at(node)] = 1;
+        known[mesh::key_of(facet)] |= detail::ConditionBits{1} << count;
+        for (std::size_t k = 0; k < facet.corners(); ++k) is_corner[at(facet[k])] = 1;
       }
       ++count;
       return true;
@@ -67,13 +71,17 @@ class HeldSidesOn {
     held_ = upload(backend, held);
     named_ = upload(backend, named);
     rows_ = rows;
-    auto const bits_of = [&](auto const& nodes) {
-      for (Index const node : nodes)
-        if (node >= 0 && is_corner[at(node)] == 0) return detail::ConditionBits{0};
-      auto const own = known.find(sorted(nodes));
+    auto const bits_of = [&](auto const& corners) {
+      Facet<Dim> facet;
+      for (Index const node : corners) {
+        if (node < 0) continue;
+        if (is_corner[at(node)] == 0) return detail::ConditionBits{0};
+        facet.push_back(node);
+      }
+      auto const own = known.find(mesh::key_of(facet));
       return own == known.end() ? detail::ConditionBits{0} : own->second;
     };
-    detail::SidesView<Dim> const sides{tree.tree().lists().view()};
+    auto const sides = sides_of(tree.tree().lists().view());
     auto const& lists = tree.tree().lists();
     std::vector<detail::ConditionBits> bits(Dim == 2 ? lists.edges.size() : lists.sides.size(), 0);
     count_ = static_cast<Index>(bits.size());
@@ -104,7 +112,7 @@ class HeldSidesOn {
     detail::grow_keeping(backend, held_, at(rows_), at(rows));
     detail::grow_keeping(backend, named_, at(rows_), at(rows));
     rows_ = rows;
-    detail::SidesView<Dim> const sides{tree.view()};
+    auto const sides = sides_of(tree.view());
     auto const hold = [&](std::size_t k) {
       bool const is_there = k < in_turn_.size();
       return detail::LoopStep{
@@ -134,7 +142,7 @@ class HeldSidesOn {
     backend.for_each(
         count_ - first,
         detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()});
-    backend.for_each(done.merged, detail::FindCutSides<Dim>{{tree.view()},
+    backend.for_each(done.merged, detail::FindCutSides<Dim>{sides_of(tree.view()),
                                                             {done.initial.cells, done.cells},
                                                             done.parents,
                                                             bits_.data(),
@@ -155,18 +163,18 @@ class HeldSidesOn {
   void hold(B const& backend, TreeOn<B> const& tree, Index const* of_node, Index rows,
             DirectionMask* held) const {
     detail::copy_values<B, DirectionMask>(backend, held_.data(), held, at(rows));
+    auto const sides = sides_of(tree.view());
     for (auto const directions : in_turn_)
-      backend.for_each(count_,
-                       detail::HoldSides<Dim>{
-                           {tree.view()}, bits_.data(), directions_, directions, of_node, held});
+      backend.for_each(count_, detail::HoldSides<Dim>{sides, bits_.data(), directions_, directions,
+                                                      of_node, held});
   }
 
   /// The rows of the nodes at the facets of a set.
   Array<Index> nodes_of_set(B const& backend, TreeOn<B> const& tree, Index const* of_node,
                             std::size_t set) const {
     auto marks = zeros<std::uint8_t>(backend, at(rows_));
-    backend.for_each(count_, detail::MarkNodesOfSet<Dim>{
-                                 {tree.view()}, bits_.data(), bit(set), of_node, marks.data()});
+    backend.for_each(count_, detail::MarkNodesOfSet<Dim>{sides_of(tree.view()), bits_.data(),
+                                                         bit(set), of_node, marks.data()});
     return selected(backend, rows_, detail::IsMarked<std::uint8_t>{marks.data()});
   }
   /// The facets of a set as elements have them: (facets, Width), the first of which are rows of nodes, seen from outside.
@@ -174,7 +182,7 @@ class HeldSidesOn {
   Array<Index> facets_of_set(B const& backend, TreeOn<B> const& tree, LeafOrderOn<B> const& order,
                              Index const* of_node, std::size_t set) const {
     constexpr auto sides = static_cast<Index>(Cell::sides().size());
-    detail::SidesInSet<Dim> const in_set{{tree.view()}, bits_.data(), bit(set)};
+    detail::SidesInSet<Dim> const in_set{sides_of(tree.view()), bits_.data(), bit(set)};
     auto cells =
         selected(backend, order.count(), detail::HasSideInSet<Dim>{in_set, order.leaves()});
     backend.for_each(static_cast<Index>(cells.size()),
@@ -200,14 +208,9 @@ class HeldSidesOn {
   }
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index count_in(TreeSizes const& sizes) { return Dim == 2 ? sizes.edges : sizes.sides; }
-  template <class Nodes>
-  static std::vector<Index> sorted(Nodes const& nodes) {
-    std::vector<Index> list(nodes.begin(), nodes.end());
-    std::erase_if(list, [](Index node) { return node < 0; });
-    std::ranges::sort(list);
-    return list;
-  }
+  [[nodiscard]] detail::SidesView<Dim> sides_of(TreeView const& tree) const { return {tree, has_}; }
 
+  CellNodes has_;
   detail::DirectionsOf directions_;
   std::vector<DirectionMask> in_turn_;  // see DirectionsOf
   Array<detail::ConditionBits> bits_;   // by side

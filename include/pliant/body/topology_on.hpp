@@ -58,7 +58,7 @@ struct TopologyOn<Mesh<E>, B> {
   FamilyMomentumOn<E, B> momentum;
   GoneNodesOn<E, B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
-  HeldSidesOn<dim, B> held;
+  HeldSidesOn<dim, B> held{nodes_on_cell<E>};
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
   OnHost<Mesh<E>> on_host;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pliant/constraint/slave_rows.hpp>
+#include <pliant/math/uncontracted.hpp>
 
 namespace pliant {
 
@@ -84,14 +85,17 @@ class Interpolation {
     for (SlaveRow const& slave : slaves_) largest = std::max(largest, magnitude(slave));
     return largest;
   }
-  /// Hands what slaves hold to their masters by the weights of masses, and sets slaves to zero.
+  /// Hands what slaves hold to their masters by the weights of masses, and sets slaves to zero. What comes out has the same bits on
+  /// a device: see MassWeightsOn.
   template <class Value>
   void hand_masses(Value const& value, int components) const {
     for (SlaveRow const& slave : slaves_)
       for (int k = 0; k < components; ++k) {
         double const own = value(slave.node, k);
-        for (std::size_t m = 0; m < slave.masters.size(); ++m)
-          value(slave.masters[m].first, k) += mass_weight(slave, m) * own;
+        for (std::size_t m = 0; m < slave.masters.size(); ++m) {
+          double& of_master = value(slave.masters[m].first, k);
+          of_master = (S(of_master) + S(mass_weight(slave, m)) * S(own)).value;
+        }
         value(slave.node, k) = 0;
       }
   }
@@ -100,11 +104,11 @@ class Interpolation {
   void apply_masses(Value const& value, int components) const {
     for (SlaveRow const& slave : slaves_)
       for (int k = 0; k < components; ++k) {
-        double const base = value(slave.masters[0].first, k);
-        double sum = base;
+        S const base = value(slave.masters[0].first, k);
+        S sum = base;
         for (std::size_t m = 0; m < slave.masters.size(); ++m)
-          sum += mass_weight(slave, m) * (value(slave.masters[m].first, k) - base);
-        value(slave.node, k) = sum;
+          sum += S(mass_weight(slave, m)) * (S(value(slave.masters[m].first, k)) - base);
+        value(slave.node, k) = sum.value;
       }
   }
 
@@ -114,6 +118,8 @@ class Interpolation {
   }
 
  private:
+  using S = Uncontracted;
+
   SlaveRows slaves_;
 };
 

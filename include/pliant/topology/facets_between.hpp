@@ -15,7 +15,7 @@
 namespace pliant {
 
 /// Takes facets of one tree over to another one of the same initial mesh, whatever changes lie between: where a facet is
-/// divided there, come its parts, and where it was merged, the whole, once. Of linear elements. Refers to the trees.
+/// divided there, come its parts, and where it was merged, the whole, once. All leaves are of one degree. Refers to the trees.
 template <int Dim>
 class FacetsBetween {
  public:
@@ -98,6 +98,25 @@ class FacetsBetween {
       facet.push_back(nodes[(backwards ? start + n - k : start + k) % n]);
     return facet;
   }
+  /// The same of the tree of now, with the nodes between them that elements have.
+  [[nodiscard]] Facet<Dim> facet_now(Index side, std::size_t start, bool backwards) const {
+    auto const nodes = nodes_at(now_, side);
+    auto const n = corners_of(nodes);
+    auto facet = facet_of(nodes, start, backwards);
+    auto const has = now_.cells[0].has;
+    if (has == CellNodes::corners) return facet;
+    if constexpr (Dim == 2) {
+      facet.push_back(now_.edges[at(side)].middle);
+    } else {
+      auto const& own = now_.sides[at(side)];
+      for (std::size_t k = 0; k < n; ++k) {
+        auto const edge = (backwards ? start + 2 * n - 1 - k : start + k) % n;
+        facet.push_back(now_.edges[at(own.edges[edge])].middle);
+      }
+      if (has == CellNodes::all && n == 4) facet.push_back(own.centre);
+    }
+    return facet;
+  }
   /// At which corner of a side a facet with the same corners begins, and whether it runs round backwards.
   static std::pair<std::size_t, bool> turn_of(auto const& nodes, Facet<Dim> const& facet) {
     auto const n = corners_of(nodes);
@@ -111,7 +130,7 @@ class FacetsBetween {
     auto const n = corners_of(nodes);
     Index const first = first_part(now_, side);
     if (first < 0) {
-      carried.push_back(facet_of(nodes, start, backwards));
+      carried.push_back(facet_now(side, start, backwards));
       return;
     }
     // Part k is at corner k, where it begins; in the middle of a triangle is another one.

@@ -175,7 +175,7 @@ class HangingNodesOn {
   InterpolationOn<B> interpolation(TreeOn<B> const& tree, Index const* row_of_node, Index rows) {
     auto slaves = room_for_slaves();
     auto const fill = filling(tree, row_of_node, slaves);
-    return {backend_, std::move(slaves), false, rows, fill};
+    return {backend_, std::move(slaves), !tree.is_linear(), rows, fill};
   }
 
  private:
