@@ -109,10 +109,85 @@ TEST_CASE("listeners are told at once of what rules refine and coarsen", "[adapt
       tell_listeners(both.host.parts(), *plan);
       auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
       REQUIRE(done);
-      REQUIRE(done->to_tell);
-      tell_listeners(both.body.parts(), *done->to_tell);
+      REQUIRE(done->to_tell.plan);
+      tell_listeners(both.body.parts(), done->to_tell);
       both.check_told(++calls);
     }
+  });
+}
+
+/// Two values of each node of a body, in its backend's memory, and how often they were carried over.
+template <class TheBody>
+class CarriedThere {
+  using B = typename TheBody::backend_type;
+  using Change = BackendChange<typename TheBody::mesh_type, B>;
+
+ public:
+  explicit CarriedThere(TheBody& body, int* calls_before = nullptr)
+      : values_(upload(body.parts().backend, first(at(body.nodes())))) {
+    body.on_backend_change([this, &body, calls_before](Change const& change) {
+      ++calls;
+      if (calls_before != nullptr) CHECK(*calls_before >= calls);  // others are told first
+      CHECK(change.nodes() == body.nodes());
+      CHECK_THROWS_WITH(change.carry_nodes(values_, 3), says("give the array from before it"));
+      CHECK_THROWS_WITH(change.carry_nodes(values_.data(), values_.data(), 0),
+                        says("0 components"));
+      values_ = change.carry_nodes(values_, 2);
+    });
+  }
+  [[nodiscard]] std::vector<double> values() const { return download<double>(values_); }
+  int calls = 0;
+
+ private:
+  static std::vector<double> first(std::size_t nodes) {
+    std::vector<double> values(2 * nodes);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = i % 2 == 0 ? std::sin(double(i)) : 0.1;
+    return values;
+  }
+  typename B::template Array<double> values_;
+};
+
+template <class G, class B>
+void check_carried_there(B const& backend, Index cells, std::size_t one_in) {
+  TwoBodies<G, B> both(backend, cells);
+  CarriedThere there(both.body), by_host(both.host);
+  auto const check = [&](int calls) {
+    CHECK(there.calls == calls);
+    CHECK(by_host.calls == calls);
+    auto const values = there.values();
+    CHECK(values == by_host.values());
+    CHECK(values.size() == 2 * at(both.body.nodes()));
+    for (std::size_t i = 1; i < values.size(); i += 2) REQUIRE(values[i] == 0.1);
+  };
+  int calls = 0;
+  for (int round = 0; round < 2; ++round) {
+    both.refine_one_in(one_in);
+    check(++calls);
+    both.refine_one_in(one_in);
+    check(++calls);
+    CHECK(both.coarsen_all_but_one_in(12) > 0);
+    check(++calls);
+    auto const marked = both.refine_one_in_and_coarsen(9);
+    auto const plan = plan_change(both.host.parts(), marked, 3);
+    REQUIRE(plan);
+    commit(both.host.parts(), *plan);
+    tell_listeners(both.host.parts(), *plan);
+    auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
+    REQUIRE(done);
+    REQUIRE(done->merged > 0);
+    REQUIRE(done->refined > 0);
+    tell_listeners(both.body.parts(), done->to_tell);
+    check(++calls);
+  }
+  CHECK(both.body.parts().topology_on->on_host.changes > 0);  // the host planned none of them
+}
+
+TEST_CASE("values of nodes in a backend's memory follow the mesh there as on the host",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_carried_there<F>(backend, 6, 5);
+    check_carried_there<Formulation<Tet10, Gauss<2>, NeoHookean>>(backend, 2, 3);
   });
 }
 
@@ -154,6 +229,7 @@ TEST_CASE(
     }
     Told told(body);
     told.listen_to(body);
+    CarriedThere there(body, &told.calls);
     Adaptation adapt{when<F>(Longer{}).above(0.2).template become<Other>(),
                      when<Other>(Longer{}).above(0.3).refine({.max_level = 2}),
                      when<F>(Longer{}).below(0.15).coarsen(),
@@ -166,6 +242,8 @@ TEST_CASE(
     REQUIRE(count(body) < before);
     CHECK(told.calls == 1);
     CHECK(told.of_nodes.size() == at(body.nodes()));
+    CHECK(there.calls == 1);
+    CHECK(there.values().size() == 2 * at(body.nodes()));
     CHECK(told.of_elements.size() == at(count(body)));
     CHECK(ledger(body).size() == entries + 2);
     auto const is_merging = [](auto const& entry) { return entry.action == "coarsen"; };
@@ -184,6 +262,8 @@ TEST_CASE(
     adapt.now(body);  // refines
     adapt.now(twin);
     CHECK(told.calls == 2);
+    CHECK(there.calls == 2);
+    CHECK(there.values().size() == 2 * at(body.nodes()));
     REQUIRE(count(body) > before);
     CHECK(body.mesh().nodes == twin.mesh().nodes);
     CHECK(body.mesh().tables == twin.mesh().tables);

@@ -233,7 +233,8 @@ TEST_CASE("where a condition holds a part of what would be merged, the rest is m
       REQUIRE(done);
       CHECK(done->refined == plan->counts.refined);
       CHECK(done->merged == plan->counts.coarsened);
-      CHECK(!done->to_tell);
+      CHECK(!done->to_tell.plan);
+      CHECK(!done->to_tell.nodes);
       both.check_place();
       both.check_all();
     }

@@ -97,8 +97,7 @@ class Adaptation {
     auto const look = look_at(parts);  // with the budget of now
     look.begin(0);
     if constexpr (List::changes_mesh) {
-      auto const plan = look.change();
-      if (plan) tell_listeners(parts, *plan);
+      tell_listeners(parts, look.change());
     } else if constexpr (List::switches) {
       if (forces == Forces::of_next_step)
         look.switch_by_forces();

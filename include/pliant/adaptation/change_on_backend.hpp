@@ -25,10 +25,10 @@ struct MarkedOn {
 };
 
 /// What became of a change.
-template <class M>
+template <class M, Backend B>
 struct ChangeOn {
   std::size_t refined = 0, new_nodes = 0, merged = 0, gone_nodes = 0;
-  std::optional<TopologyPlan<M>> to_tell{};  // where a body has listeners, who do not know yet
+  ToTell<M, B> to_tell{};  // listeners, who do not know yet
 };
 
 /// Changes of a body's mesh in its backend's memory. What goes wrong leaves the body as it was, but for elements that were merged
@@ -38,6 +38,7 @@ class ChangesOnBackend {
   using B = typename Parts::backend_type;
   using M = typename Parts::mesh_type;
   using On = TopologyOn<M, B>;
+  using Done = ChangeOn<M, B>;
   using Cells = typename B::template Array<Index>;
 
  public:
@@ -45,9 +46,9 @@ class ChangesOnBackend {
       : parts_(parts), limits_{parts.limits.nodes, parts.limits.elements, max_level} {}
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
-  std::optional<ChangeOn<M>> operator()(MarkedOn const& marked) {
+  std::optional<Done> operator()(MarkedOn const& marked) {
     if (!parts_.topology_on && marked.refine.empty() && !parts_.state.topology->tree)
-      return ChangeOn<M>{};  // nothing to merge
+      return Done{};  // nothing to merge
     if (!follow_body()) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
     bool const tells = !parts_.listeners.empty();
@@ -55,11 +56,11 @@ class ChangesOnBackend {
       if (auto done = make(marked)) return done;
     // The host knows what conditions forbid to merge.
     plan_ = plan_change(std::as_const(parts_), marked.lists(), limits_.max_level);
-    if (!plan_) return ChangeOn<M>{};
+    if (!plan_) return Done{};
     planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
     auto const merged = merged_by(*plan_);
     auto done = make({marked.refine, merged});
-    if (done && tells) done->to_tell = std::move(plan_);
+    if (done && tells) done->to_tell.plan = std::move(plan_);
     return done;
   }
 
@@ -106,18 +107,18 @@ class ChangesOnBackend {
   }
 
   /// Nothing where conditions forbid some of it; then nothing has changed.
-  std::optional<ChangeOn<M>> make(MarkedOn const& marked) {
+  std::optional<Done> make(MarkedOn const& marked) {
     Changing const changing(parts_.topology_on);
     try {
       return change(marked);
     } catch (...) {
       if (parts_.topology_on) on().tree.take_back();
-      if (!merged_.empty()) tell_of_merged();
+      if (!merged_.empty() || nodes_) tell_of_merged();
       throw;
     }
   }
-  std::optional<ChangeOn<M>> change(MarkedOn const& marked) {
-    ChangeOn<M> done;
+  std::optional<Done> change(MarkedOn const& marked) {
+    Done done;
     auto to_refine = cells_of(marked.refine), to_merge = cells_of(marked.coarsen);
     if (!plan_ && to_refine.size() > 0 && to_merge.size() > 0)
       leave_what_is_refined(to_refine, to_merge);
@@ -136,6 +137,7 @@ class ChangesOnBackend {
         commit("coarsen", done.merged, merged, is_all,
                [&](auto& parts) { return parts.coarsened(merged); });
         merged_ = std::move(parents);
+        if (!parts_.backend_listeners.empty()) nodes_ = nodes_after(merged);
       }
     }
     if (to_refine.size() > 0) {
@@ -146,9 +148,11 @@ class ChangesOnBackend {
         commit("refine", done.refined, refined, plan_.has_value(),
                [&](auto& parts) { return parts.refined(refined); });
         merged_.clear();
+        if (!parts_.backend_listeners.empty()) add_new_nodes(refined);
       }
     }
     if (done.merged > 0 && done.refined > 0) enter_as_one();
+    done.to_tell.nodes = std::move(nodes_);
     return done;
   }
   std::vector<Index> parents_of(Coarsened const& merged) const {
@@ -157,11 +161,29 @@ class ChangesOnBackend {
     copy_values<B, Index>(backend(), merged.parents, parents.data(), count);
     return download<Index>(parents);
   }
+  /// What listeners get of a coarsening: a copy, since the tree is gone where what is refined beside it fails.
+  ChangedNodesOn<B> nodes_after(Coarsened const& merged) const {
+    auto const moved = static_cast<std::size_t>(merged.before.nodes - merged.initial.nodes);
+    auto numbers = std::make_shared<Cells>(unset<Index>(backend(), moved));
+    copy_values<B, Index>(backend(), merged.nodes, numbers->data(), moved);
+    return {merged.before.nodes, merged.now.nodes, merged.initial.nodes, std::move(numbers)};
+  }
+  /// And of a refinement, behind that.
+  void add_new_nodes(typename TreeOn<B>::Refined const& refined) {
+    Index const now = on().tree.sizes().nodes;
+    if (!nodes_) nodes_ = ChangedNodesOn<B>{.before = now - refined.new_nodes};
+    nodes_->now = now;
+    nodes_->tree = on().tree.view();
+    nodes_->refined = refined;
+  }
   /// Where what was to be refined beside elements that were merged is not.
   void tell_of_merged() {
-    auto const plan =
-        plan_on_host(plan_->before, merged_, true, element_values_of(std::as_const(parts_)));
-    tell_listeners(parts_, plan);
+    ToTell<M, B> to_tell;
+    if (!merged_.empty())
+      to_tell.plan =
+          plan_on_host(plan_->before, merged_, true, element_values_of(std::as_const(parts_)));
+    to_tell.nodes = std::exchange(nodes_, std::nullopt);
+    tell_listeners(parts_, to_tell);
   }
   void renumber(Cells& cells, Coarsened const& merged) {
     backend().for_each(size(cells),
@@ -237,17 +259,17 @@ class ChangesOnBackend {
 
   Parts& parts_;
   RefinementLimits limits_;
-  std::optional<TopologyPlan<M>> plan_{};  // where the host has made one
-  MeshOnHost<M> planned_{};                // behind it
-  std::vector<Index> merged_{};            // cells, while the rest of the plan is not made
+  std::optional<TopologyPlan<M>> plan_{};     // where the host has made one
+  MeshOnHost<M> planned_{};                   // behind it
+  std::vector<Index> merged_{};               // cells, while the rest of the plan is not made
+  std::optional<ChangedNodesOn<B>> nodes_{};  // what became of them, where somebody listens
 };
 
 /// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.
 template <class Parts>
-std::optional<ChangeOn<typename Parts::mesh_type>> change_on_backend(Parts& parts,
-                                                                     MarkedOn const& marked,
-                                                                     int max_level = 30) {
-  using Done = ChangeOn<typename Parts::mesh_type>;
+auto change_on_backend(Parts& parts, MarkedOn const& marked, int max_level = 30)
+    -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
+  using Done = ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>;
   if constexpr (changes_on_backend<Parts>) {
     if (!can_change_on_backend(parts)) return std::nullopt;
     auto const& table = std::get<0>(parts.layout.tables);
@@ -263,9 +285,8 @@ std::optional<ChangeOn<typename Parts::mesh_type>> change_on_backend(Parts& part
 }
 /// The same where nothing else is marked.
 template <class Parts>
-std::optional<ChangeOn<typename Parts::mesh_type>> change_on_backend(Parts& parts,
-                                                                     MarkedElements const& marked,
-                                                                     int max_level) {
+auto change_on_backend(Parts& parts, MarkedElements const& marked, int max_level)
+    -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
   if (!marked.only_refines_and_coarsens()) return std::nullopt;
   auto const first = [](auto const& lists) {
     return lists.empty() ? std::span<Index const>{} : std::span<Index const>(lists[0]);

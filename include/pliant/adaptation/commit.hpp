@@ -11,6 +11,7 @@
 #include <pliant/adaptation/family_momentum.hpp>
 #include <pliant/backend/sums.hpp>
 #include <pliant/backend/value_at.hpp>
+#include <pliant/body/backend_change.hpp>
 #include <pliant/body/change_topology.hpp>
 #include <pliant/topology/plan.hpp>
 
@@ -136,10 +137,20 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   parts.mesh_is_on_host = true;
 }
 
-/// Tells a body's listeners of a change that was made. What one throws is the caller's: the mesh is changed,
-/// and listeners after it are not told.
+/// What listeners are still to be told of a change that was made.
+template <class M, Backend B>
+struct ToTell {
+  std::optional<TopologyPlan<M>> plan{};  // where the host has one
+  std::optional<detail::ChangedNodesOn<B>>
+      nodes{};  // where the backend made it, and somebody listens
+};
+
+namespace detail {
+
+/// Either may be null.
 template <class Parts>
-void tell_listeners(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+void tell(Parts& parts, TopologyPlan<typename Parts::mesh_type> const* plan,
+          ChangedNodesOn<typename Parts::backend_type> const* nodes) {
   struct Telling {
     bool& is_telling;
     explicit Telling(bool& flag) : is_telling(flag) { is_telling = true; }
@@ -147,7 +158,29 @@ void tell_listeners(Parts& parts, TopologyPlan<typename Parts::mesh_type> const&
     Telling& operator=(Telling const&) = delete;
     ~Telling() { is_telling = false; }
   } const telling(parts.is_telling);
-  for (auto const& listener : parts.listeners) listener({*plan.before, *plan.after, plan.transfer});
+  if (plan != nullptr)
+    for (auto const& listener : parts.listeners)
+      listener({*plan->before, *plan->after, plan->transfer});
+  for (auto const& listener : parts.backend_listeners)
+    if (nodes != nullptr)
+      listener({parts.backend, *nodes});
+    else if (plan != nullptr)
+      listener({parts.backend, plan->transfer});
+}
+
+}  // namespace detail
+
+/// Tells a body's listeners of a change that was made. What one throws is the caller's: the mesh is changed,
+/// and listeners after it are not told.
+template <class Parts>
+void tell_listeners(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
+  detail::tell(parts, &plan, nullptr);
+}
+template <class Parts>
+void tell_listeners(
+    Parts& parts, ToTell<typename Parts::mesh_type, typename Parts::backend_type> const& to_tell) {
+  detail::tell(parts, to_tell.plan ? &*to_tell.plan : nullptr,
+               to_tell.nodes ? &*to_tell.nodes : nullptr);
 }
 
 }  // namespace pliant

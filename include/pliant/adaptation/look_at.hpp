@@ -133,7 +133,7 @@ class LookAt {
   template <class FindMarked>
   auto switch_and_change_mesh(FindMarked const& find_marked) const {
     bool moved = false;
-    auto plan = [&] {
+    auto to_tell = [&] {
       try {
         if constexpr (Rules::switches) {
           if (something_moves()) {
@@ -145,11 +145,11 @@ class LookAt {
         int max_level = 0;
         auto const& marked = find_marked(max_level);
         auto const measured = parts_.timers.migration.measure();
-        std::optional<TopologyPlan<typename Parts::mesh_type>> found;
         if (auto done = change_on_backend(parts_, marked, max_level))
           return std::move(done->to_tell);
-        found = plan_change(parts_, marked, max_level);
-        if (found) commit(parts_, *found);
+        ToTell<typename Parts::mesh_type, typename Parts::backend_type> found;
+        found.plan = plan_change(parts_, marked, max_level);
+        if (found.plan) commit(parts_, *found.plan);
         return found;
       } catch (...) {  // where some of the mesh has changed, what was kept is gone, and moves stay
         if (moved) {
@@ -160,7 +160,7 @@ class LookAt {
       }
     }();
     if (moved) follow_moves();
-    return plan;
+    return to_tell;
   }
 
   template <class Visit>

@@ -78,7 +78,7 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
   if (auto const done = detail::change_on_backend(
           body.parts(), detail::MarkedOn{.refine = marked[0]}, max_level)) {
-    if (done->to_tell) tell_listeners(body.parts(), *done->to_tell);
+    tell_listeners(body.parts(), done->to_tell);
     return {done->refined, done->new_nodes};
   }
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
@@ -102,7 +102,7 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
   if (auto const done =
           detail::change_on_backend(body.parts(), detail::MarkedOn{.coarsen = marked[0]})) {
-    if (done->to_tell) tell_listeners(body.parts(), *done->to_tell);
+    tell_listeners(body.parts(), done->to_tell);
     return {done->merged, done->gone_nodes};
   }
   auto const plan = plan_change(body.parts(), {.coarsen = marked});

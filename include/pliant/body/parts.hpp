@@ -39,6 +39,8 @@ template <class M, Backend B>
 struct TopologyOn;
 template <Backend B>
 struct ChangedRows;
+template <class M, Backend B>
+class BackendChange;
 
 /// What it takes where patches sleep: see body/wake.hpp.
 template <class Parts>
@@ -92,6 +94,7 @@ struct Parts {
   std::map<std::string, Motion<dim>> motions{};  // all that were ever given, by name
   Array<T> before_drives{};                      // see place_before_drives
   std::vector<std::function<void(TopologyChange<M> const&)>> listeners{};
+  std::vector<std::function<void(BackendChange<M, B> const&)>> backend_listeners{};
   bool is_telling = false;  // them of a change
 
   bool forces_current = false;   // while they are not, the nodes' rows of layout.f are zero
