@@ -124,18 +124,22 @@ void check_same(OnBackend& body, OnHost& host, double rounding) {
     return by_node;
   };
   CHECK(held_in(body.parts()) == held_in(host.parts()));
-  CHECK(std::get<0>(layout.tables).user_elements() == std::get<0>(other.tables).user_elements());
-  auto const values = [](auto const& table) { return table.in_user_order(table.values); };
-  CHECK(values(std::get<0>(layout.tables)) == values(std::get<0>(other.tables)));
-  auto const kept = [](auto const& parts) {
-    return std::get<0>(parts.layout.tables)
-        .in_user_order(std::get<0>(parts.state.elements).internal_variables);
+  // Of each type: what the host asks of a body's elements.
+  auto const of_elements = [](auto& parts) {
+    std::vector<std::vector<double>> all;
+    parts.for_each_type([&](auto const& table, auto const& elements) {
+      using E = typename std::remove_cvref_t<decltype(table)>::element;
+      auto const add = [&](auto const& values) { all.emplace_back(values.begin(), values.end()); };
+      add(table.user_elements());
+      add(table.in_user_order(table.values));
+      add(table.in_user_order(elements.internal_variables));
+      add(user_groups<E>(std::as_const(parts)));
+    });
+    return all;
   };
-  CHECK(kept(body.parts()) == kept(host.parts()));
+  CHECK(of_elements(body.parts()) == of_elements(host.parts()));
   CHECK(body.displacements() == host.displacements());
   CHECK(largest_difference(body.velocities(), host.velocities()) < 40 * rounding);
-  using E = typename std::remove_cvref_t<decltype(std::get<0>(layout.tables))>::element;
-  CHECK(user_groups<E>(std::as_const(body.parts())) == user_groups<E>(std::as_const(host.parts())));
   auto const forces = body.forces(), others = host.forces();
   CHECK(largest_difference(forces, others) < 100 * rounding);
   CHECK(nodal_loads_of(body.parts()) == nodal_loads_of(host.parts()));

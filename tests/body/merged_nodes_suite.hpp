@@ -68,8 +68,8 @@ struct MergedNodes {
   Index rows;
   InterpolationOn<B> slaves_before, slaves_now;
   MassWeightsOn<B> weights_before, weights_now;
-  NodalMassesOn<E, B> masses;
-  FamilyMomentumOn<E, B> momentum;
+  NodalMassesOn<B> masses;
+  FamilyMomentumOn<E::dim, B> momentum;
   Array<double> points, kilograms;
   Array<Index> elements_before, elements_now;
   Array<MergedFamily> families;
@@ -112,7 +112,9 @@ struct MergedNodes {
     }
     REQUIRE(wrong == 0);
     families = upload(backend, list);
-    merged = {families.data(),
+    merged = {LeavesView{.families = families.data(),
+                         .merged = static_cast<Index>(list.size()),
+                         .count = static_cast<Index>(plan.after->counts()[0])},
               static_cast<Index>(list.size()),
               {elements_before.data(), width},
               {elements_now.data(), width},
@@ -158,13 +160,13 @@ struct MergedNodes {
   /// Brings masses and velocities to the coarser mesh; returns what held nodes took.
   Point<dim> merge(Array<T>& v, Array<DirectionMask> const& held, double bound = 64 * density) {
     masses.take_gone(merged);
-    momentum.begin(merged, weights_before, weights_now, masses);
+    momentum.begin(weights_before, weights_now, masses, merged);
     masses.add_come(merged);
     masses.read(weights_now, kilograms.data());
     auto rounded = zeros<T>(backend, at(rows));
     masses.round(kilograms.data(), rounded.data());
-    momentum.give_back(merged, weights_before, weights_now, density, bound, kilograms.data(),
-                       held.data(), node_field<dim>(v));
+    momentum.give_back(weights_before, weights_now, density, bound, kilograms.data(), held.data(),
+                       node_field<dim>(v), merged);
     backend.synchronize();
     masses.template check<T>();
     return momentum.taken();
@@ -236,13 +238,13 @@ void check_masses(MergedNodes<E, B>& nodes) {
 
 /// Nodes that went lay where the host says, and hand on the loads that they had.
 template <class B, Element E>
-void check_loads(MergedNodes<E, B>& nodes, GoneNodesOn<E, B>& gone_nodes, Random& random) {
+void check_loads(MergedNodes<E, B>& nodes, GoneNodesOn<Mesh<E>, B>& gone_nodes, Random& random) {
   using T = typename B::scalar;
   auto const& transfer = nodes.plan.transfer;
   REQUIRE(nodes.gone.size() == transfer.gone().size());
   auto const list = upload(nodes.backend, nodes.gone);
   auto const count = static_cast<Index>(nodes.gone.size());
-  auto between = gone_nodes.rows(nodes.merged, list.data(), count, nodes.rows);
+  auto between = gone_nodes.rows(list.data(), count, nodes.rows, nodes.merged);
   REQUIRE(between.count == count);
   auto const first = download<Index>(between.first), other = download<Index>(between.other);
   auto const weight = download<T>(between.weight);
@@ -272,9 +274,10 @@ void check_loads(MergedNodes<E, B>& nodes, GoneNodesOn<E, B>& gone_nodes, Random
   for (std::size_t i = 0; i < found.size(); ++i)
     for (std::size_t k = 0; k < E::dim; ++k)
       most = std::max(most, std::abs(found[i][k] - carried[i][k]));
-  // Products with these weights are not rounded, and sums are in the same order: of floats, 32 or so by floats, here, and by
-  // doubles on the host.
-  CHECK(most <= (std::same_as<T, double> ? 0 : 32 * double{std::numeric_limits<T>::epsilon()}));
+  // Products with the weights of linear elements are not rounded, and sums are in the same order: of floats, 32 or so by floats, here,
+  // and by doubles on the host. Those with weights of quadratic ones are, or not, where a compiler fuses them with sums.
+  bool const is_exact = std::same_as<T, double> && E::degree == 1;
+  CHECK(most <= (is_exact ? 0 : 32 * double{std::numeric_limits<T>::epsilon()}));
   for (auto const& load : nodes.field_of(field, nodes.gone)) wrong += load != Point<E::dim>{};
   CHECK(wrong == 0);
 }
@@ -382,7 +385,7 @@ TEST_CASE("nodes of coarsened meshes have the masses that the host gives them", 
 TEST_CASE("nodes that go in a backend's memory lay where the host says, and hand on their loads",
           "[body]") {
   on_meshes([]<Element E, class B>(MergedNodes<E, B>& nodes, Random& random) {
-    GoneNodesOn<E, B> gone_nodes(nodes.backend);
+    GoneNodesOn<Mesh<E>, B> gone_nodes(nodes.backend);
     check_loads(nodes, gone_nodes, random);
     check_loads(nodes, gone_nodes, random);
   });

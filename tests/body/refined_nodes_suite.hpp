@@ -51,8 +51,8 @@ struct RefinedNodes {
   NodeRowsOn<B> rows;
   HangingNodesOn<dim, B> hanging;
   std::unique_ptr<InterpolationOn<B>> slaves = std::make_unique<InterpolationOn<B>>();
-  NodalMassesOn<E, B> masses;
-  FamilyMomentumOn<E, B> momentum;
+  NodalMassesOn<B> masses;
+  FamilyMomentumOn<E::dim, B> momentum;
   Array<double> points, kilograms;
   Array<T> v, mass;
   Array<DirectionMask> held;
@@ -128,7 +128,7 @@ struct RefinedNodes {
     detail::grow(backend, kilograms, now);
     detail::grow(backend, mass, now);
     Index const* const of_node = rows.of_node();
-    filling_new_nodes<E>(tree, refined, of_node, node_field<dim>(points), node_field<dim>(v))
+    filling_new_nodes<E>(tree, refined, false, of_node, node_field<dim>(points), node_field<dim>(v))
         .run(backend);
     auto disturbed = field_of<T>(v);
     disturb(disturbed);
@@ -140,12 +140,12 @@ struct RefinedNodes {
         tree, refined, of_node, NodeField<double const, dim>{points.data(), rows.count()});
     masses.extend(rows.count());
     masses.take_gone(elements_now);
-    momentum.begin(elements_now, before_weights, weights, masses);
+    momentum.begin(before_weights, weights, masses, elements_now);
     masses.add_come(elements_now);
     masses.read(weights, kilograms.data());
     masses.round(kilograms.data(), mass.data());
-    momentum.give_back(elements_now, before_weights, weights, density, 64 * density,
-                       kilograms.data(), held.data(), node_field<dim>(v));
+    momentum.give_back(before_weights, weights, density, 64 * density, kilograms.data(),
+                       held.data(), node_field<dim>(v), elements_now);
     backend.synchronize();
     slaves = std::move(next);
     masses.template check<T>();

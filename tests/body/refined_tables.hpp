@@ -66,7 +66,9 @@ struct Tables {
     change(before, {.refine = {ranks(*before, marked)}}, [&] {
       mesh.refine(marked);
       numbers.follow(backend, mesh.tree, mesh.refined);
-      auto const places = std::make_shared<RefinedPlaces<B>>(backend, mesh.order, mesh.refined);
+      auto const places = std::make_shared<RefinedPlaces<B>>(
+          backend, mesh.order.view(), mesh.refined,
+          mesh.order.count() - mesh.order.count_before() + mesh.refined.leaves);
       return std::pair{[=, this](auto const& kernel) {
                          return sum_at(kernel, places->go.data(), places->go_count);
                        },
@@ -81,14 +83,12 @@ struct Tables {
     change(before, {.coarsen = {ranks(*before, marked)}}, [&] {
       mesh.coarsen(marked);
       numbers.follow(backend, mesh.tree, mesh.coarsened);
-      return std::pair{
-          [this](auto const& kernel) {
-            return sum_if(kernel, detail::IsMergedLeaf{mesh.order.before()});
-          },
-          [this](auto const& kernel) {
-            auto const& order = mesh.order;
-            return sum_if(kernel, detail::IsNewLeaf{order.leaves(), order.before(), order.from()});
-          }};
+      return std::pair{[this](auto const& kernel) {
+                         return sum_if(kernel, detail::IsMergedLeaf{mesh.order.view()});
+                       },
+                       [this](auto const& kernel) {
+                         return sum_if(kernel, detail::IsNewLeaf{mesh.order.view()});
+                       }};
     });
     return mesh.coarsened.merged;
   }
@@ -109,14 +109,15 @@ struct Tables {
   /// By the place, and cells by the number.
   std::vector<Index> users_now() const {
     auto list = zeros<Index>(backend, at(on.count()));
-    backend.for_each(on.count(), detail::PutNumbers{numbers.of(mesh.order), nullptr, list.data()});
+    backend.for_each(on.count(),
+                     detail::PutNumbers{numbers.of(mesh.order.view()), nullptr, list.data()});
     return download<Index>(list);
   }
   std::vector<Index> cells_now() const {
     std::vector<Index> list(at(on.count()));
     std::iota(list.begin(), list.end(), Index{0});
     auto cells = upload(backend, list);
-    backend.for_each(on.count(), detail::LookUpCells{numbers.of(mesh.order), cells.data()});
+    backend.for_each(on.count(), detail::LookUpCells{numbers.of(mesh.order.view()), cells.data()});
     return download<Index>(cells);
   }
 
@@ -168,11 +169,11 @@ struct Tables {
       own_tags = plan->transfer.carry_elements(own_tags);
       own_values = plan->transfer.carry_elements(own_values, 0, 2);
     }
-    tags = inherited_values(backend, mesh.order, std::as_const(tags).data());
-    values =
-        inherited_values(backend, mesh.order, std::as_const(values).data(), 2, volumes_on.data());
+    tags = inherited_values(backend, mesh.order.view(), std::as_const(tags).data());
+    values = inherited_values(backend, mesh.order.view(), std::as_const(values).data(), 2,
+                              volumes_on.data());
     backend.synchronize();
-    blocks = blocks_after_change(mesh.order, blocks.first);
+    blocks = blocks_after_change(mesh.order.told_first_of_block(), blocks.first);
     make(on.rows_of_nodes(), true);
     double const made = sum_come(Energy{});
     CHECK((made > 0) == plan.has_value());
@@ -180,7 +181,7 @@ struct Tables {
   }
 
   Array<Index> rows(ElementRows const& before) {
-    return element_rows<E, width>(backend, mesh.tree.view(), mesh.order, mesh.rows.of_node(),
+    return element_rows<E, width>(backend, mesh.tree.view(), mesh.order.view(), mesh.rows.of_node(),
                                   before);
   }
   Array<Tag> copy_of_tags() {
@@ -195,7 +196,7 @@ struct Tables {
                                  node_order<E>, blocks, changed ? &on : nullptr);
     settle(backend, next);
     on = std::move(next);
-    if (!changed) numbers = {backend, mesh.tree};
+    if (!changed) numbers = {backend, mesh.tree, kind_of<typename E::cell>, false};
     check_rows(node_rows, changed);
     check_results(node_rows);
   }

@@ -14,13 +14,16 @@
 // Changes of a body's mesh that are made in its backend's memory.
 namespace pliant::detail {
 
-/// Elements to refine, and to coarsen, of a body with one element type, by the user's numbers.
+/// Elements to refine, and to coarsen, of each type of a body, by the user's numbers; no lists: none.
 struct MarkedOn {
-  std::span<Index const> refine{}, coarsen{};
+  using Lists = std::span<std::vector<Index> const>;
+  Lists refine{}, coarsen{};
 
   [[nodiscard]] MarkedElements lists() const {
-    return {.refine = {{refine.begin(), refine.end()}},
-            .coarsen = {{coarsen.begin(), coarsen.end()}}};
+    return {.refine = {refine.begin(), refine.end()}, .coarsen = {coarsen.begin(), coarsen.end()}};
+  }
+  static bool none_in(Lists lists) {
+    return std::ranges::all_of(lists, [](auto const& list) { return list.empty(); });
   }
 };
 
@@ -47,7 +50,7 @@ class ChangesOnBackend {
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
   std::optional<Done> operator()(MarkedOn const& marked) {
-    if (!parts_.topology_on && marked.refine.empty() && !parts_.state.topology->tree)
+    if (!parts_.topology_on && MarkedOn::none_in(marked.refine) && !parts_.state.topology->tree)
       return Done{};  // nothing to merge
     if (!follow_body()) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
@@ -82,9 +85,13 @@ class ChangesOnBackend {
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   On& on() { return *parts_.topology_on; }
   B const& backend() const { return parts_.backend; }
-  Cells cells_of(std::span<Index const> numbers) {
-    auto cells = upload(backend(), numbers);
-    backend().for_each(size(numbers), LookUpCells{on().element_numbers(), cells.data()});
+  Cells cells_of(MarkedOn::Lists numbers) {
+    std::vector<Index> all;
+    for (auto const& list : numbers) all.insert(all.end(), list.begin(), list.end());
+    auto cells = upload(backend(), all);
+    Index* first = cells.data();
+    for (std::size_t type = 0; type < numbers.size(); first += size(numbers[type++]))
+      backend().for_each(size(numbers[type]), LookUpCells{on().element_numbers(type), first});
     return cells;
   }
 
@@ -97,12 +104,12 @@ class ChangesOnBackend {
     return on().follow_conditions(std::as_const(parts_));
   }
 
-  /// The elements of families that a plan merges.
-  static std::vector<Index> merged_by(TopologyPlan<M> const& plan) {
-    std::vector<Index> merged;
+  /// The elements of families that a plan merges, by the type.
+  static std::vector<std::vector<Index>> merged_by(TopologyPlan<M> const& plan) {
+    std::vector<std::vector<Index>> merged(On::types);
     for (auto const& family : plan.transfer.families())
       if (family.after.size() == 1)
-        for (auto const& member : family.before) merged.push_back(member.element);
+        for (auto const& member : family.before) merged[member.type].push_back(member.element);
     return merged;
   }
 
@@ -235,7 +242,7 @@ class ChangesOnBackend {
       ChangedPartsOn<Parts> parts(parts_, kept, is_planned ? planned_ : MeshOnHost<M>{});
       auto changed = make(parts);
       // Patches are there now, beside whose plans this takes longer.
-      kept->numbers.follow(backend(), kept->tree, done);
+      for (auto& numbers : kept->numbers) numbers.follow(backend(), kept->tree, done);
       return changed;
     });
     kept->tree.keep();
@@ -272,12 +279,18 @@ auto change_on_backend(Parts& parts, MarkedOn const& marked, int max_level = 30)
   using Done = ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>;
   if constexpr (changes_on_backend<Parts>) {
     if (!can_change_on_backend(parts)) return std::nullopt;
-    auto const& table = std::get<0>(parts.layout.tables);
-    using E = typename std::remove_cvref_t<decltype(table)>::element;
-    auto const count = static_cast<std::size_t>(table.count());
-    check_numbers<E>("refine", marked.refine, count);
-    check_numbers<E>("coarsen", marked.coarsen, count);
-    if (marked.refine.empty() && marked.coarsen.empty()) return Done{};
+    std::size_t type = 0;
+    parts.for_each_type([&](auto const& table, auto const&) {
+      using E = typename std::remove_cvref_t<decltype(table)>::element;
+      auto const check = [&](char const* verb, MarkedOn::Lists lists) {
+        if (type < lists.size())
+          check_numbers<E>(verb, lists[type], static_cast<std::size_t>(table.count()));
+      };
+      check("refine", marked.refine);
+      check("coarsen", marked.coarsen);
+      ++type;
+    });
+    if (MarkedOn::none_in(marked.refine) && MarkedOn::none_in(marked.coarsen)) return Done{};
     return ChangesOnBackend<Parts>(parts, max_level)(marked);
   } else {
     return std::nullopt;
@@ -288,10 +301,7 @@ template <class Parts>
 auto change_on_backend(Parts& parts, MarkedElements const& marked, int max_level)
     -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
   if (!marked.only_refines_and_coarsens()) return std::nullopt;
-  auto const first = [](auto const& lists) {
-    return lists.empty() ? std::span<Index const>{} : std::span<Index const>(lists[0]);
-  };
-  return change_on_backend(parts, MarkedOn{first(marked.refine), first(marked.coarsen)}, max_level);
+  return change_on_backend(parts, MarkedOn{marked.refine, marked.coarsen}, max_level);
 }
 
 }  // namespace pliant::detail

@@ -12,6 +12,11 @@
 // there, the host is not asked.
 namespace pliant::detail {
 
+/// The place of a table's type among the mesh's.
+template <class Parts, class Table>
+inline constexpr std::size_t type_of =
+    Parts::layout_type::template type_of<typename Table::element>;
+
 struct LevelOfLeaf {
   TreeView tree;
   Index const* leaves;
@@ -34,8 +39,8 @@ auto numbers_on_backend(Parts const& parts, Table const& table) {
   if constexpr (changes_on_backend<Parts>)
     if (auto const& on = parts.topology_on) {
       auto numbers = unset<Index>(parts.backend, static_cast<std::size_t>(table.count()));
-      parts.backend.for_each(table.count(),
-                             PutNumbers{on->element_numbers(), nullptr, numbers.data()});
+      parts.backend.for_each(table.count(), PutNumbers{on->element_numbers(type_of<Parts, Table>),
+                                                       nullptr, numbers.data()});
       return numbers;
     }
   return upload(parts.backend, table.user_elements());
@@ -46,8 +51,9 @@ auto levels_on_backend(Parts const& parts, Table const& table) {
   if constexpr (changes_on_backend<Parts>)
     if (auto const& on = parts.topology_on) {
       auto levels = zeros<int>(parts.backend, static_cast<std::size_t>(table.count()));
-      parts.backend.for_each(table.count(),
-                             LevelOfLeaf{on->tree.view(), on->order.leaves(), levels.data()});
+      parts.backend.for_each(
+          table.count(),
+          LevelOfLeaf{on->tree.view(), on->leaves(type_of<Parts, Table>).leaves, levels.data()});
       return levels;
     }
   auto const levels = levels_of<typename Table::element>(parts);
@@ -74,7 +80,8 @@ void visit_marked(Parts const& parts, Table const& table, std::uint32_t const* m
     if constexpr (changes_on_backend<Parts>)
       if (auto const& on = parts.topology_on) {
         auto numbers = unset<Index>(backend, places.size());
-        backend.for_each(count, PutNumbers{on->element_numbers(), list.data(), numbers.data()});
+        backend.for_each(count, PutNumbers{on->element_numbers(type_of<Parts, Table>), list.data(),
+                                           numbers.data()});
         numbers.download(places);
         return;
       }

@@ -76,8 +76,8 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
-  if (auto const done = detail::change_on_backend(
-          body.parts(), detail::MarkedOn{.refine = marked[0]}, max_level)) {
+  if (auto const done =
+          detail::change_on_backend(body.parts(), detail::MarkedOn{.refine = marked}, max_level)) {
     tell_listeners(body.parts(), done->to_tell);
     return {done->refined, done->new_nodes};
   }
@@ -101,7 +101,7 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
   if (auto const done =
-          detail::change_on_backend(body.parts(), detail::MarkedOn{.coarsen = marked[0]})) {
+          detail::change_on_backend(body.parts(), detail::MarkedOn{.coarsen = marked})) {
     tell_listeners(body.parts(), done->to_tell);
     return {done->merged, done->gone_nodes};
   }

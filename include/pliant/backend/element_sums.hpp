@@ -13,6 +13,17 @@ struct AddValue {
   double value;
   PLIANT_HOST_DEVICE void operator()(Index) const { *to += value; }
 };
+/// Whether an entry of a list is a place.
+struct IsPlace {
+  Index const* places;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return places[i] >= 0; }
+};
+/// Puts a place in place of its number in a list.
+struct TakePlace {
+  Index const* places;
+  Index* taken;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { taken[i] = places[taken[i]]; }
+};
 /// Places that meet a condition; −1 in place of others.
 template <class Condition>
 struct PlacesThatMeet {
@@ -38,18 +49,24 @@ void add_sum_elements(B const& backend, Table const& table, Kernel const& kernel
 template <class B>
 inline constexpr bool sums_at_places = requires { requires B::sums_at_places; };
 
-/// The same of the elements of a table at some places, (count). Places, and the tags of the table, are in the backend's memory.
-/// `nodes`: how many rows fields have.
+/// The same of the elements of a table at some places, (count); −1 for none. Places, and the tags of the table, are in the backend's
+/// memory. `nodes`: how many rows fields have.
 template <int Groups, Backend B, class Elements, class Kernel, class... Fields>
 void add_sum_elements_at(B const& backend, Elements const& table, Tag const* tags,
                          Index const* places, Index count, Index nodes, Kernel const& kernel,
                          double* to, Fields const&... fields) {
-  if constexpr (sums_at_places<B>)
+  if constexpr (sums_at_places<B>) {
     backend.template add_sum_elements_at<Groups>(table, places, count, kernel, to, fields...);
-  else
+  } else {
+    auto const which = backend.select(count, detail::IsPlace{places});
+    if (which.empty()) return;
+    auto const some = static_cast<Index>(which.size());
+    auto own = upload(backend, which);
+    backend.for_each(some, detail::TakePlace{places, own.data()});
     add_sum_elements<Groups>(backend,
-                             element_list(backend, table, tags, places, count, Groups, nodes),
+                             element_list(backend, table, tags, own.data(), some, Groups, nodes),
                              kernel, to, fields...);
+  }
 }
 /// The same of the elements of which the places meet a condition, meets(place).
 template <int Groups, Backend B, class Elements, class Condition, class Kernel, class... Fields>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/backend/carry_rows.hpp>
+#include <pliant/body/group.hpp>
 #include <pliant/body/held_sides_on.hpp>
 #include <pliant/constraint/driven_nodes.hpp>
 #include <pliant/force/pressure.hpp>
@@ -17,16 +18,19 @@ namespace pliant {
 
 namespace detail {
 
-/// The face that the sides of an element are, all alike.
+/// The faces that the sides of an element are, each kind once.
 template <Element E>
-constexpr auto face_of() {
-  constexpr auto nodes = mesh::nodes_on_side<E>(0).size();
+constexpr auto faces_of() {
+  constexpr bool is_linear = E::degree == 1;
   if constexpr (E::dim == 2)
-    return std::conditional_t<nodes == 2, Line2, Line3>{};
+    return TypeList<std::conditional_t<is_linear, Line2, Line3>>{};
   else if constexpr (SimplexCell<typename E::cell>)
-    return std::conditional_t<nodes == 3, Tri3, Tri6>{};
+    return TypeList<std::conditional_t<is_linear, Tri3, Tri6>>{};
+  else if constexpr (TensorCell<typename E::cell>)
+    return TypeList<std::conditional_t<
+        is_linear, Quad4, std::conditional_t<E::lumping == Lumping::nodal, Quad9, Quad8>>>{};
   else
-    return std::conditional_t<nodes == 4, Quad4, std::conditional_t<nodes == 8, Quad8, Quad9>>{};
+    return TypeList<Tri3, Quad4>{};
 }
 
 }  // namespace detail
@@ -77,18 +81,13 @@ class ActingOn {
   /// Makes the force terms of pressures of such parts.
   template <class Parts, class On>
   void press(Parts& parts, On const& on) const {
-    using E = typename On::element;
-    using Face = decltype(detail::face_of<E>());
-    using Physics = detail::PressureOn<Dim, Face>;
-    using Term = ConnectedTerm<B, Physics::template physics>;
-    constexpr int width = row_width<typename Term::Elements>;
     for (auto const& own : pressed_) {
       if (own.pascals == 0) continue;
-      auto rows = on.held.template facets_of_set<typename E::cell, width>(
-          parts.backend, on.tree, on.order, on.rows.of_node(), own.set);
-      parts.pressures.push_back(Term::of_rows(
-          parts.backend, std::move(rows), typename Physics::template physics<double>{own.pascals},
-          parts.layout.rows));
+      std::size_t type = 0;
+      parts.for_each_type([&](auto const& table, auto const&) {
+        using Table = std::remove_cvref_t<decltype(table)>;
+        press_sides<typename Table::element>(parts, on, own, on.leaves(type++));
+      });
     }
   }
 
@@ -105,6 +104,27 @@ class ActingOn {
     std::size_t set;
   };
 
+  /// Those of elements of one type.
+  template <Element E, class Parts, class On>
+  static void press_sides(Parts& parts, On const& on, Pressed const& own,
+                          LeavesView const& leaves) {
+    [&]<Element... Faces>(detail::TypeList<Faces...>) {
+      (press_faces<Faces, typename E::cell>(parts, on, own, leaves), ...);
+    }(detail::faces_of<E>());
+  }
+  template <Element Face, class Cell, class Parts, class On>
+  static void press_faces(Parts& parts, On const& on, Pressed const& own,
+                          LeavesView const& leaves) {
+    using Physics = detail::PressureOn<Dim, Face>;
+    using Term = ConnectedTerm<B, Physics::template physics>;
+    constexpr int width = row_width<typename Term::Elements>;
+    auto rows = on.held.template facets_of_set<Cell, Face::cell::corners, width>(
+        parts.backend, on.tree, leaves, on.rows.of_node(), own.set);
+    if (rows.size() == 0) return;
+    parts.pressures.push_back(Term::of_rows(parts.backend, std::move(rows),
+                                            typename Physics::template physics<double>{own.pascals},
+                                            parts.layout.rows));
+  }
   static std::vector<Point<Dim>> places_of(B const& backend, Array<double> const& points,
                                            Array<Index> const& rows) {
     auto taken = zeros<double>(backend, node_stride * rows.size());

@@ -52,11 +52,15 @@ template <Element E, class U>
 struct CarryNewNodes {
   TreeView tree;
   PlacedNode const* nodes;
+  bool has_others;  // whether they may lie in cells of other kinds
   std::ptrdiff_t components;
   U* values;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     PlacedNode const& placed = nodes[k];
+    if (has_others &&
+        tree.cells[static_cast<std::size_t>(placed.cell)].kind != kind_of<typename E::cell>)
+      return;
     Vector<double, E::dim> xi;
     for (int d = 0; d < E::dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
     auto const weights = E::shape(xi);
@@ -134,14 +138,14 @@ class BackendChange {
     backend_.for_each(nodes_->before, detail::MoveNodeValues<U>{numbers, components, before, now});
     fill_new_nodes(static_cast<M*>(nullptr), now, components);
   }
-  template <Element E, class U>
-  void fill_new_nodes(Mesh<E>*, U* values, int components) const {
-    auto const& refined = nodes_->refined;
-    backend_.for_each(refined.new_nodes,
-                      detail::CarryNewNodes<E, U>{nodes_->tree, refined.nodes, components, values});
-  }
   template <Element... Es, class U>
-  void fill_new_nodes(Mesh<Es...>*, U*, int) const {}  // the host changes these
+  void fill_new_nodes(Mesh<Es...>*, U* values, int components) const {
+    auto const& refined = nodes_->refined;
+    (backend_.for_each(refined.new_nodes,
+                       detail::CarryNewNodes<Es, U>{nodes_->tree, refined.nodes, sizeof...(Es) > 1,
+                                                    components, values}),
+     ...);
+  }
 
   template <class U>
   void carry_by_host(U const* before, U* now, std::size_t components) const {

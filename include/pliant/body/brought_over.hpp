@@ -53,7 +53,8 @@ std::optional<MeshOnHost<M>> brought_over(TopologyOn<M, B>& on) {
   HostThreads const threads(*earlier);
   auto const& like = on.on_host.tree->tree();
 
-  auto leaves = on.numbers.leaves();
+  std::vector<CellSet> leaves;
+  for (auto const& numbers : on.numbers) leaves.push_back(numbers.leaves());
   auto lists = on.tree.lists(like.lists(), leaves);
   std::vector<typename FacetsBetween<dim>::Facets const*> facets;
   for (auto const& [name, list] : earlier->boundaries()) facets.push_back(list.get());
@@ -82,10 +83,9 @@ std::optional<MeshOnHost<M>> brought_over(TopologyOn<M, B>& on) {
   });
   auto tree = std::make_shared<Hierarchy<dim> const>(
       std::move(points), CellTree<dim>(std::move(lists), like.cells_at_edges()));
-  auto topology =
-      std::make_shared<Topology<M>>(std::move(tree), std::vector<CellSet>{std::move(leaves)});
+  auto topology = std::make_shared<Topology<M>>(std::move(tree), std::move(leaves));
   topology->set_boundaries(boundaries, [](auto const& list) { return list; });
-  topology->element_values.resize(1);
+  topology->element_values.resize(on.numbers.size());
   return MeshOnHost<M>{std::move(topology),
                        std::make_shared<Prescribed<dim> const>(std::move(*prescribed))};
 }

@@ -12,7 +12,7 @@
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/topology/tree_on.hpp>
 
-// What quadrature points keep, from one mesh to another in a backend's memory: of refined and coarsened meshes of one type.
+// What quadrature points keep, from one mesh to another in a backend's memory, where it is refined or coarsened.
 namespace pliant {
 
 namespace detail {
@@ -111,16 +111,16 @@ struct PointsView {
 template <class T, std::size_t Groups>
 struct CarryPoints {
   TreeView tree;
-  Index const *leaves, *leaves_before, *from;
+  LeavesView leaves;
   PointsView<T const> before;
   PointsView<T> now;
   std::array<PointsOfGroup, Groups> groups;
   Index const* sources;  // of children; null: none were made
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const place = from[i], cell = leaves[i];
+    Index const place = leaves.from(i), cell = leaves.leaves[i];
     auto const& own = groups[before.tag(place)];
-    if (leaves_before[place] == cell) {
+    if (!leaves.is_new(i)) {
       for (Index k = 0; k < own.size * own.points; ++k) now.at(i, k) = before.at(place, k);
       return;
     }
@@ -140,14 +140,15 @@ struct CarryPoints {
 template <class T, std::size_t Groups>
 struct MergePoints {
   TreeView tree;
-  MergedFamily const* families;
+  LeavesView leaves;
   PointsView<T const> before;
   PointsView<T> now;
   std::array<PointsOfGroup, Groups> groups;
   PointOfChild const* sources;  // of merged elements
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    auto const& family = families[r];
+    auto const family = leaves.family(r);
+    if (family.children == 0) return;
     auto const& own = groups[now.tag(family.place)];
     bool const mirrored = tree.cells[static_cast<std::size_t>(family.cell)].mirrored;
     for (Index q = 0; q < own.points; ++q) {
@@ -163,34 +164,34 @@ struct MergePoints {
 
 }  // namespace detail
 
-/// Gives the elements of a body of one type what their points keep, after the last change of `order`, of which `tree` is what
-/// came out. Those of `next` are zero before. Waits for nothing.
-template <Backend B, class Parts>
-void carry_points(B const& backend, TreeView const& tree, LeafOrderOn<B> const& order,
+/// Gives the elements of a body's type I what their points keep, after a change of their leaves, of which `tree` is what came out.
+/// Those of `next` are zero before. Waits for nothing.
+template <std::size_t I, Backend B, class Parts>
+void carry_points(B const& backend, TreeView const& tree, LeavesView const& leaves,
                   Parts const& parts, Parts& next) {
-  using Table = std::remove_cvref_t<decltype(std::get<0>(parts.layout.tables))>;
+  using Table = std::remove_cvref_t<decltype(std::get<I>(parts.layout.tables))>;
   using T = typename B::scalar;
   if constexpr (Table::Laws::internal_variable_count > 0) {
     static auto const sources = detail::point_sources<Table>();
     constexpr std::size_t groups{Table::groups};
-    auto const& elements = std::get<0>(parts.state.elements);
-    auto& elements_now = std::get<0>(next.state.elements);
+    auto const& elements = std::get<I>(parts.state.elements);
+    auto& elements_now = std::get<I>(next.state.elements);
     auto const tags = [](auto const& of) { return groups > 1 ? of.tags.data() : nullptr; };
     detail::PointsView<T const> const before{elements.internal_variables.data(), tags(elements),
-                                             order.count_before()};
+                                             leaves.count_before};
     detail::PointsView<T> const now{elements_now.internal_variables.data(), tags(elements_now),
-                                    order.count()};
-    bool const merges = order.merged_count() > 0;
+                                    leaves.count};
+    bool const merges = leaves.merged > 0;
     typename B::template Array<Index> of_children;
     if (!merges) of_children = upload(backend, sources.of_children);
-    backend.for_each(order.count(), detail::CarryPoints<T, groups>{
-                                        tree, order.leaves(), order.before(), order.from(), before,
-                                        now, sources.groups, of_children.data()});
+    backend.for_each(leaves.count,
+                     detail::CarryPoints<T, groups>{tree, leaves, before, now, sources.groups,
+                                                    of_children.data()});
     if (!merges) return;
     auto const of_merged = upload(backend, sources.of_merged);
-    backend.for_each(order.merged_count(),
-                     detail::MergePoints<T, groups>{tree, order.merged_families(), before, now,
-                                                    sources.groups, of_merged.data()});
+    backend.for_each(leaves.merged,
+                     detail::MergePoints<T, groups>{tree, leaves, before, now, sources.groups,
+                                                    of_merged.data()});
   }
 }
 

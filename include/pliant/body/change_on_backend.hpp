@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -28,16 +29,17 @@ template <class B>
   requires requires { requires B::keeps_trees; }
 inline constexpr bool keeps_trees<B> = true;
 
+/// Whether a mesh is of one type, of which the elements have children of their own type, and sides of one kind.
 template <class M>
-inline constexpr bool is_of_one_refinable_type = false;
+inline constexpr bool are_divided_alike = false;
 template <Element E>
-inline constexpr bool is_of_one_refinable_type<Mesh<E>> =
+inline constexpr bool are_divided_alike<Mesh<E>> =
     Refinable<E> && (SimplexCell<typename E::cell> || TensorCell<typename E::cell>);
 
 /// Whether bodies of a kind may be refined and coarsened in their backend's memory.
 template <class Parts>
-inline constexpr bool changes_on_backend = keeps_trees<typename Parts::backend_type> &&
-                                           is_of_one_refinable_type<typename Parts::mesh_type>;
+inline constexpr bool changes_on_backend =
+    keeps_trees<typename Parts::backend_type> && are_divided_alike<typename Parts::mesh_type>;
 /// Whether nothing of a body has to be made from lists of the host when its mesh changes, and the host has not changed it: what it
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>
@@ -46,6 +48,25 @@ bool can_change_on_backend(Parts const& parts) {
   return parts.first->interpolation.empty() && !sets_values_by_place(parts);
 }
 
+/// The user's numbers of elements on some cells, by the type.
+template <class M>
+std::vector<std::vector<Index>> numbers_by_type(Topology<M> const& of,
+                                                std::vector<Index> const& cells) {
+  auto const counts = of.counts();
+  std::vector<std::vector<Index>> numbers(counts.size());
+  for (Index cell : cells) {
+    std::size_t type = 0;
+    if (of.tree) {
+      while (!of.cells[type].contains(cell)) ++type;
+      cell = of.cells[type].rank(cell);
+    } else {  // those of a first mesh follow each other
+      for (; cell >= static_cast<Index>(counts[type]); ++type)
+        cell -= static_cast<Index>(counts[type]);
+    }
+    numbers[type].push_back(cell);
+  }
+  return numbers;
+}
 /// Of a topology, with some of its cells refined, or some merged. `numbers`: of those that are refined, or of which the children
 /// are merged.
 template <class M>
@@ -62,10 +83,9 @@ TopologyPlan<M> plan_on_host(std::shared_ptr<Topology<M> const> const& before,
     }
     numbers = std::move(children);
   }
-  if (before->tree)
-    for (Index& number : numbers) number = before->cells[0].rank(number);
   MarkedElements marked;
-  (merged ? marked.coarsen : marked.refine).push_back(std::move(numbers));
+  auto& lists = merged ? marked.coarsen : marked.refine;
+  lists = numbers_by_type(*before, numbers);
   return *plan_change(before, marked, {}, {}, values);
 }
 /// What the host knows of a mesh behind a change that was planned there.
@@ -80,7 +100,9 @@ template <class Parts, class On, class Cells>
 auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
                         std::shared_ptr<Cells> cells, bool merged) {
   using M = typename Parts::mesh_type;
-  using Table = std::tuple_element_t<0, decltype(Parts::layout_type::tables)>;
+  constexpr bool has_values = []<class... Tables>(std::tuple<Tables...>*) {
+    return ((Tables::Laws::value_count > 0) || ...);
+  }(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
   return WhenAsked<MeshOnHost<M>>::by(
       [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
        merged, values = element_values_of(parts), of = std::weak_ptr<On>(on),
@@ -89,7 +111,7 @@ auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
         bool const is_now = own && !own->on_host.is_changing && own->on_host.version == version;
         std::optional<MeshOnHost<M>> mesh;
         // Values of elements the host has in double precision.
-        if constexpr (Table::Laws::value_count == 0)
+        if constexpr (!has_values)
           if (is_now && own->is_far_ahead()) mesh = brought_over(*own);
         if (!mesh)
           mesh = mesh_behind(plan_on_host(before.shared(), download<Index>(*cells), merged, values),

@@ -47,16 +47,21 @@ struct MarkMembers {
   }
 };
 /// Of a body before a change; empty where its step does not stand on bounds of rows. `rows`: how many fields have behind it;
-/// `merges`: whether elements are merged.
-template <Element E, class Parts, ChangedFamilies<E> Families>
-ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Families const& families,
-                                                       Index rows, bool merges) {
+/// `merges`: whether elements are merged; families are told type by type.
+template <class Parts, FamiliesOfType... Families>
+ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Index rows, bool merges,
+                                                       Families const&... families) {
   if (!has_bounds_of_rows(parts)) return {};
   auto marks = zeros<std::uint8_t>(parts.backend, static_cast<std::size_t>(rows));
-  MembersOf<Families, true> const members{families};
-  parts.backend.for_each(members.places(),
-                         MarkMembers<MembersOf<Families, true>>{members, marks.data()});
-  return {std::move(marks), merges, merges, E::nodes * members.places()};
+  Index most = 0;
+  auto const mark = [&]<class Own>(Own const& own) {
+    MembersOf<Own, true> const members{own};
+    parts.backend.for_each(members.places(),
+                           MarkMembers<MembersOf<Own, true>>{members, marks.data()});
+    most += Own::element::nodes * members.places();
+  };
+  (mark(families), ...);
+  return {std::move(marks), merges, merges, most};
 }
 /// The same of nodes, by the user's numbers behind a change.
 template <class Parts>

@@ -16,13 +16,13 @@
 
 namespace pliant {
 
-/// The user's numbers of the elements of a mesh of one type as loops see them: leaves of the tree have theirs in the order of
-/// their cells (see CellSet).
+/// The user's numbers of the elements of one type as loops see them: leaves of its kind have theirs in the order of their cells (see
+/// CellSet).
 struct ElementNumbersView {
   static constexpr Index per_word = 32;
 
   Index const* leaves;         // by the place in the order of the elements
-  std::uint32_t const* words;  // a bit for each cell: whether it is a leaf
+  std::uint32_t const* words;  // a bit for each cell: whether it is such a leaf
   Index const* before;         // (words + 1): how many leaves there are before each
   Index count_of_words;
 
@@ -48,8 +48,17 @@ struct ElementNumbersView {
 
 namespace detail {
 
+/// Cells of one kind, where a tree has several.
+struct CellsOfKind {
+  CellKind kind;
+  bool has_others;
+  PLIANT_HOST_DEVICE bool operator()(TreeCell const& cell) const {
+    return !has_others || cell.kind == kind;
+  }
+};
 struct FindLeaves {
   TreeView tree;
+  CellsOfKind is_one;
   Index cells, first_word;
   std::uint32_t* words;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
@@ -57,27 +66,37 @@ struct FindLeaves {
     Index const w = first_word + k, first = w * per_word, count = cells - first;
     std::uint32_t bits = 0;
     // So many reads in any case, none of which hangs on another: a device waits for memory once.
-    for (Index c = 0; c < per_word; ++c)
-      bits |= std::uint32_t{tree.is_leaf(first + (c < count ? c : count - 1))} << c;
+    for (Index c = 0; c < per_word; ++c) {
+      auto const& cell = tree.cells[static_cast<std::size_t>(first + (c < count ? c : count - 1))];
+      bits |= std::uint32_t{cell.first_child < 0 && is_one(cell)} << c;
+    }
     if (count < per_word) bits &= (std::uint32_t{1} << count) - 1;
     words[w] = bits;
   }
 };
-/// Changes the bit of a cell, which no other call does.
-PLIANT_HOST_DEVICE void change_leaf(std::uint32_t* words, Index cell, bool is_leaf) {
-  constexpr Index per_word = ElementNumbersView::per_word;
-  std::uint32_t const bit = std::uint32_t{1} << cell % per_word;
-  atomic_add(words[cell / per_word], is_leaf ? bit : 0 - bit);
-}
-struct ChangeRefinedLeaves {
-  CellSplit const* refined;
-  std::uint32_t* words;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { change_leaf(words, refined[i].cell, false); }
+/// Changes the bits of cells before a word, where these became leaves or ceased to be such.
+struct ChangeLeaves {
+  TreeView tree{};
+  CellsOfKind is_one{};
+  Index first_word = 0;
+  std::uint32_t* words = nullptr;
+
+  /// Of a cell, which no other call does.
+  PLIANT_HOST_DEVICE void change(Index cell, bool is_leaf) const {
+    constexpr Index per_word = ElementNumbersView::per_word;
+    if (cell / per_word >= first_word || !is_one(tree.cells[static_cast<std::size_t>(cell)]))
+      return;
+    std::uint32_t const bit = std::uint32_t{1} << cell % per_word;
+    atomic_add(words[cell / per_word], is_leaf ? bit : 0 - bit);
+  }
 };
-struct ChangeMergedLeaves {
+struct ChangeRefinedLeaves : ChangeLeaves {
+  CellSplit const* refined;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { change(refined[i].cell, false); }
+};
+struct ChangeMergedLeaves : ChangeLeaves {
   Index const* parents;
-  std::uint32_t* words;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { change_leaf(words, parents[i], true); }
+  PLIANT_HOST_DEVICE void operator()(Index i) const { change(parents[i], true); }
 };
 struct CountLeaves {
   std::uint32_t const* words;
@@ -109,17 +128,18 @@ class ElementNumbersOn {
 
  public:
   ElementNumbersOn() = default;
-  /// Of the leaves that there are now.
-  ElementNumbersOn(B const& backend, TreeOn<B> const& tree) {
+  /// Of the leaves of a kind that there are now; `has_others`: whether the tree has cells of other kinds.
+  ElementNumbersOn(B const& backend, TreeOn<B> const& tree, CellKind kind, bool has_others)
+      : is_one_{kind, has_others} {
     follow(backend, tree, 0, 0, detail::ChangeMergedLeaves{});
   }
 
-  /// `order`: of the elements now.
-  [[nodiscard]] ElementNumbersView of(LeafOrderOn<B> const& order) const {
-    return {order.leaves(), words_.data(), before_.data(), count_of_words_};
+  /// `leaves`: of the type now.
+  [[nodiscard]] ElementNumbersView of(LeavesView const& leaves) const {
+    return {leaves.leaves, words_.data(), before_.data(), count_of_words_};
   }
 
-  /// The leaves, on the host.
+  /// These leaves, on the host.
   [[nodiscard]] CellSet leaves() const {
     std::vector<std::uint32_t> words(static_cast<std::size_t>(count_of_words_));
     words_.download(words);
@@ -129,12 +149,12 @@ class ElementNumbersOn {
   /// The same after a refinement of the tree.
   void follow(B const& backend, TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
     follow(backend, tree, cells_ / per_word, refined.leaves,
-           detail::ChangeRefinedLeaves{refined.cells, nullptr});
+           detail::ChangeRefinedLeaves{{}, refined.cells});
   }
   /// And after a coarsening.
   void follow(B const& backend, TreeOn<B> const& tree, Coarsened const& coarsened) {
     follow(backend, tree, coarsened.initial.cells / per_word, coarsened.merged,
-           detail::ChangeMergedLeaves{coarsened.parents, nullptr});
+           detail::ChangeMergedLeaves{{}, coarsened.parents});
   }
 
  private:
@@ -150,14 +170,15 @@ class ElementNumbersOn {
     auto const words = static_cast<std::size_t>(count_of_words_);
     detail::grow_keeping(backend, words_, words_before, words);
     detail::grow(backend, before_, words + 1);
-    change.words = words_.data();
-    detail::in_turn(
-        backend, detail::LoopStep{count, change},
-        detail::LoopStep{count_of_words_ - first_word,
-                         detail::FindLeaves{tree.view(), cells_, first_word, words_.data()}});
+    static_cast<detail::ChangeLeaves&>(change) = {tree.view(), is_one_, first_word, words_.data()};
+    detail::in_turn(backend, detail::LoopStep{count, change},
+                    detail::LoopStep{count_of_words_ - first_word,
+                                     detail::FindLeaves{tree.view(), is_one_, cells_, first_word,
+                                                        words_.data()}});
     backend.scan(count_of_words_, detail::CountLeaves{words_.data()}, before_.data());
   }
 
+  detail::CellsOfKind is_one_{};
   Array<std::uint32_t> words_;
   Array<Index> before_;
   Index cells_ = 0, count_of_words_ = 0;

@@ -15,8 +15,8 @@
 #include <pliant/topology/rows_of_element.hpp>
 #include <pliant/topology/tree_on.hpp>
 
-// The elements of a mesh of one type after a refinement or a coarsening, in a backend's memory: what belongs to each is taken
-// from where it was before, or comes from the tree.
+// The elements of a type after a refinement or a coarsening, in a backend's memory: what belongs to each is taken from where it was
+// before, or comes from the tree.
 namespace pliant {
 
 namespace detail {
@@ -25,17 +25,16 @@ namespace detail {
 template <Element E, int Width>
 struct PutElementRows {
   TreeView tree;
-  Index const* leaves;
-  Index const *leaves_before, *from;
+  LeavesView leaves;
   ElementRows before;    // null: all come from the tree
   Index const* of_node;  // rows of fields
   Index* to;
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const cell = leaves[i];
+    Index const cell = leaves.leaves[i];
     Index* const row = to + static_cast<std::ptrdiff_t>(Width) * i;
-    if (before.nodes != nullptr && leaves_before[from[i]] == cell) {
-      Index const* const own = before[from[i]];
+    if (before.nodes != nullptr && !leaves.is_new(i)) {
+      Index const* const own = before[leaves.from(i)];
       for (int a = 0; a < Width; ++a) row[a] = own[a];
     } else {
       auto const own = rows_of_element<E>(tree, cell, of_node);
@@ -46,13 +45,13 @@ struct PutElementRows {
 
 /// Whether the leaf at a place was not there before.
 struct IsNewLeaf {
-  Index const *leaves, *leaves_before, *from;
-  PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves_before[from[i]] != leaves[i]; }
+  LeavesView leaves;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves.is_new(i); }
 };
 /// Whether the leaf that was at a place is merged into another.
 struct IsMergedLeaf {
-  Index const* leaves_before;
-  PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves_before[i] < 0; }
+  LeavesView leaves;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return leaves.before[i] < 0; }
 };
 /// Whether an element at a place is another one, as a condition says, or has a node that a change displaced.
 template <int Nodes, class IsOther>
@@ -67,48 +66,50 @@ struct IsOtherOrDisplaced {
   }
 };
 
-/// Where the children of divided leaves are, and where these were. A call for each.
+/// Where the children of divided leaves are, and where these were; −1 for leaves that are not among some. A call for each.
 struct PlacesOfDivided {
   LeafParts const* parts;
-  Index const* places;  // by cell
-  Index const* from;    // by the place: that before
+  LeavesView leaves;
   Index *come, *go;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     auto const& own = parts[r];
     Index const before = own.cell - parts[0].cell;
-    for (Index k = 0; k < own.cells; ++k) come[before + k] = places[own.cell + k];
-    go[r] = from[places[own.cell]];
+    Index const first = leaves.places[own.cell] - leaves.first;
+    bool const is_among = first >= 0 && first < leaves.count;
+    for (Index k = 0; k < own.cells; ++k) come[before + k] = is_among ? first + k : -1;
+    go[r] = is_among ? leaves.from(first) : -1;
   }
 };
 
-/// to[i] = from[places[i]] in each of several columns.
+/// Gives each leaf what was at its place before, in each of several columns.
 template <class U>
 struct InheritValues {
-  Index const* places;
+  LeavesView leaves;
   U const* from;
   U* to;
-  Index count_before, count, columns;
+  Index columns;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
     for (Index k = 0; k < columns; ++k)
-      to[static_cast<std::ptrdiff_t>(count) * k + i] =
-          from[static_cast<std::ptrdiff_t>(count_before) * k + places[i]];
+      to[static_cast<std::ptrdiff_t>(leaves.count) * k + i] =
+          from[static_cast<std::ptrdiff_t>(leaves.count_before) * k + leaves.from(i)];
   }
 };
 /// Gives merged leaves what Transfer gives them: of integers the most frequent of their children's, of equal ones the first;
 /// else the mean by volume.
 template <class U>
 struct MergeValues {
-  MergedFamily const* families;
+  LeavesView leaves;
   U const* from;
   U const* volumes;  // by the place before; null: children have the same
   U* to;
-  Index count_before, count, columns;
+  Index columns;
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    auto const& own = families[r];
+    auto const own = leaves.family(r);
+    if (own.children == 0) return;
     for (Index k = 0; k < columns; ++k)
-      to[static_cast<std::ptrdiff_t>(count) * k + own.place] =
-          merged(from + static_cast<std::ptrdiff_t>(count_before) * k + own.first_before, own);
+      to[static_cast<std::ptrdiff_t>(leaves.count) * k + own.place] = merged(
+          from + static_cast<std::ptrdiff_t>(leaves.count_before) * k + own.first_before, own);
   }
 
  private:
@@ -148,22 +149,20 @@ struct MergeValues {
 /// `of_node`: the row of each node, by the user's number, in the backend's memory.
 template <Element E, int Width, Backend B>
 typename B::template Array<Index> element_rows(B const& backend, TreeView const& tree,
-                                               LeafOrderOn<B> const& order, Index const* of_node,
+                                               LeavesView const& leaves, Index const* of_node,
                                                ElementRows const& before = {nullptr, Width}) {
   static_assert(Width >= E::nodes);
-  auto rows = unset<Index>(backend, static_cast<std::size_t>(order.count()) * Width);
-  backend.for_each(order.count(),
-                   detail::PutElementRows<E, Width>{tree, order.leaves(), order.before(),
-                                                    order.from(), before, of_node, rows.data()});
+  auto rows = unset<Index>(backend, static_cast<std::size_t>(leaves.count) * Width);
+  backend.for_each(leaves.count,
+                   detail::PutElementRows<E, Width>{tree, leaves, before, of_node, rows.data()});
   return rows;
 }
 
-/// The blocks of the elements after a refinement or a coarsening; those of which no leaf was divided or merged stay, which are
-/// those with as many leaves as before. `first_before`: the blocks before it. The backend has to be waited for since the change of
-/// the order.
-template <Backend B>
-ElementBlocks blocks_after_change(LeafOrderOn<B> const& order, std::vector<Index> first_before) {
-  ElementBlocks blocks{order.told_first_of_block(), {}, std::move(first_before)};
+/// The blocks of the elements after a refinement or a coarsening, the first of each; those of which no leaf was divided or merged
+/// stay, which are those with as many leaves as before. `first_before`: the same before it.
+inline ElementBlocks blocks_after_change(std::vector<Index> first,
+                                         std::vector<Index> first_before) {
+  ElementBlocks blocks{std::move(first), {}, std::move(first_before)};
   auto const &now = blocks.first, &then = blocks.first_before;
   blocks.stays.resize(now.size() - 1);
   for (std::size_t b = 0; b + 1 < now.size(); ++b)
@@ -175,35 +174,33 @@ ElementBlocks blocks_after_change(LeafOrderOn<B> const& order, std::vector<Index
 /// ones have the most frequent of their children's, of equal ones the first, where values are integers; of others the mean
 /// by `volumes` of the elements before, by their places, in the backend's memory. Without volumes all children count alike.
 template <class U, Backend B>
-typename B::template Array<U> inherited_values(B const& backend, LeafOrderOn<B> const& order,
+typename B::template Array<U> inherited_values(B const& backend, LeavesView const& leaves,
                                                U const* before, Index columns = 1,
                                                U const* volumes = nullptr) {
-  auto values = unset<U>(
-      backend, static_cast<std::size_t>(order.count()) * static_cast<std::size_t>(columns));
-  backend.for_each(order.count(),
-                   detail::InheritValues<U>{order.from(), before, values.data(),
-                                            order.count_before(), order.count(), columns});
-  backend.for_each(order.merged_count(),
-                   detail::MergeValues<U>{order.merged_families(), before, volumes, values.data(),
-                                          order.count_before(), order.count(), columns});
+  auto values =
+      unset<U>(backend, static_cast<std::size_t>(leaves.count) * static_cast<std::size_t>(columns));
+  backend.for_each(leaves.count, detail::InheritValues<U>{leaves, before, values.data(), columns});
+  backend.for_each(leaves.merged,
+                   detail::MergeValues<U>{leaves, before, volumes, values.data(), columns});
   return values;
 }
 
-/// The places of the elements that come in a refinement, and of those that go, before it, in a backend's memory.
+/// The places of the elements that come in a refinement, and of those that go, before it, in a backend's memory: of those that are
+/// among some leaves; −1 in the place of others.
 template <Backend B>
 struct RefinedPlaces {
   Index come_count, go_count;
   typename B::template Array<Index> come, go;
 
-  /// By the leaves that it divided. Waits for nothing.
-  RefinedPlaces(B const& backend, LeafOrderOn<B> const& order,
-                typename TreeOn<B>::Refined const& refined)
-      : come_count(order.count() - order.count_before() + refined.leaves),
+  /// By the leaves that it divided, into `children` in all. Waits for nothing.
+  RefinedPlaces(B const& backend, LeavesView const& leaves,
+                typename TreeOn<B>::Refined const& refined, Index children)
+      : come_count(children),
         go_count(refined.leaves),
         come(unset<Index>(backend, static_cast<std::size_t>(come_count))),
         go(unset<Index>(backend, static_cast<std::size_t>(go_count))) {
-    backend.for_each(go_count, detail::PlacesOfDivided{refined.parts, order.places(), order.from(),
-                                                       come.data(), go.data()});
+    backend.for_each(go_count,
+                     detail::PlacesOfDivided{refined.parts, leaves, come.data(), go.data()});
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 
 #include <pliant/backend/element_sums.hpp>
 #include <pliant/backend/value_at.hpp>
@@ -19,8 +20,10 @@ template <class Parts>
 class EnergySumsOn {
   using B = typename Parts::backend_type;
   using T = typename Parts::T;
-  using Table = std::tuple_element_t<0, decltype(Parts::layout_type::tables)>;
+  template <std::size_t I>
+  using Table = std::tuple_element_t<I, decltype(Parts::layout_type::tables)>;
   static constexpr int dim = Parts::dim;
+  static constexpr std::size_t types = std::tuple_size_v<decltype(Parts::layout_type::tables)>;
 
  public:
   enum Time : std::size_t { before, after };
@@ -31,24 +34,27 @@ class EnergySumsOn {
 
   explicit EnergySumsOn(B const& backend) : backend_(backend), sums_(zeros<double>(backend, 4)) {}
 
-  /// Of the elements of a body at some places, (count).
+  /// Of the elements of a body's type I at some places, (count); −1 for none.
+  template <std::size_t I>
   void add_strain_at(Time time, Parts const& of, Index const* places, Index count) {
-    add(time, of, [&](auto const& table, Tag const* tags, auto const&... arguments) {
-      add_sum_elements_at<Table::groups>(backend_, table, tags, places, count, arguments...);
+    add<I>(time, of, [&](auto const& table, Tag const* tags, auto const&... arguments) {
+      add_sum_elements_at<Table<I>::groups>(backend_, table, tags, places, count, arguments...);
     });
   }
   /// Before and after a coarsening, of what it merged, and of other elements with nodes that it displaced: those that hang, where they
-  /// began to, or hang on others that did. `order`: of the leaves now.
-  void add_strain_of_merged(Parts const& parts, Parts const& now, LeafOrderOn<B> const& order) {
+  /// began to, or hang on others that did. `leaves`: by the type.
+  void add_strain_of_merged(Parts const& parts, Parts const& now,
+                            std::array<LeavesView, types> const& leaves) {
     using Values = NodeField<T const, dim>;
     auto displaced = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(now.layout.rows));
     auto const& slaves = now.layout.interpolation.slaves();
     backend_.for_each(slaves.count,
                       MarkDisplaced<T, dim>{slaves.node.data(), Values{parts.state.u.data()},
                                             Values{now.state.u.data()}, displaced.data()});
-    add_strain_of_others(before, parts, IsMergedLeaf{order.before()}, displaced.data());
-    add_strain_of_others(after, now, IsNewLeaf{order.leaves(), order.before(), order.from()},
-                         displaced.data());
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (add_strain_of_others<I>(before, parts, IsMergedLeaf{leaves[I]}, displaced.data()), ...);
+      (add_strain_of_others<I>(after, now, IsNewLeaf{leaves[I]}, displaced.data()), ...);
+    }(std::make_index_sequence<types>());
   }
   /// Velocities have to be of the present time.
   void add_kinetic(Time time, Parts const& parts) {
@@ -61,28 +67,28 @@ class EnergySumsOn {
   }
 
  private:
-  template <class IsOther>
+  template <std::size_t I, class IsOther>
   void add_strain_of_others(Time time, Parts const& of, IsOther const& is_other,
                             std::uint8_t const* displaced) {
-    IsOtherOrDisplaced<Table::element::nodes, IsOther> const meets{
-        is_other, std::get<0>(of.layout.tables).elements.rows_of_nodes(), displaced};
-    add(time, of, [&](auto const& table, Tag const* tags, auto const&... arguments) {
-      add_sum_elements_if<Table::groups>(backend_, table, tags, meets, arguments...);
+    IsOtherOrDisplaced<Table<I>::element::nodes, IsOther> const meets{
+        is_other, std::get<I>(of.layout.tables).elements.rows_of_nodes(), displaced};
+    add<I>(time, of, [&](auto const& table, Tag const* tags, auto const&... arguments) {
+      add_sum_elements_if<Table<I>::groups>(backend_, table, tags, meets, arguments...);
     });
   }
   /// add_some(table, its tags, rows, kernel, sum, fields...): of some elements. Of all instead, where laws read what is kept by the
   /// number of an element, and a backend sums over copies.
-  template <class AddSome>
+  template <std::size_t I, class AddSome>
   void add(Time time, Parts const& of, AddSome const& add_some) {
-    auto const& table = std::get<0>(of.layout.tables);
+    auto const& table = std::get<I>(of.layout.tables);
     auto const rest = node_field<dim>(of.layout.rest), u = node_field<dim>(of.state.u);
     table.with_geometry([&](auto geometry) {
-      EnergyKernel<typename Table::Laws, geometry.value> const kernel{table.laws};
-      if constexpr (Table::Laws::reads_elements && !sums_at_places<B>)
-        add_sum_elements<Table::groups>(backend_, table.elements, kernel, sums_.data() + time, rest,
-                                        u);
+      EnergyKernel<typename Table<I>::Laws, geometry.value> const kernel{table.laws};
+      if constexpr (Table<I>::Laws::reads_elements && !sums_at_places<B>)
+        add_sum_elements<Table<I>::groups>(backend_, table.elements, kernel, sums_.data() + time,
+                                           rest, u);
       else
-        add_some(table.elements, std::get<0>(of.state.elements).tags.data(), of.layout.rows, kernel,
+        add_some(table.elements, std::get<I>(of.state.elements).tags.data(), of.layout.rows, kernel,
                  sums_.data() + time, rest, u);
     });
   }

@@ -55,18 +55,22 @@ struct HasSideInSet {
     return false;
   }
 };
-/// Whether side i % Sides of a listed cell, i / Sides, is in a set.
-template <int Dim, Index Sides>
+/// Whether side i % Sides of a listed cell, i / Sides, is in a set, and has so many corners.
+template <int Dim, Index Sides, int Corners>
 struct SidesOfCells {
   SidesInSet<Dim> in_set;
   Index const* cells;
 
-  PLIANT_HOST_DEVICE bool operator()(Index i) const { return in_set(cells[i / Sides], i % Sides); }
+  PLIANT_HOST_DEVICE bool operator()(Index i) const {
+    Index const cell = cells[i / Sides], side = i % Sides;
+    return in_set(cell, side) &&
+           (Dim == 2 || in_set.cell(cell).pattern().corners_of_side(side) == Corners);
+  }
 };
 /// Puts the rows of the nodes of a listed side, as they are seen from outside of its element.
-template <int Dim, Index Sides, int Width>
+template <int Dim, Index Sides, int Corners, int Width>
 struct PutFacet {
-  SidesOfCells<Dim, Sides> of_cells;
+  SidesOfCells<Dim, Sides, Corners> of_cells;
   Index const* places;  // as SidesOfCells counts
   Index const* of_node;
   Index* rows;
@@ -79,23 +83,22 @@ struct PutFacet {
     auto const row = tree.row(number);
     auto const s = static_cast<std::size_t>(places[k] % Sides);
     auto const& p = cell.pattern();
-    int const corners = Dim == 2 ? 2 : p.corners_of_side(static_cast<int>(s));
     auto const at = [](Index i) { return static_cast<std::size_t>(i); };
     auto next = std::ptrdiff_t{Width} * k;
     auto const put = [&](Index node) { rows[next++] = of_node[node]; };
-    for (int a = 0; a < corners; ++a) {
-      auto const c = at(cell.mirrored ? corners - 1 - a : a);
+    for (int a = 0; a < Corners; ++a) {
+      auto const c = at(cell.mirrored ? Corners - 1 - a : a);
       put(row.nodes[at(Dim == 2 ? p.edge[s][c] : p.side[s][c])]);
     }
     if (sides.has == CellNodes::corners) return;
     if constexpr (Dim == 2) {
       put(tree.edges[at(row.edges[s])].middle);
     } else {
-      for (int a = 0; a < corners; ++a) {  // each between corners a and a + 1
-        auto const c = at(cell.mirrored ? (2 * corners - 2 - a) % corners : a);
+      for (int a = 0; a < Corners; ++a) {  // each between corners a and a + 1
+        auto const c = at(cell.mirrored ? (2 * Corners - 2 - a) % Corners : a);
         put(tree.edges[at(row.edges[at(p.edges_of_side[s][c])])].middle);
       }
-      if (sides.has == CellNodes::all && corners == 4) put(tree.sides[at(row.sides[s])].centre);
+      if (sides.has == CellNodes::all && Corners == 4) put(tree.sides[at(row.sides[s])].centre);
     }
   }
 };

@@ -21,45 +21,50 @@
 namespace pliant {
 
 /// Gives elements that are refined or merged their momentum back, as give_momentum_back does on the host, in a backend's memory:
-/// by the rows of fields, of a mesh with elements of one type.
-template <Element E, Backend B>
+/// by the rows of fields. Families are told type by type.
+template <int Dim, Backend B>
 class FamilyMomentumOn {
   using T = typename B::scalar;
   template <class U>
   using Array = typename B::template Array<U>;
-  static constexpr int dim = E::dim;
+  static constexpr int dim = Dim;
 
  public:
   explicit FamilyMomentumOn(B const& backend) : backend_(backend), told_(backend, 1) {}
 
   /// Looks up which nodes a change touches, and what these have of the masses of elements that stay; between
   /// NodalMassesOn::take_gone and add_come. `before`, `now`: of the slaves that there were, and are.
-  template <detail::ChangedFamilies<E> Families>
-  void begin(Families const& families, MassWeightsOn<B> const& before, MassWeightsOn<B> const& now,
-             NodalMassesOn<E, B> const& masses) {
+  template <detail::FamiliesOfType... Families>
+  void begin(MassWeightsOn<B> const& before, MassWeightsOn<B> const& now,
+             NodalMassesOn<B> const& masses, Families const&... families) {
     auto const rows = at(masses.rows());
     detail::grow_zeroed(backend_, place_, rows);
     detail::grow(backend_, list_, rows);
     counter_ = zeros<Index>(backend_, 1);
     detail::TouchOnce const touch{place_.data(), list_.data(), counter_.data()};
-    // The many have the nodes of the few.
-    using Members = detail::MembersOf<Families, (Families::most_come > Families::most_gone)>;
-    Members const members{families};
+    auto const touch_members = [&]<class Own>(Own const& own) {
+      // The many have the nodes of the few.
+      using Members = detail::MembersOf<Own, (Own::most_come > Own::most_gone)>;
+      Members const members{own};
+      return detail::LoopStep{members.places(), detail::TouchMembers<Members>{members, touch}};
+    };
     auto const touch_all = [&](RowsOn<B> const& some) {
       return detail::LoopStep{some.count, detail::TouchListed{some.node.data(), touch}};
     };
     auto const &slaves_before = before.interpolation(), &slaves_now = now.interpolation();
-    auto most = E::nodes * at(members.places());
+    std::size_t most = 0;
+    ((most += Families::element::nodes * std::max(Families::most_come, Families::most_gone) *
+              at(families.count)),
+     ...);
     for (auto const* slaves : {&slaves_before, &slaves_now})
       most += at(slaves->slaves().count) + at(slaves->masters().count);
     most_ = static_cast<Index>(std::min(most, rows));
     detail::grow(backend_, staying_mass_, at(most_));
-    detail::in_turn(
-        backend_, detail::LoopStep{members.places(), detail::TouchMembers<Members>{members, touch}},
-        touch_all(slaves_before.slaves()), touch_all(slaves_before.masters()),
-        touch_all(slaves_now.slaves()), touch_all(slaves_now.masters()),
-        of_listed(detail::NoteMass{list_.data(), place_.data(), masses.unit(), masses.own(),
-                                   staying_mass_.data()}));
+    detail::in_turn(backend_, touch_members(families)..., touch_all(slaves_before.slaves()),
+                    touch_all(slaves_before.masters()), touch_all(slaves_now.slaves()),
+                    touch_all(slaves_now.masters()),
+                    of_listed(detail::NoteMass{list_.data(), place_.data(), masses.unit(),
+                                               masses.own(), staying_mass_.data()}));
   }
 
   /// Changes the velocities `v`, to which a refinement gave new nodes theirs, so that each family keeps its momentum. Slaves keep
@@ -67,10 +72,10 @@ class FamilyMomentumOn {
   /// NodalMassesOn::read gives them. `held`: directions by row; null: none. `bound`: kg m/s, more than the sum of all impulses
   /// that nodes could be given, 8 times the body's mass at the largest speed, say. Where an impulse exceeds it or is no number,
   /// velocities stay, and `taken` says so.
-  template <detail::ChangedFamilies<E> Families>
-  void give_back(Families const& families, MassWeightsOn<B> const& before,
-                 MassWeightsOn<B> const& now, double density, double bound, double const* kilograms,
-                 DirectionMask const* held, NodeField<T, dim> v) {
+  template <detail::FamiliesOfType... Families>
+  void give_back(MassWeightsOn<B> const& before, MassWeightsOn<B> const& now, double density,
+                 double bound, double const* kilograms, DirectionMask const* held,
+                 NodeField<T, dim> v, Families const&... families) {
     bound_ = bound;
     detail::SumUnit const unit(bound);
     auto const values = at(most_) * dim;
@@ -86,12 +91,13 @@ class FamilyMomentumOn {
         .run(backend_);
     before.template apply<dim>(v_before);
     now.template apply<dim>(v_now);
+    auto const add_impulses = [&]<class Own>(Own const& own) {
+      return detail::LoopStep{own.count, detail::AddFamilyImpulse<typename Own::element, Own>{
+                                             own, density, v_before, v_now, unit, place_.data(),
+                                             sums_.data(), refused}};
+    };
     detail::in_turn(
-        backend_,
-        detail::LoopStep{
-            families.count,
-            detail::AddFamilyImpulse<E, Families>{families, density, v_before, v_now, unit,
-                                                  place_.data(), sums_.data(), refused}},
+        backend_, add_impulses(families)...,
         of_listed(detail::AddImpulseOfSlave<dim>{unit, sums_.data(), staying_mass_.data(),
                                                  before_.data(), now_.data(), impulse_.data()}));
     now.template hand<dim>(impulse);

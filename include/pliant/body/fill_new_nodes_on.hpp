@@ -23,11 +23,15 @@ struct FillNewNodes {
   static constexpr int dim = E::dim;
   TreeView tree;
   PlacedNode const* nodes;
+  bool has_others;       // whether they may lie in cells of other kinds
   Index const* of_node;  // rows, by the user's number
   std::tuple<NodeField<T, dim>...> fields;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     PlacedNode const& placed = nodes[k];
+    if (has_others &&
+        tree.cells[static_cast<std::size_t>(placed.cell)].kind != kind_of<typename E::cell>)
+      return;
     Vector<double, dim> xi;
     for (int d = 0; d < dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
     auto const weights = E::shape(xi);
@@ -81,13 +85,14 @@ struct FillNewNodes {
 }  // namespace detail
 
 /// A step (see in_turn) that gives the nodes that a refinement made the values of fields where they lie in the cells that were
-/// refined. All cells of the tree are elements of one type. `of_node`: rows by the user's numbers, in the backend's memory, those
+/// refined, of those that are elements of a type; all are, but for a tree that `has_others`. `of_node`: rows by the user's numbers, in the backend's memory, those
 /// of new nodes with them.
 template <Element E, Backend B, class... T>
 auto filling_new_nodes(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
-                       Index const* of_node, NodeField<T, E::dim>... fields) {
-  return detail::LoopStep{refined.new_nodes, detail::FillNewNodes<E, T...>{
-                                                 tree.view(), refined.nodes, of_node, {fields...}}};
+                       bool has_others, Index const* of_node, NodeField<T, E::dim>... fields) {
+  return detail::LoopStep{
+      refined.new_nodes,
+      detail::FillNewNodes<E, T...>{tree.view(), refined.nodes, has_others, of_node, {fields...}}};
 }
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -8,6 +9,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/body/merged_elements.hpp>
 #include <pliant/constraint/rows_on.hpp>
+#include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/patterns.hpp>
 #include <pliant/topology/tree_claims.hpp>
 
@@ -41,11 +43,13 @@ struct GoneBetween {
   /// visit(k, from) for the nodes that went of a family, which k is among them. Some come again.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit(Index r, Visit const& visit_one) const {
-    Index from = is_mirrored(r) ? MergedElements<E>::most_gone * E::nodes : 0;
-    for (Index child = 0; child < families.gone(r); ++child)
+    Index const children = families.gone(r);
+    if (children == 0) return;
+    Index next = is_mirrored(r) ? MergedElements<E>::most_gone * E::nodes : 0;
+    for (Index child = 0; child < children; ++child)
       for (Index const row : families.rows_gone(r, child)) {
-        if (Index const k = place[row] - 1; k >= 0) visit_one(k, from);
-        ++from;
+        if (Index const k = place[row] - 1; k >= 0) visit_one(k, next);
+        ++next;
       }
   }
   /// The weights that the nodes of the parent have there: dyadic numbers, without rounding.
@@ -89,8 +93,9 @@ struct PutWeights {
   Index* other;
   T* weight;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    if (gone.entries[k] == 0) return;
-    auto const parent = gone.families.rows_come(claimant(gone.claims[k]), 0);
+    Index const family = claimant(gone.claims[k]);
+    if (gone.entries[k] == 0 || gone.families.come(family) == 0) return;
+    auto const parent = gone.families.rows_come(family, 0);
     auto const weights = gone.weights(k);
     Index to = first[k];
     for (int c = 0; c < E::nodes; ++c) {
@@ -126,20 +131,24 @@ struct ForgetRows {
 /// Finds between which nodes those lay that went in a coarsening, as Transfer::gone has them: as an interpolation, InterpolationOn
 /// hands them what these had (see apply_transpose), as Transfer::carry_sums does. Several merged elements may have had one;
 /// their weights are the same. Has what passes take between them.
-template <Element E, Backend B>
-class GoneNodesOn {
+template <class M, Backend B>
+class GoneNodesOn;
+
+template <Element... Es, Backend B>
+class GoneNodesOn<Mesh<Es...>, B> {
   using T = typename B::scalar;
   template <class U>
   using Array = typename B::template Array<U>;
 
  public:
   explicit GoneNodesOn(B const& backend)
-      : backend_(backend), on_parent_(upload(backend, detail::places_on_parent<E>())) {}
+      : backend_(backend),
+        on_parent_(Places<Es>{upload(backend, detail::places_on_parent<Es>())}...) {}
 
   /// The nodes that went, by their rows in the order of the list `gone`, (count), in the backend's memory: these had all been
   /// nodes of merged elements. `rows`: how many fields have.
-  RowsOn<B> rows(detail::MergedElements<E> const& merged, Index const* gone, Index count,
-                 Index rows) {
+  RowsOn<B> rows(Index const* gone, Index count, Index rows,
+                 detail::MergedElements<Es> const&... merged) {
     RowsOn<B> weights;
     if (count == 0) return weights;
     auto const n = at(count);
@@ -152,27 +161,37 @@ class GoneNodesOn {
     weights.first = unset<Index>(backend_, n + 1);
     detail::copy_values<B, Index>(backend_, gone, weights.node.data(), n);
     backend_.for_each(count, detail::NotePlaces{gone, place_.data(), claims_.data()});
-    detail::GoneBetween<E> const between{merged,         on_parent_.data(), place_.data(),
-                                         claims_.data(), from_.data(),      entries.data()};
-    backend_.for_each(merged.count, detail::ClaimGone<E>{between});
-    backend_.for_each(merged.count, detail::FindOnParents<E>{between});
+    auto const between = [&]<Element E>(detail::MergedElements<E> const& own) {
+      auto const& places = std::get<Places<E>>(on_parent_).places;
+      return detail::GoneBetween<E>{own,          places.data(), place_.data(), claims_.data(),
+                                    from_.data(), entries.data()};
+    };
+    (backend_.for_each(merged.count, detail::ClaimGone<Es>{between(merged)}), ...);
+    (backend_.for_each(merged.count, detail::FindOnParents<Es>{between(merged)}), ...);
     backend_.scan(count, detail::CountAt{entries.data()}, weights.first.data());
     auto total = zeros<Index>(backend_, 1);
     backend_.for_each(1, detail::CopyValue<Index>{weights.first.data() + count, total.data()});
     auto const in_all = at(download<Index>(total)[0]);
     weights.other = unset<Index>(backend_, in_all);
     weights.weight = unset<T>(backend_, in_all);
-    backend_.for_each(count, detail::PutWeights<E, T>{between, weights.first.data(),
-                                                      weights.other.data(), weights.weight.data()});
+    (backend_.for_each(count,
+                       detail::PutWeights<Es, T>{between(merged), weights.first.data(),
+                                                 weights.other.data(), weights.weight.data()}),
+     ...);
     backend_.for_each(count, detail::ForgetRows{gone, place_.data()});
     return weights;
   }
 
  private:
+  /// See places_on_parent.
+  template <Element E>
+  struct Places {
+    Array<Vector<double, E::dim>> places;
+  };
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   B backend_;
-  Array<Vector<double, E::dim>> on_parent_;  // see places_on_parent
+  std::tuple<Places<Es>...> on_parent_;
   Array<Index> place_;  // by row: in the list, one more; zero, as between two calls: not there
   Array<Index> claims_, from_;
 };

@@ -177,22 +177,21 @@ class HeldSidesOn {
                                                          bit(set), of_node, marks.data()});
     return selected(backend, rows_, detail::IsMarked<std::uint8_t>{marks.data()});
   }
-  /// The facets of a set as elements have them: (facets, Width), the first of which are rows of nodes, seen from outside.
-  template <class Cell, int Width>
-  Array<Index> facets_of_set(B const& backend, TreeOn<B> const& tree, LeafOrderOn<B> const& order,
+  /// The facets of a set with so many corners as elements on leaves of one kind have them: (facets, Width), the first of which are rows
+  /// of nodes, seen from outside.
+  template <class Cell, int Corners, int Width>
+  Array<Index> facets_of_set(B const& backend, TreeOn<B> const& tree, LeavesView const& leaves,
                              Index const* of_node, std::size_t set) const {
     constexpr auto sides = static_cast<Index>(Cell::sides().size());
     detail::SidesInSet<Dim> const in_set{sides_of(tree.view()), bits_.data(), bit(set)};
-    auto cells =
-        selected(backend, order.count(), detail::HasSideInSet<Dim>{in_set, order.leaves()});
-    backend.for_each(static_cast<Index>(cells.size()),
-                     detail::LookUp{order.leaves(), cells.data()});
-    detail::SidesOfCells<Dim, sides> const of_cells{in_set, cells.data()};
+    auto cells = selected(backend, leaves.count, detail::HasSideInSet<Dim>{in_set, leaves.leaves});
+    backend.for_each(static_cast<Index>(cells.size()), detail::LookUp{leaves.leaves, cells.data()});
+    detail::SidesOfCells<Dim, sides, Corners> const of_cells{in_set, cells.data()};
     auto const places = selected(backend, static_cast<Index>(cells.size()) * sides, of_cells);
     auto rows = zeros<Index>(backend, places.size() * Width);
-    backend.for_each(
-        static_cast<Index>(places.size()),
-        detail::PutFacet<Dim, sides, Width>{of_cells, places.data(), of_node, rows.data()});
+    backend.for_each(static_cast<Index>(places.size()),
+                     detail::PutFacet<Dim, sides, Corners, Width>{of_cells, places.data(), of_node,
+                                                                  rows.data()});
     return rows;
   }
 

@@ -15,6 +15,34 @@
 // The order of elements that a body keeps, in a backend's memory.
 namespace pliant {
 
+/// Leaves that follow each other in the order that a body keeps, as those of one element type do, before and after a change: places
+/// are counted from the first of these.
+struct LeavesView {
+  Index const* leaves = nullptr;  // by the place
+  Index const* before =
+      nullptr;  // by the place before the change, by the numbers that they have now; −1: merged into others
+  Index const* from_all = nullptr;  // by the place: that before, counted from the first of all
+  Index const* places = nullptr;    // by cell, counted from the first of all
+  MergedFamily const* families = nullptr;  // those that the change merged, of all
+  Index merged = 0;                        // how many
+  Index first = 0, first_before = 0;       // of all
+  Index count = 0, count_before = 0;
+
+  /// The place before of the leaf at a place, of a child its parent's, of a merged parent its first child's.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index from(Index i) const { return from_all[i] - first_before; }
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_new(Index i) const {
+    return before[from(i)] != leaves[i];
+  }
+  /// Merged family r, if it is of these leaves; else one without children.
+  [[nodiscard]] PLIANT_HOST_DEVICE MergedFamily family(Index r) const {
+    auto own = families[r];
+    own.place -= first;
+    own.first_before -= first_before;
+    if (own.place < 0 || own.place >= count) own.children = 0;
+    return own;
+  }
+};
+
 /// The leaves of a tree in a backend's memory, in the order that a body keeps (see CellOrder): children stand in the place of
 /// their parents.
 template <Backend B>
@@ -58,6 +86,23 @@ class LeafOrderOn {
   [[nodiscard]] Index blocks() const { return blocks_; }
   /// A copy of first_of_block on the host, once the backend was waited for since the last change.
   [[nodiscard]] std::vector<Index> told_first_of_block() const { return told_.all(); }
+
+  /// All of them.
+  [[nodiscard]] LeavesView view() const { return view(0, count_, 0, count_before_); }
+  /// `count` of them from the place `first` on, which were `count_before` from `first_before` on.
+  [[nodiscard]] LeavesView view(Index first, Index count, Index first_before,
+                                Index count_before) const {
+    return {leaves_.data() + first,
+            others_.data() + first_before,
+            from_.data() + first,
+            places_.data(),
+            families_.data(),
+            merged_,
+            first,
+            first_before,
+            count,
+            count_before};
+  }
 
   /// Puts the children of refined leaves in the place of these.
   void refine(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {

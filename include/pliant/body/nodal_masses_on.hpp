@@ -72,10 +72,10 @@ struct RoundMasses {
 
 }  // namespace detail
 
-/// The lumped masses of nodes by their rows, in a backend's memory, of a mesh with elements of one type, as sums that do not
-/// depend on the order of elements: those of a mesh that was changed have the bits of those of one made anew. Rows that no
-/// node has hold zero.
-template <Element E, Backend B>
+/// The lumped masses of nodes by their rows, in a backend's memory, as sums that do not depend on the order of elements: those of a
+/// mesh that was changed have the bits of those of one made anew. Rows that no node has hold zero. Elements that go and come are
+/// told type by type.
+template <Backend B>
 class NodalMassesOn {
   template <class U>
   using Array = typename B::template Array<U>;
@@ -106,25 +106,28 @@ class NodalMassesOn {
     rows_ = rows;
   }
   /// What nodes have of elements that go in a change goes: of nodes that go, all.
-  template <detail::ChangedFamilies<E> Families>
-  void take_gone(Families const& families) {
-    shares<false>(families, true).run(backend_);
+  template <detail::FamiliesOfType... Families>
+  void take_gone(Families const&... families) {
+    detail::in_turn(backend_, taking_gone(families)...);
   }
   /// What they have of those that come comes.
-  template <detail::ChangedFamilies<E> Families>
-  void add_come(Families const& families) {
-    shares<true>(families, false).run(backend_);
+  template <detail::FamiliesOfType... Families>
+  void add_come(Families const&... families) {
+    detail::in_turn(backend_, adding_come(families)...);
   }
-  /// Both, behind other steps of loops.
-  template <detail::ChangedFamilies<E> Families, class... Steps>
-  void exchange(Families const& families, Steps const&... before) {
-    detail::in_turn(backend_, before..., shares<false>(families, true),
-                    shares<true>(families, false));
+  /// Both of them as steps of loops (see in_turn).
+  template <detail::FamiliesOfType Families>
+  [[nodiscard]] auto taking_gone(Families const& families) {
+    return shares<false>(families, true);
+  }
+  template <detail::FamiliesOfType Families>
+  [[nodiscard]] auto adding_come(Families const& families) {
+    return shares<true>(families, false);
   }
   /// Undoes both, to the bit.
-  template <detail::ChangedFamilies<E> Families>
-  void take_back(Families const& families) {
-    detail::in_turn(backend_, shares<true>(families, true), shares<false>(families, false));
+  template <detail::FamiliesOfType... Families>
+  void take_back(Families const&... families) {
+    detail::in_turn(backend_, shares<true>(families, true)..., shares<false>(families, false)...);
   }
   /// Masses in kg by row, of which slaves have handed theirs to their masters; and a copy of `own`, or null. Both: (rows).
   void read(MassWeightsOn<B> const& slaves, double* kilograms,
@@ -161,8 +164,8 @@ class NodalMassesOn {
     using Members = detail::MembersOf<Families, Come>;
     Members const members{families};
     return detail::LoopStep{members.places(),
-                            detail::AddShares<E, Members>{members, takes, density_, unit_,
-                                                          own_.data(), refused_.data()}};
+                            detail::AddShares<typename Families::element, Members>{
+                                members, takes, density_, unit_, own_.data(), refused_.data()}};
   }
 
   B backend_;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -41,34 +44,63 @@ struct OnHost {
 template <class M, Backend B>
 struct TopologyOn;
 
-/// Of a mesh with elements of one type.
-template <Element E, Backend B>
-struct TopologyOn<Mesh<E>, B> {
-  using element = E;
-  static constexpr int dim = E::dim;
+/// Of a mesh of elements of one degree.
+template <Element... Es, Backend B>
+struct TopologyOn<Mesh<Es...>, B> {
+  using M = Mesh<Es...>;
+  static constexpr int dim = M::dim;
+  static constexpr std::size_t types = sizeof...(Es);
+  /// Whether cells may be of several kinds.
+  static constexpr bool has_kinds = types > 1;
   /// After so many changes the host follows, or of so many cells for each element, so that what it has to keep has an end.
   static constexpr int most_changes = 512, most_cells = 64;
+  /// Where the elements of each type begin among all, and behind the last one.
+  using Bounds = std::array<Index, types + 1>;
 
   TreeOn<B> tree;
-  LeafOrderOn<B> order;
+  LeafOrderOn<B> order;  // of all types, one behind the other
+  Bounds first_block, first_place,
+      first_before;  // in that: of blocks; of leaves, and of those before the last change
   NodeRowsOn<B> rows;
-  ElementNumbersOn<B> numbers;
+  std::array<ElementNumbersOn<B>, types> numbers;
   HangingNodesOn<dim, B> hanging;
-  NodalMassesOn<E, B> masses;
-  FamilyMomentumOn<E, B> momentum;
-  GoneNodesOn<E, B> gone;
+  NodalMassesOn<B> masses;
+  FamilyMomentumOn<dim, B> momentum;
+  GoneNodesOn<M, B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
-  HeldSidesOn<dim, B> held{nodes_on_cell<E>};
+  HeldSidesOn<dim, B> held{std::max({nodes_on_cell<Es>...})};
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
-  OnHost<Mesh<E>> on_host;
+  OnHost<M> on_host;
 
   /// Of a body as it is. Takes a look at all of it.
   template <class Parts>
   explicit TopologyOn(Parts const& parts)
       : TopologyOn(parts, detail::tree_of(parts.state.topology.shared())) {}
 
-  [[nodiscard]] ElementNumbersView element_numbers() const { return numbers.of(order); }
+  /// The leaves of type I.
+  [[nodiscard]] LeavesView leaves(std::size_t type) const {
+    return order.view(first_place[type], first_place[type + 1] - first_place[type],
+                      first_before[type], first_before[type + 1] - first_before[type]);
+  }
+  [[nodiscard]] ElementNumbersView element_numbers(std::size_t type) const {
+    return numbers[type].of(leaves(type));
+  }
+  /// The first element of each block of a type, and behind the last one, counted from that type's first.
+  [[nodiscard]] std::vector<Index> first_of_block(std::size_t type) const {
+    auto const all = order.told_first_of_block();
+    std::vector<Index> own(all.begin() + first_block[type],
+                           all.begin() + first_block[type + 1] + 1);
+    for (Index& place : own) place -= first_place[type];
+    return own;
+  }
+  /// Notes where types begin behind a change of the order, since which the backend was waited for.
+  void follow_order() {
+    auto const all = order.told_first_of_block();
+    first_before = first_place;
+    for (std::size_t type = 0; type <= types; ++type)
+      first_place[type] = all[static_cast<std::size_t>(first_block[type])];
+  }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
   /// Whether what is prescribed is what a body's conditions and pressures are now.
   template <class Parts>
@@ -90,7 +122,7 @@ struct TopologyOn<Mesh<E>, B> {
   }
 
   /// Notes what the host knows of the mesh as it is now.
-  void set_on_host(MeshOnHost<Mesh<E>> now) {
+  void set_on_host(MeshOnHost<M> now) {
     on_host.tree = now.topology->tree_or_first();
     on_host.known = std::move(now);
     on_host.changes = 0;
@@ -111,13 +143,18 @@ struct TopologyOn<Mesh<E>, B> {
 
  private:
   template <class Parts>
-  TopologyOn(Parts const& parts, detail::RefinementTree<Mesh<E>> const& first)
+  TopologyOn(Parts const& parts, detail::RefinementTree<M> const& first)
       : tree(parts.backend, first.tree->tree().lists(), *first.tree->tree().cells_at_edges()),
-        order(parts.backend, leaves_of(parts, *first.cells), parts.layout.first_of_block[0],
-              tree.sizes().cells),
+        order(parts.backend, leaves_of(parts, *first.cells), blocks_of(parts), tree.sizes().cells),
+        first_block(bounds([&](std::size_t type) {
+          return static_cast<Index>(parts.layout.first_of_block[type].size()) - 1;
+        })),
+        first_place(
+            bounds([&](std::size_t type) { return parts.layout.first_of_block[type].back(); })),
+        first_before(first_place),
         rows(parts.backend, parts.layout.node_rows()),
-        numbers(parts.backend, tree),
-        hanging(parts.backend, !LinearSimplex<E>),
+        numbers{ElementNumbersOn<B>(parts.backend, tree, kind_of<typename Es::cell>, has_kinds)...},
+        hanging(parts.backend, !(LinearSimplex<Es> && ...)),
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),
         gone(parts.backend),
@@ -131,14 +168,36 @@ struct TopologyOn<Mesh<E>, B> {
     points = upload(parts.backend, values);
   }
 
-  /// The cells of the elements, in the order of the layout.
+  /// Sums of the counts of types.
+  static Bounds bounds(auto const& count_of) {
+    Bounds sums{};
+    for (std::size_t type = 0; type < types; ++type) sums[type + 1] = sums[type] + count_of(type);
+    return sums;
+  }
+  /// The cells of the elements, in the order of the layout, type after type.
   template <class Parts>
   static std::vector<Index> leaves_of(Parts const& parts, std::vector<CellSet> const& cells) {
-    std::vector<Index> const by_number(cells[0].begin(), cells[0].end());
     std::vector<Index> leaves;
-    for (Index const number : std::get<0>(parts.layout.tables).user_elements())
-      leaves.push_back(by_number[static_cast<std::size_t>(number)]);
+    auto const add = [&](auto const& table, CellSet const& own) {
+      std::vector<Index> const by_number(own.begin(), own.end());
+      for (Index const number : table.user_elements())
+        leaves.push_back(by_number[static_cast<std::size_t>(number)]);
+    };
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (add(std::get<I>(parts.layout.tables), cells[I]), ...);
+    }(std::index_sequence_for<Es...>());
     return leaves;
+  }
+  /// The first leaf of each block, type after type, and behind the last one.
+  template <class Parts>
+  static std::vector<Index> blocks_of(Parts const& parts) {
+    std::vector<Index> first{0};
+    for (auto const& of_type : parts.layout.first_of_block) {
+      Index const before = first.back();
+      for (std::size_t block = 1; block < of_type.size(); ++block)
+        first.push_back(before + of_type[block]);
+    }
+    return first;
   }
   template <class Parts>
   static std::vector<detail::ExactSum> by_row(Parts const& parts) {

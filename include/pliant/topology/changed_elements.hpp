@@ -49,6 +49,10 @@ concept ChangedFamilies = requires(F const& families, Index r, RowsOfElement<E> 
   { families.elements } -> std::convertible_to<ElementsByRows<E>>;
 };
 
+/// Such families, of the type that they name.
+template <class F>
+concept FamiliesOfType = ChangedFamilies<F, typename F::element>;
+
 /// The elements of all families that go, or those that come, in one row for loops: places beyond the last one of a family
 /// have none.
 template <class Families, bool Come>

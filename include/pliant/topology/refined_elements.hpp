@@ -11,9 +11,10 @@
 namespace pliant::detail {
 
 /// Cells of a tree that are refined, and their children, as elements of one type, for loops of a backend: ChangedFamilies of
-/// which one goes.
+/// which one goes; cells of other kinds have no elements.
 template <Element E>
 struct RefinedElements {
+  using element = E;
   static constexpr Index most_children = 1 << E::dim;
   static constexpr Index most_gone = 1, most_come = most_children;
 
@@ -21,6 +22,7 @@ struct RefinedElements {
   CellSplit const* cells;
   LeafParts const* parts;
   Index count;           // of these
+  bool has_others;       // whether cells may be of another kind
   Index const* of_node;  // rows, by the user's number
   ElementsByRows<E> elements;
 
@@ -32,23 +34,38 @@ struct RefinedElements {
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_of(Index c) const {
     return rows_of_element<E>(tree, c, of_node);
   }
-  [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index) const { return 1; }
-  [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const { return parts[r].cells; }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const { return is_one(r) ? 1 : 0; }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const {
+    return is_one(r) ? Index{parts[r].cells} : 0;
+  }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_gone(Index r, Index) const {
     return rows_of(cell(r, -1));
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_come(Index r, Index k) const {
     return rows_of(cell(r, k));
   }
+
+ private:
+  [[nodiscard]] PLIANT_HOST_DEVICE bool is_one(Index r) const {
+    return !has_others ||
+           tree.cells[static_cast<std::size_t>(cells[r].cell)].kind == kind_of<typename E::cell>;
+  }
 };
 
-/// Those of a refinement. `of_node`, `points`: in the backend's memory, with the nodes that it made.
+/// Those of a refinement. `of_node`, `points`: in the backend's memory, with the nodes that it made. `has_others`: whether the tree
+/// has cells of several kinds.
 template <Element E, Backend B>
 RefinedElements<E> refined_elements(TreeOn<B> const& tree,
                                     typename TreeOn<B>::Refined const& refined,
-                                    Index const* of_node, NodeField<double const, E::dim> points) {
-  return {tree.view(),    refined.cells, refined.parts,
-          refined.leaves, of_node,       ElementsByRows<E>(points)};
+                                    Index const* of_node, NodeField<double const, E::dim> points,
+                                    bool has_others = false) {
+  return {tree.view(),
+          refined.cells,
+          refined.parts,
+          refined.leaves,
+          has_others,
+          of_node,
+          ElementsByRows<E>(points)};
 }
 
 }  // namespace pliant::detail

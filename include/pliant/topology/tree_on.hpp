@@ -73,8 +73,8 @@ class TreeOn {
   [[nodiscard]] std::vector<RowEntry> rows() { return lists_.rows.download(backend_); }
 
   /// The tree on the host, where it has no leaves of different degrees. `like`: what it was when it was made or began to note
-  /// changes, or has been since; what has not changed is shared with that. `leaves`: of it.
-  [[nodiscard]] TreeLists lists(TreeLists const& like, CellSet const& leaves) {
+  /// changes, or has been since; what has not changed is shared with that. `leaves`: of it, by the kind.
+  [[nodiscard]] TreeLists lists(TreeLists const& like, std::vector<CellSet> const& leaves) {
     TreeLists lists{.cells = lists_.cells.download(backend_, like.cells),
                     .edges = lists_.edges.download(backend_, like.edges),
                     .sides = lists_.sides.download(backend_, like.sides),
@@ -84,7 +84,8 @@ class TreeOn {
                     .nodes = now_.nodes};
     (has_quadratic_ ? lists.quadratic_leaves : lists.linear_leaves) = now_.leaves;
     for (Index c = 0; c < sizes().cells; ++c)
-      if (!leaves.contains(c)) lists.divided.push_back(c);
+      if (std::ranges::none_of(leaves, [&](CellSet const& own) { return own.contains(c); }))
+        lists.divided.push_back(c);
     return lists;
   }
   /// Notes what changes from now on, for that.
