@@ -48,9 +48,10 @@ void time_refinement(benchmark::State& state, B const& backend, int cells) {
 /// What a change of a mesh has to carry, or to undo.
 enum class Beside {
   nothing,
-  boundary,  // a pressure at the top, and a right end that is driven
-  memory,    // what quadrature points keep
-  listener,  // a simulator's array, with a value for each node
+  boundary,        // a pressure at the top, and a right end that is driven
+  memory,          // what quadrature points keep
+  listener,        // a simulator's array, with a value for each node
+  listener_there,  // the same in the backend's memory
   steps,  // nothing, and sixteen steps are counted, with what the first needs to know of the mesh
   sleep   // all patches sleep; steps until they do so again are counted
 };
@@ -62,6 +63,8 @@ inline std::string in_words(Beside beside) {
       return ", viscous";
     case Beside::listener:
       return ", and carry an array";
+    case Beside::listener_there:
+      return ", and carry an array in the backend's memory";
     case Beside::steps:
       return ", and 16 steps";
     case Beside::sleep:
@@ -106,6 +109,10 @@ void time_change(benchmark::State& state, B const& backend, int cells,
     body.on_change([&](auto const& change) {
       temperature = change.transfer.carry_nodes(std::move(temperature));
     });
+  auto temperature_there = upload(backend, temperature);
+  if (beside == Beside::listener_there)
+    body.on_backend_change(
+        [&](auto const& change) { temperature_there = change.carry_nodes(temperature_there); });
   CentralDifference step;
   auto adapt = Adaptation{sleep({.below = 1e6, .for_steps = 2})}.every(1);
   auto const go_on = [&] {
@@ -213,6 +220,7 @@ inline void add_refinements() {
         change_beside.template operator()<Beside::boundary>();
         change_beside.template operator()<Beside::memory>();
         change_beside.template operator()<Beside::listener>();
+        change_beside.template operator()<Beside::listener_there>();
         change_beside.template operator()<Beside::steps>();
         change_beside.template operator()<Beside::sleep>();
         change.template operator()<Beside::steps>("each ten thousandth", each_of(count, 10000));

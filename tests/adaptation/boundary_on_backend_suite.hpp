@@ -10,7 +10,7 @@ namespace pliant::test::boundary_on_backend_suite {
 using namespace two_bodies;
 
 template <class E>
-using Soft = Formulation<E, Gauss<TensorCell<typename E::cell> ? 2 : 1>, NeoHookean>;
+using Soft = Formulation<E, Gauss<SimplexCell<typename E::cell> ? 1 : 2>, NeoHookean>;
 
 template <class B, class SetUp>
 void check_all_elements(B const& backend, SetUp const& set_up) {
@@ -18,6 +18,7 @@ void check_all_elements(B const& backend, SetUp const& set_up) {
   check_changes<Soft<Quad4>>(backend, 6, 5, set_up);
   check_changes<Soft<Tet4>>(backend, 3, 12, set_up);
   check_changes<Soft<Hex8>>(backend, 3, 8, set_up);
+  check_changes<Soft<Wedge6>>(backend, 3, 10, set_up);
 }
 
 TEST_CASE("pressures act on the facets that a body's backend divides and merges", "[adaptation]") {

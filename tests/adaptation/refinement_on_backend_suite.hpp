@@ -33,6 +33,7 @@ TEST_CASE("a body that is coarsened in its backend's memory is the one that the 
     check_both_ways<Formulation<Quad4, Gauss<2>, NeoHookean>>(backend, 6, 5, 2);
     check_both_ways<Formulation<Tet4, Gauss<1>, NeoHookean>>(backend, 3, 12, 2);
     check_both_ways<Formulation<Hex8, Gauss<2>, NeoHookean>>(backend, 3, 8, 2);
+    check_both_ways<Formulation<Wedge6, Gauss<2>, NeoHookean>>(backend, 3, 12, 1);
   });
   check_both_ways<Formulation<Tri3, Gauss<1>, NeoHookean>>(KeepingFloat{}, 6, 5, 2);
 }

@@ -29,12 +29,13 @@ template <class B>
   requires requires { requires B::keeps_trees; }
 inline constexpr bool keeps_trees<B> = true;
 
-/// Whether a mesh is of one type, of which the elements have children of their own type, and sides of one kind.
+/// Whether the elements of a mesh are of one degree, and have children of their own type, as pyramids have not.
 template <class M>
 inline constexpr bool are_divided_alike = false;
-template <Element E>
-inline constexpr bool are_divided_alike<Mesh<E>> =
-    Refinable<E> && (SimplexCell<typename E::cell> || TensorCell<typename E::cell>);
+template <Element... Es>
+inline constexpr bool are_divided_alike<Mesh<Es...>> =
+    ((Refinable<Es> && !std::same_as<typename Es::cell, Pyramid>)&&...) &&
+    (sizeof...(Es) == 1 || ((nodes_on_cell<Es> == CellNodes::corners) && ...));
 
 /// Whether bodies of a kind may be refined and coarsened in their backend's memory.
 template <class Parts>
