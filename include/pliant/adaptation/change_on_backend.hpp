@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,19 +12,6 @@
 
 // Changes of a body's mesh that are made in its backend's memory.
 namespace pliant::detail {
-
-/// Elements to refine, and to coarsen, of each type of a body, by the user's numbers; no lists: none.
-struct MarkedOn {
-  using Lists = std::span<std::vector<Index> const>;
-  Lists refine{}, coarsen{};
-
-  [[nodiscard]] MarkedElements lists() const {
-    return {.refine = {refine.begin(), refine.end()}, .coarsen = {coarsen.begin(), coarsen.end()}};
-  }
-  static bool none_in(Lists lists) {
-    return std::ranges::all_of(lists, [](auto const& list) { return list.empty(); });
-  }
-};
 
 /// What became of a change.
 template <class M, Backend B>

@@ -41,6 +41,19 @@ struct MarkedElements {
 
 namespace detail {
 
+/// Elements to refine, and to coarsen, where nothing else is marked: lists of others.
+struct MarkedOn {
+  using Lists = std::span<std::vector<Index> const>;
+  Lists refine{}, coarsen{};
+
+  [[nodiscard]] MarkedElements lists() const {
+    return {.refine = {refine.begin(), refine.end()}, .coarsen = {coarsen.begin(), coarsen.end()}};
+  }
+  static bool none_in(Lists lists) {
+    return std::ranges::all_of(lists, [](auto const& list) { return list.empty(); });
+  }
+};
+
 /// The refinement tree of a topology, and for each type the cells that its elements are: those that it has, or those of a first tree.
 template <class M>
 struct RefinementTree {
