@@ -147,17 +147,17 @@ struct MergePoints {
   PointOfChild const* sources;  // of merged elements
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    auto const family = leaves.family(r);
-    if (family.children == 0) return;
-    auto const& own = groups[now.tag(family.place)];
-    bool const mirrored = tree.cells[static_cast<std::size_t>(family.cell)].mirrored;
+    if (leaves.children(r) == 0) return;
+    Index const place = leaves.merged_place(r), first = leaves.first_child_before(r);
+    auto const& own = groups[now.tag(place)];
+    bool const mirrored = tree.cells[static_cast<std::size_t>(leaves.families[r].cell)].mirrored;
     for (Index q = 0; q < own.points; ++q) {
       Index const row = (mirrored ? own.points : 0) + q;
       auto const* source = sources + own.of_merged + row * own.candidates;
-      while (before.tag(family.first_before + source->child) != source->group) ++source;
+      while (before.tag(first + source->child) != source->group) ++source;
       for (Index k = 0; k < own.size; ++k)
-        now.at(family.place, own.size * q + k) =
-            before.at(family.first_before + source->child, own.size * source->point + k);
+        now.at(place, own.size * q + k) =
+            before.at(first + source->child, own.size * source->point + k);
     }
   }
 };

@@ -105,20 +105,22 @@ struct MergeValues {
   Index columns;
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    auto const own = leaves.family(r);
-    if (own.children == 0) return;
-    for (Index k = 0; k < columns; ++k)
-      to[static_cast<std::ptrdiff_t>(leaves.count) * k + own.place] = merged(
-          from + static_cast<std::ptrdiff_t>(leaves.count_before) * k + own.first_before, own);
+    Index const children = leaves.children(r), place = leaves.merged_place(r),
+                first = leaves.first_child_before(r);
+    for (Index k = 0; k < columns && children > 0; ++k)
+      to[static_cast<std::ptrdiff_t>(leaves.count) * k + place] =
+          merged(from + static_cast<std::ptrdiff_t>(leaves.count_before) * k + first,
+                 volumes == nullptr ? nullptr : volumes + first, children);
   }
 
  private:
-  PLIANT_HOST_DEVICE U merged(U const* values, MergedFamily const& own) const {
+  /// Of children from these on.
+  static PLIANT_HOST_DEVICE U merged(U const* values, U const* volumes, Index children) {
     if constexpr (std::is_integral_v<U> || std::is_enum_v<U>) {
       Index best = 0, most = 0;
-      for (Index i = 0; i < own.children; ++i) {
+      for (Index i = 0; i < children; ++i) {
         Index equal = 0;
-        for (Index j = 0; j < own.children; ++j) equal += values[j] == values[i];
+        for (Index j = 0; j < children; ++j) equal += values[j] == values[i];
         if (equal > most) {
           most = equal;
           best = i;
@@ -126,13 +128,11 @@ struct MergeValues {
       }
       return values[best];
     } else {
-      auto const volume_of = [&](Index i) {
-        return volumes == nullptr ? U(1) : volumes[own.first_before + i];
-      };
+      auto const volume_of = [&](Index i) { return volumes == nullptr ? U(1) : volumes[i]; };
       U volume = 0, sum = 0;
-      for (Index i = 0; i < own.children; ++i) volume += volume_of(i);
+      for (Index i = 0; i < children; ++i) volume += volume_of(i);
       bool same = true;  // what all have is not rounded
-      for (Index i = 0; i < own.children; ++i) {
+      for (Index i = 0; i < children; ++i) {
         same = same && values[i] == values[0];
         Uncontracted const share = volume_of(i) / volume;
         sum += static_cast<U>((share * Uncontracted(values[i])).value);

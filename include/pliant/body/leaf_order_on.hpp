@@ -27,19 +27,24 @@ struct LeavesView {
   Index merged = 0;                        // how many
   Index first = 0, first_before = 0;       // of all
   Index count = 0, count_before = 0;
+  bool has_others = false;  // whether there are other leaves
 
   /// The place before of the leaf at a place, of a child its parent's, of a merged parent its first child's.
   [[nodiscard]] PLIANT_HOST_DEVICE Index from(Index i) const { return from_all[i] - first_before; }
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_new(Index i) const {
     return before[from(i)] != leaves[i];
   }
-  /// Merged family r, if it is of these leaves; else one without children.
-  [[nodiscard]] PLIANT_HOST_DEVICE MergedFamily family(Index r) const {
-    auto own = families[r];
-    own.place -= first;
-    own.first_before -= first_before;
-    if (own.place < 0 || own.place >= count) own.children = 0;
-    return own;
+  /// Of merged family r: how many children, none if it is not of these leaves; its place, and that of its first child before.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index children(Index r) const {
+    if (!has_others) return families[r].children;
+    auto const& own = families[r];
+    return own.place < first || own.place >= first + count ? 0 : own.children;
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index merged_place(Index r) const {
+    return families[r].place - first;
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index first_child_before(Index r) const {
+    return families[r].first_before - first_before;
   }
 };
 
@@ -88,10 +93,10 @@ class LeafOrderOn {
   [[nodiscard]] std::vector<Index> told_first_of_block() const { return told_.all(); }
 
   /// All of them.
-  [[nodiscard]] LeavesView view() const { return view(0, count_, 0, count_before_); }
+  [[nodiscard]] LeavesView view() const { return view(0, count_, 0, count_before_, false); }
   /// `count` of them from the place `first` on, which were `count_before` from `first_before` on.
-  [[nodiscard]] LeavesView view(Index first, Index count, Index first_before,
-                                Index count_before) const {
+  [[nodiscard]] LeavesView view(Index first, Index count, Index first_before, Index count_before,
+                                bool has_others) const {
     return {leaves_.data() + first,
             others_.data() + first_before,
             from_.data() + first,
@@ -101,7 +106,8 @@ class LeafOrderOn {
             first,
             first_before,
             count,
-            count_before};
+            count_before,
+            has_others};
   }
 
   /// Puts the children of refined leaves in the place of these.

@@ -21,15 +21,15 @@ struct MergedElements {
       now;  // the rows of nodes of the type's elements, by their places before and now
   ElementsByRows<E> elements;
 
-  [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const { return leaves.family(r).children; }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const { return leaves.children(r); }
   [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const {
-    return leaves.family(r).children > 0 ? 1 : 0;
+    return !leaves.has_others || leaves.children(r) > 0 ? 1 : 0;
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_gone(Index r, Index k) const {
-    return taken(before[leaves.family(r).first_before + k]);
+    return taken(before[leaves.first_child_before(r) + k]);
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_come(Index r, Index) const {
-    return taken(now[leaves.family(r).place]);
+    return taken(now[leaves.merged_place(r)]);
   }
 
  private:

@@ -81,7 +81,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   /// The leaves of type I.
   [[nodiscard]] LeavesView leaves(std::size_t type) const {
     return order.view(first_place[type], first_place[type + 1] - first_place[type],
-                      first_before[type], first_before[type + 1] - first_before[type]);
+                      first_before[type], first_before[type + 1] - first_before[type], has_kinds);
   }
   [[nodiscard]] ElementNumbersView element_numbers(std::size_t type) const {
     return numbers[type].of(leaves(type));
