@@ -173,6 +173,27 @@ TEST_CASE("a mesh of several types of which one has no elements changes on a bac
   });
 }
 
+TEST_CASE("the host makes few changes of a mesh of several types again", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    BothTypes<Tri3, Quad4, B> both(backend, mixed_mesh(12));
+    auto const change = [&](Marks const& refined, Marks const& merged) {
+      for (auto* one : {&both.body, &both.host}) {
+        refine(*one, refined);
+        if (!merged.empty()) CHECK(coarsen(*one, merged).merged > 0);
+      }
+      REQUIRE(!both.body.parts().topology_on->is_far_ahead());
+      both.check_place();
+      both.check_all();
+    };
+    change({{}, {5}}, {});  // of the first mesh, which has no tree
+    auto const levels = refinement_levels<Quad4>(both.host);
+    Marks children{{}, {}};
+    for (std::size_t e = 0; e < levels.size(); ++e)
+      if (levels[e] > 0) children[1].push_back(static_cast<Index>(e));
+    change({{3}, {}}, children);
+  });
+}
+
 TEST_CASE("elements that others were split into are refined and merged on a backend",
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
