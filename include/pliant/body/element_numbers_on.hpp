@@ -66,10 +66,12 @@ struct FindLeaves {
     Index const w = first_word + k, first = w * per_word, count = cells - first;
     std::uint32_t bits = 0;
     // So many reads in any case, none of which hangs on another: a device waits for memory once.
-    for (Index c = 0; c < per_word; ++c) {
-      auto const& cell = tree.cells[static_cast<std::size_t>(first + (c < count ? c : count - 1))];
-      bits |= std::uint32_t{cell.first_child < 0 && is_one(cell)} << c;
-    }
+    auto const cell_at = [&](Index c) -> TreeCell const& {
+      return tree.cells[static_cast<std::size_t>(first + (c < count ? c : count - 1))];
+    };
+    for (Index c = 0; c < per_word; ++c) bits |= std::uint32_t{cell_at(c).first_child < 0} << c;
+    if (is_one.has_others)
+      for (Index c = 0; c < per_word; ++c) bits &= ~(std::uint32_t{!is_one(cell_at(c))} << c);
     if (count < per_word) bits &= (std::uint32_t{1} << count) - 1;
     words[w] = bits;
   }
