@@ -9,9 +9,9 @@
 namespace pliant::detail {
 
 /// Marks the nodes at sides of a set that have no parts.
-template <int Dim>
+template <class Sides>
 struct MarkNodesOfSet {
-  SidesView<Dim> sides;
+  Sides sides;
   ConditionBits const* bits;
   ConditionBits set;
   Index const* of_node;
@@ -23,16 +23,16 @@ struct MarkNodesOfSet {
   }
 };
 /// Which sides of a tree belong to a set.
-template <int Dim>
+template <class Sides>
 struct SidesInSet {
-  SidesView<Dim> sides;
+  Sides sides;
   ConditionBits const* bits;
   ConditionBits set;
 
   /// Of side s of a cell; of an edge in the plane.
   PLIANT_HOST_DEVICE bool operator()(Index c, Index s) const {
     auto const own = sides.tree.row(c);
-    Index const side = Dim == 2 ? own.edges[s] : own.sides[s];
+    Index const side = Sides::dim == 2 ? own.edges[s] : own.sides[s];
     return (bits[side] & set) != 0;
   }
   [[nodiscard]] PLIANT_HOST_DEVICE TreeCell const& cell(Index c) const {
@@ -43,62 +43,62 @@ struct SidesInSet {
   static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 };
 /// Whether the leaf at a place has a side in a set.
-template <int Dim>
+template <class Sides>
 struct HasSideInSet {
-  SidesInSet<Dim> in_set;
+  SidesInSet<Sides> in_set;
   Index const* leaves;
 
   PLIANT_HOST_DEVICE bool operator()(Index place) const {
     auto const& p = in_set.cell(leaves[place]).pattern();
-    for (Index s = 0; s < (Dim == 2 ? p.edges : p.sides); ++s)
+    for (Index s = 0; s < (Sides::dim == 2 ? p.edges : p.sides); ++s)
       if (in_set(leaves[place], s)) return true;
     return false;
   }
 };
-/// Whether side i % Sides of a listed cell, i / Sides, is in a set, and has so many corners.
-template <int Dim, Index Sides, int Corners>
+/// Whether side i % Count of a listed cell, i / Count, is in a set, and has so many corners.
+template <class Sides, Index Count, int Corners>
 struct SidesOfCells {
-  SidesInSet<Dim> in_set;
+  SidesInSet<Sides> in_set;
   Index const* cells;
 
   PLIANT_HOST_DEVICE bool operator()(Index i) const {
-    Index const cell = cells[i / Sides], side = i % Sides;
+    Index const cell = cells[i / Count], side = i % Count;
     return in_set(cell, side) &&
-           (Dim == 2 || in_set.cell(cell).pattern().corners_of_side(side) == Corners);
+           (Sides::dim == 2 || in_set.cell(cell).pattern().corners_of_side(side) == Corners);
   }
 };
 /// Puts the rows of the nodes of a listed side, as they are seen from outside of its element.
-template <int Dim, Index Sides, int Corners, int Width>
+template <class Sides, Index Count, int Corners, int Width>
 struct PutFacet {
-  SidesOfCells<Dim, Sides, Corners> of_cells;
+  SidesOfCells<Sides, Count, Corners> of_cells;
   Index const* places;  // as SidesOfCells counts
   Index const* of_node;
   Index* rows;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    Index const number = of_cells.cells[places[k] / Sides];
+    Index const number = of_cells.cells[places[k] / Count];
     auto const& cell = of_cells.in_set.cell(number);
     auto const& sides = of_cells.in_set.sides;
     auto const& tree = sides.tree;
     auto const row = tree.row(number);
-    auto const s = static_cast<std::size_t>(places[k] % Sides);
+    auto const s = static_cast<std::size_t>(places[k] % Count);
     auto const& p = cell.pattern();
     auto const at = [](Index i) { return static_cast<std::size_t>(i); };
     auto next = std::ptrdiff_t{Width} * k;
     auto const put = [&](Index node) { rows[next++] = of_node[node]; };
     for (int a = 0; a < Corners; ++a) {
       auto const c = at(cell.mirrored ? Corners - 1 - a : a);
-      put(row.nodes[at(Dim == 2 ? p.edge[s][c] : p.side[s][c])]);
+      put(row.nodes[at(Sides::dim == 2 ? p.edge[s][c] : p.side[s][c])]);
     }
-    if (sides.has == CellNodes::corners) return;
-    if constexpr (Dim == 2) {
+    if (Sides::has == CellNodes::corners) return;
+    if constexpr (Sides::dim == 2) {
       put(tree.edges[at(row.edges[s])].middle);
     } else {
       for (int a = 0; a < Corners; ++a) {  // each between corners a and a + 1
         auto const c = at(cell.mirrored ? (2 * Corners - 2 - a) % Corners : a);
         put(tree.edges[at(row.edges[at(p.edges_of_side[s][c])])].middle);
       }
-      if (sides.has == CellNodes::all && Corners == 4) put(tree.sides[at(row.sides[s])].centre);
+      if (Sides::has == CellNodes::all && Corners == 4) put(tree.sides[at(row.sides[s])].centre);
     }
   }
 };

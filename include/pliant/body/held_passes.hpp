@@ -20,10 +20,12 @@ using ConditionBits = std::uint32_t;
 inline constexpr std::size_t most_conditions = 31;
 inline constexpr ConditionBits differs = ConditionBits{1} << most_conditions;
 
-template <int Dim>
+/// The sides of cells, all of which have the same nodes.
+template <int Dim, CellNodes Has>
 struct SidesView {
+  static constexpr int dim = Dim;
+  static constexpr CellNodes has = Has;
   TreeView tree;
-  CellNodes has;  // that elements have, all alike
 
   /// Calls visit(side) for the sides of a cell.
   template <class Visit>
@@ -50,13 +52,14 @@ struct SidesView {
     if constexpr (Dim == 2) {
       auto const& own = tree.edges[at(side)];
       for (Index const node : own.nodes) visit(node);
-      if (has != CellNodes::corners) visit(own.middle);
+      if constexpr (Has != CellNodes::corners) visit(own.middle);
     } else {
       auto const& own = tree.sides[at(side)];
       for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.corner_of(own, k));
-      if (has == CellNodes::corners) return;
-      for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.edges[at(own.edges[k])].middle);
-      if (has == CellNodes::all && own.corners() == 4) visit(own.centre);
+      if constexpr (Has != CellNodes::corners)
+        for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.edges[at(own.edges[k])].middle);
+      if constexpr (Has == CellNodes::all)
+        if (own.corners() == 4) visit(own.centre);
     }
   }
 
@@ -88,9 +91,9 @@ struct DirectionsOf {
 };
 
 /// Parts of sides that were divided are held as these are. A call for each refined cell.
-template <int Dim>
+template <class Sides>
 struct InheritConditions {
-  SidesView<Dim> sides;
+  Sides sides;
   CellSplit const* cells;
   ConditionBits* bits;
 
@@ -104,9 +107,9 @@ struct InheritConditions {
 };
 /// Holds the nodes of the parts of held sides of refined cells in some directions, the same for all of them: then all
 /// that is written to a byte at once is the same.
-template <int Dim>
+template <class Sides>
 struct HoldParts {
-  SidesView<Dim> sides;
+  Sides sides;
   CellSplit const* cells;
   ConditionBits const* bits;
   DirectionsOf conditions;
@@ -126,9 +129,9 @@ struct HoldParts {
   }
 };
 /// The same for all sides without parts.
-template <int Dim>
+template <class Sides>
 struct HoldSides {
-  SidesView<Dim> sides;
+  Sides sides;
   ConditionBits const* bits;
   DirectionsOf conditions;
   DirectionMask directions;
@@ -160,9 +163,9 @@ struct MoveBits {
   }
 };
 /// Notes where a merged side would have parts that are held otherwise than others.
-template <int Dim>
+template <class Sides>
 struct FindCutSides {
-  SidesView<Dim> sides;
+  Sides sides;
   NewNumbers cells;
   Index const* parents;  // old numbers of merged cells
   ConditionBits const *bits, *moved;

@@ -25,15 +25,13 @@ namespace pliant {
 
 /// What conditions hold, and pressures press, of a mesh of elements of one type in a backend's memory: facets, as sides of its
 /// tree, and nodes. Sets of facets are numbered: those of conditions in their order, and those of pressures behind them.
-template <int Dim, Backend B>
+template <int Dim, CellNodes Has, Backend B>
 class HeldSidesOn {
+  using Sides = detail::SidesView<Dim, Has>;
   template <class U>
   using Array = typename B::template Array<U>;
 
  public:
-  /// `has`: the nodes of elements.
-  explicit HeldSidesOn(CellNodes has) : has_(has) {}
-
   /// Finds what is prescribed; whether there is room for so many sets. `tree`: as it is in the backend's memory; row_of(the
   /// user's number): the row of a node, of `rows`.
   template <class RowOf>
@@ -81,7 +79,7 @@ class HeldSidesOn {
       auto const own = known.find(mesh::key_of(facet));
       return own == known.end() ? detail::ConditionBits{0} : own->second;
     };
-    auto const sides = sides_of(tree.tree().lists().view());
+    Sides const sides{tree.tree().lists().view()};
     auto const& lists = tree.tree().lists();
     std::vector<detail::ConditionBits> bits(Dim == 2 ? lists.edges.size() : lists.sides.size(), 0);
     count_ = static_cast<Index>(bits.size());
@@ -112,20 +110,20 @@ class HeldSidesOn {
     detail::grow_keeping(backend, held_, at(rows_), at(rows));
     detail::grow_keeping(backend, named_, at(rows_), at(rows));
     rows_ = rows;
-    auto const sides = sides_of(tree.view());
+    Sides const sides{tree.view()};
     auto const hold = [&](std::size_t k) {
       bool const is_there = k < in_turn_.size();
       return detail::LoopStep{
           is_there ? refined.leaves : 0,
-          detail::HoldParts<Dim>{sides, refined.cells, bits_.data(), directions_,
-                                 is_there ? in_turn_[k] : DirectionMask{0}, of_node, held}};
+          detail::HoldParts<Sides>{sides, refined.cells, bits_.data(), directions_,
+                                   is_there ? in_turn_[k] : DirectionMask{0}, of_node, held}};
     };
     backend.for_each(count_ - first_new, detail::ClearBits{bits_.data() + first_new});
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       detail::in_turn(
           backend,
           detail::LoopStep{refined.leaves,
-                           detail::InheritConditions<Dim>{sides, refined.cells, bits_.data()}},
+                           detail::InheritConditions<Sides>{sides, refined.cells, bits_.data()}},
           hold(K)...);
     }(std::make_index_sequence<Dim>());
   }
@@ -142,13 +140,13 @@ class HeldSidesOn {
     backend.for_each(
         count_ - first,
         detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()});
-    backend.for_each(done.merged, detail::FindCutSides<Dim>{sides_of(tree.view()),
-                                                            {done.initial.cells, done.cells},
-                                                            done.parents,
-                                                            bits_.data(),
-                                                            moved_.data(),
-                                                            first,
-                                                            found_.data()});
+    backend.for_each(done.merged, detail::FindCutSides<Sides>{Sides{tree.view()},
+                                                              {done.initial.cells, done.cells},
+                                                              done.parents,
+                                                              bits_.data(),
+                                                              moved_.data(),
+                                                              first,
+                                                              found_.data()});
     backend.for_each(done.before.nodes - done.initial.nodes,
                      detail::FindNamedNodes{done.nodes, of_node + done.initial.nodes, named_.data(),
                                             found_.data()});
@@ -163,18 +161,18 @@ class HeldSidesOn {
   void hold(B const& backend, TreeOn<B> const& tree, Index const* of_node, Index rows,
             DirectionMask* held) const {
     detail::copy_values<B, DirectionMask>(backend, held_.data(), held, at(rows));
-    auto const sides = sides_of(tree.view());
+    Sides const sides{tree.view()};
     for (auto const directions : in_turn_)
-      backend.for_each(count_, detail::HoldSides<Dim>{sides, bits_.data(), directions_, directions,
-                                                      of_node, held});
+      backend.for_each(count_, detail::HoldSides<Sides>{sides, bits_.data(), directions_,
+                                                        directions, of_node, held});
   }
 
   /// The rows of the nodes at the facets of a set.
   Array<Index> nodes_of_set(B const& backend, TreeOn<B> const& tree, Index const* of_node,
                             std::size_t set) const {
     auto marks = zeros<std::uint8_t>(backend, at(rows_));
-    backend.for_each(count_, detail::MarkNodesOfSet<Dim>{sides_of(tree.view()), bits_.data(),
-                                                         bit(set), of_node, marks.data()});
+    backend.for_each(count_, detail::MarkNodesOfSet<Sides>{Sides{tree.view()}, bits_.data(),
+                                                           bit(set), of_node, marks.data()});
     return selected(backend, rows_, detail::IsMarked<std::uint8_t>{marks.data()});
   }
   /// The facets of a set with so many corners as elements on leaves of one kind have them: (facets, Width), the first of which are rows
@@ -183,15 +181,16 @@ class HeldSidesOn {
   Array<Index> facets_of_set(B const& backend, TreeOn<B> const& tree, LeavesView const& leaves,
                              Index const* of_node, std::size_t set) const {
     constexpr auto sides = static_cast<Index>(Cell::sides().size());
-    detail::SidesInSet<Dim> const in_set{sides_of(tree.view()), bits_.data(), bit(set)};
-    auto cells = selected(backend, leaves.count, detail::HasSideInSet<Dim>{in_set, leaves.leaves});
+    detail::SidesInSet<Sides> const in_set{Sides{tree.view()}, bits_.data(), bit(set)};
+    auto cells =
+        selected(backend, leaves.count, detail::HasSideInSet<Sides>{in_set, leaves.leaves});
     backend.for_each(static_cast<Index>(cells.size()), detail::LookUp{leaves.leaves, cells.data()});
-    detail::SidesOfCells<Dim, sides, Corners> const of_cells{in_set, cells.data()};
+    detail::SidesOfCells<Sides, sides, Corners> const of_cells{in_set, cells.data()};
     auto const places = selected(backend, static_cast<Index>(cells.size()) * sides, of_cells);
     auto rows = zeros<Index>(backend, places.size() * Width);
     backend.for_each(static_cast<Index>(places.size()),
-                     detail::PutFacet<Dim, sides, Corners, Width>{of_cells, places.data(), of_node,
-                                                                  rows.data()});
+                     detail::PutFacet<Sides, sides, Corners, Width>{of_cells, places.data(),
+                                                                    of_node, rows.data()});
     return rows;
   }
 
@@ -207,9 +206,6 @@ class HeldSidesOn {
   }
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index count_in(TreeSizes const& sizes) { return Dim == 2 ? sizes.edges : sizes.sides; }
-  [[nodiscard]] detail::SidesView<Dim> sides_of(TreeView const& tree) const { return {tree, has_}; }
-
-  CellNodes has_;
   detail::DirectionsOf directions_;
   std::vector<DirectionMask> in_turn_;  // see DirectionsOf
   Array<detail::ConditionBits> bits_;   // by side

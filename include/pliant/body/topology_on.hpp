@@ -61,6 +61,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   LeafOrderOn<B> order;  // of all types, one behind the other
   Bounds first_block, first_place,
       first_before;  // in that: of blocks; of leaves, and of those before the last change
+  std::vector<Index> first_of_blocks{};  // of all types, behind a change
   NodeRowsOn<B> rows;
   std::array<ElementNumbersOn<B>, types> numbers;
   HangingNodesOn<dim, B> hanging;
@@ -68,7 +69,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   FamilyMomentumOn<dim, B> momentum;
   GoneNodesOn<M, B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
-  HeldSidesOn<dim, B> held{std::max({nodes_on_cell<Es>...})};
+  HeldSidesOn<dim, std::max({nodes_on_cell<Es>...}), B> held;
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
   OnHost<M> on_host;
@@ -88,18 +89,17 @@ struct TopologyOn<Mesh<Es...>, B> {
   }
   /// The first element of each block of a type, and behind the last one, counted from that type's first.
   [[nodiscard]] std::vector<Index> first_of_block(std::size_t type) const {
-    auto const all = order.told_first_of_block();
-    std::vector<Index> own(all.begin() + first_block[type],
-                           all.begin() + first_block[type + 1] + 1);
+    std::vector<Index> own(first_of_blocks.begin() + first_block[type],
+                           first_of_blocks.begin() + first_block[type + 1] + 1);
     for (Index& place : own) place -= first_place[type];
     return own;
   }
-  /// Notes where types begin behind a change of the order, since which the backend was waited for.
+  /// Notes where types and blocks begin behind a change of the order, since which the backend was waited for.
   void follow_order() {
-    auto const all = order.told_first_of_block();
+    first_of_blocks = order.told_first_of_block();
     first_before = first_place;
     for (std::size_t type = 0; type <= types; ++type)
-      first_place[type] = all[static_cast<std::size_t>(first_block[type])];
+      first_place[type] = first_of_blocks[static_cast<std::size_t>(first_block[type])];
   }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
   /// Whether what is prescribed is what a body's conditions and pressures are now.
