@@ -1,5 +1,3 @@
-#pragma once
-
 #include <sstream>
 
 #include <pliant/law/decorators/viscosity.hpp>
@@ -8,8 +6,9 @@
 #include "adaptation/changes_on_backend.hpp"
 #include "adaptation/plane_bodies.hpp"
 
-// Bodies of several element types whose mesh is changed in their backend's memory, beside bodies that the host changes.
-namespace pliant::test::mixed_on_backend_suite {
+// Bodies of several element types whose mesh is changed in their backend's memory, beside bodies that the host changes: on backends of
+// the host alone, as Cuda leaves these to the host.
+namespace pliant::test::mixed_on_backend_test {
 using namespace two_bodies;
 
 template <class E>
@@ -213,4 +212,4 @@ TEST_CASE("elements that others were split into are refined and merged on a back
   });
 }
 
-}  // namespace pliant::test::mixed_on_backend_suite
+}  // namespace pliant::test::mixed_on_backend_test
