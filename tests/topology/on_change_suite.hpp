@@ -121,6 +121,27 @@ TEST_CASE("forces of arrays that a simulator carried over are those of the body"
   });
 }
 
+TEST_CASE("a listener on a backend asks for no other change and no other listener", "[topology]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    for (bool const on_host : {false, true}) {
+      auto body = plane_body(backend, distorted_mesh<Tri3>(5));
+      if (on_host) change_on_host(body);
+      int told = 0;
+      body.on_backend_change([&](auto const& change) {
+        ++told;
+        CHECK(change.nodes() == body.nodes());
+        CHECK_THROWS_WITH(refine(body, {{1}}), says("change of the mesh: a listener"));
+        CHECK_THROWS_WITH(coarsen(body, {{1}}), says("change of the mesh: a listener"));
+        CHECK_THROWS_WITH(body.on_backend_change([](auto const&) {}),
+                          says("on_backend_change: a listener"));
+        CHECK(change.nodes() == body.nodes());
+      });
+      refine(body, {{0}});
+      CHECK(told == 1);
+    }
+  });
+}
+
 TEST_CASE("a listener asks for no other change and no other listener", "[topology]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     for (bool const on_host : {false, true}) {

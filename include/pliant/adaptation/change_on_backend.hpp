@@ -36,6 +36,7 @@ class ChangesOnBackend {
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
   std::optional<Done> operator()(MarkedOn const& marked) {
+    check_nobody_is_told(std::as_const(parts_), "change of the mesh");
     if (!parts_.topology_on && MarkedOn::none_in(marked.refine) && !parts_.state.topology->tree)
       return Done{};  // nothing to merge
     if (!follow_body()) return std::nullopt;
