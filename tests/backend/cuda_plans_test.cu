@@ -152,33 +152,31 @@ TEST_CASE("patches that are planned again and again have room for what they need
   check_room_behind_changes<detail::PatchPlanner<4>>(random_table<4>(3000), 96);
 }
 
-/// Patches of blocks of 40 elements, of which each `distance`-th is planned again beside other work, against what a host thread
-/// plans. Whether they are fans.
-bool compare_plan_beside(std::vector<std::array<Index, 4>> const& table, NodeOrder order,
-                         std::size_t distance) {
-  Cuda<double> const backend;
-  auto const count = static_cast<Index>(table.size());
+using Patches = detail::ElementPatches<double, 4>;
+
+/// Blocks of 40 elements, of which each `distance`-th is planned again.
+ElementBlocks blocks_of_40(Index count, std::size_t distance) {
   ElementBlocks blocks;
   for (Index e = 0; e < count; e += 40) blocks.first.push_back(e);
   blocks.first.push_back(count);
-  auto changed = blocks;
-  changed.first_before = blocks.first;
+  blocks.first_before = blocks.first;
   for (std::size_t b = 0; b + 1 < blocks.first.size(); ++b)
-    changed.stays.push_back(b % distance != 0);
+    blocks.stays.push_back(b % distance != 0);
+  return blocks;
+}
+DeviceArray<Index> rows_of(Cuda<double> const& backend,
+                           std::vector<std::array<Index, 4>> const& table) {
   std::vector<Index> flat;
   for (auto const& row : table) flat.insert(flat.end(), row.begin(), row.end());
-  auto const rows = upload(backend, flat);
-  using Patches = detail::ElementPatches<double, 4>;
-  Patches before(rows.data(), count), after(rows.data(), count), given_up(rows.data(), count);
-  before.plan(backend, order, blocks);
-
-  after.plan_beside(backend, order, changed, before);
-  after.settle(backend);
-  given_up.plan_beside(backend, order, changed, before);
-
-  detail::PatchCuts const cuts(count, after.size(), changed);
-  CHECK(std::ranges::equal(after.bounds(), cuts.first()));
+  return upload(backend, flat);
+}
+/// Against what a host thread plans.
+void check_patches(Patches const& patches, std::vector<std::array<Index, 4>> const& table,
+                   ElementBlocks const& blocks) {
+  detail::PatchCuts const cuts(static_cast<Index>(table.size()), patches.size(), blocks);
+  CHECK(std::ranges::equal(patches.bounds(), cuts.first()));
   auto const check_view = [&]<class Planner>(Planner*, auto const& view) {
+    REQUIRE(view.capacity.nodes >= plan_on_host<Planner>(table, cuts).capacity.nodes);
     auto const expected = plan_on_host<Planner>(table, cuts, view.capacity);
     auto const same = [](auto const* memory, auto values) {
       auto const there = values;
@@ -191,10 +189,27 @@ bool compare_plan_beside(std::vector<std::array<Index, 4>> const& table, NodeOrd
     CHECK(same(view.nodes, expected.nodes));
     CHECK(same(view.diagonals, expected.diagonals));
   };
-  if (after.has_fans())
-    check_view(static_cast<detail::FanPlanner*>(nullptr), after.fan_view(nullptr, {}));
+  if (patches.has_fans())
+    check_view(static_cast<detail::FanPlanner*>(nullptr), patches.fan_view(nullptr, {}));
   else
-    check_view(static_cast<detail::PatchPlanner<4>*>(nullptr), after.patch_view(nullptr, {}));
+    check_view(static_cast<detail::PatchPlanner<4>*>(nullptr), patches.patch_view(nullptr, {}));
+}
+
+/// Patches of blocks of 40 elements, of which each `distance`-th is planned again beside other work, against what a host thread
+/// plans. Whether they are fans.
+bool compare_plan_beside(std::vector<std::array<Index, 4>> const& table, NodeOrder order,
+                         std::size_t distance) {
+  Cuda<double> const backend;
+  auto const count = static_cast<Index>(table.size());
+  auto const blocks = blocks_of_40(count, distance);
+  auto const rows = rows_of(backend, table);
+  Patches before(rows.data(), count), after(rows.data(), count), given_up(rows.data(), count);
+  before.plan(backend, order, blocks);
+
+  after.plan_beside(backend, order, blocks, before);
+  after.settle(backend);
+  given_up.plan_beside(backend, order, blocks, before);
+  check_patches(after, table, blocks);
   return after.has_fans();
 }
 
@@ -205,6 +220,29 @@ TEST_CASE("patches are planned beside other work as they are at once", "[cuda]")
     CHECK_FALSE(compare_plan_beside(few, NodeOrder::any_even, distance));
     CHECK_FALSE(compare_plan_beside(many, NodeOrder::as_given, distance));
     CHECK(compare_plan_beside(many, NodeOrder::any_even, distance));
+  }
+}
+
+TEST_CASE("patches of tables that are planned beside each other have room for what they need",
+          "[cuda]") {
+  Cuda<double> const backend;
+  auto const compact = box(9);
+  auto apart = compact;
+  for (Index node = 0; auto& element : apart)
+    for (Index& n : element) n = node++;
+  auto const count = static_cast<Index>(compact.size());
+  auto const rows = rows_of(backend, compact), rows_apart = rows_of(backend, apart);
+  auto const blocks = blocks_of_40(count, 1);
+  Patches before(rows.data(), count);
+  before.plan(backend, NodeOrder::as_given, blocks);
+  Patches same(rows.data(), count), grown(rows_apart.data(), count);
+  for (bool grown_first : {true, false}) {
+    (grown_first ? grown : same).plan_beside(backend, NodeOrder::as_given, blocks, before);
+    (grown_first ? same : grown).plan_beside(backend, NodeOrder::as_given, blocks, before);
+    grown.settle(backend);
+    same.settle(backend);
+    check_patches(grown, apart, blocks);
+    check_patches(same, compact, blocks);
   }
 }
 

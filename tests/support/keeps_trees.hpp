@@ -9,7 +9,7 @@ namespace pliant::test {
 /// A backend of the host that changes meshes in its memory, as a GPU does.
 template <class B>
 struct KeepsTrees : B {
-  static constexpr bool keeps_trees = true, keeps_trees_of_types = true;
+  static constexpr bool keeps_trees = true;
   KeepsTrees() = default;
 };
 

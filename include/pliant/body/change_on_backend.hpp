@@ -28,12 +28,6 @@ inline constexpr bool keeps_trees = false;
 template <class B>
   requires requires { requires B::keeps_trees; }
 inline constexpr bool keeps_trees<B> = true;
-/// Whether those of several element types are, too.
-template <class B>
-inline constexpr bool keeps_trees_of_types = false;
-template <class B>
-  requires requires { requires B::keeps_trees_of_types; }
-inline constexpr bool keeps_trees_of_types<B> = true;
 
 /// Whether the elements of a mesh are of one degree, and have children of their own type, as pyramids have not.
 template <class M>
@@ -43,17 +37,10 @@ inline constexpr bool are_divided_alike<Mesh<Es...>> =
     ((Refinable<Es> && !std::same_as<typename Es::cell, Pyramid>)&&...) &&
     (sizeof...(Es) == 1 || ((nodes_on_cell<Es> == CellNodes::corners) && ...));
 
-template <class M>
-inline constexpr bool is_of_one_type = false;
-template <Element E>
-inline constexpr bool is_of_one_type<Mesh<E>> = true;
-
 /// Whether bodies of a kind may be refined and coarsened in their backend's memory.
 template <class Parts>
 inline constexpr bool changes_on_backend =
-    keeps_trees<typename Parts::backend_type> && are_divided_alike<typename Parts::mesh_type> &&
-    (is_of_one_type<typename Parts::mesh_type> ||
-     keeps_trees_of_types<typename Parts::backend_type>);
+    keeps_trees<typename Parts::backend_type> && are_divided_alike<typename Parts::mesh_type>;
 /// Whether nothing of a body has to be made from lists of the host when its mesh changes, and the host has not changed it: what it
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>

@@ -100,9 +100,8 @@ class ElementPatches {
   void settle(Cuda<T> const& backend) {
     if (!unsettled_) return;
     auto const own = std::move(unsettled_);
-    auto const& side = own->work.stream();
-    side.wait();
-    if (!own->end(*this, *static_cast<PatchCounts const*>(side.mail())))
+    own->work.stream().wait();
+    if (!own->end(*this, *static_cast<PatchCounts const*>(own->work.mail())))
       plan(backend, own->order, own->blocks);
   }
 
@@ -188,9 +187,9 @@ class ElementPatches {
     auto const known = known_patches<P>(&before, blocks);
     if (known.plan == nullptr || cuts_.count() == 0) return false;
     threads_ = threads;
-    auto const& side = backend.side_stream();
+    SideWork side(backend.side_stream());
     auto const work =
-        std::make_shared<PlanInWork<P>>(begin_plan(backend, input(), cuts_, known, side.get()));
+        std::make_shared<PlanInWork<P>>(begin_plan(backend, input(), cuts_, known, &side));
     auto const end = [=](ElementPatches& own, PatchCounts const& counts) {
       bool fits = true;
       own.template plan_by<P>() =
@@ -198,7 +197,7 @@ class ElementPatches {
                    [&](auto const& capacity) { return fits = own.accepts<P>(backend, capacity); });
       return fits;
     };
-    unsettled_.reset(new Unsettled{end, order, blocks, SideWork(side)});
+    unsettled_.reset(new Unsettled{end, order, blocks, std::move(side)});
     return true;
   }
 

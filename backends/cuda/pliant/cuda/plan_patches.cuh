@@ -211,11 +211,11 @@ struct PlanInWork {
   DeviceArray<PatchCounts> most;         // that any patch needs
 };
 
-/// Begins to plan patches, on a side stream if there is one; what any needs goes there to its mail. `known`: a plan of patches of
+/// Begins to plan patches, as a piece of work on a side stream if there is one; what any needs goes there to its mail. `known`: a plan of patches of
 /// the same size: patches are planned while they are counted, or taken from there, which has to stay until that is done.
 template <class Planner, class B>
 PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchCuts const& cuts,
-                               KnownPatches<Planner> const& known, SideStream* side = nullptr) {
+                               KnownPatches<Planner> const& known, SideWork const* side = nullptr) {
   DeviceGuard const device(backend.device());
   bool const is_known = !known.patches.empty();
   auto const lists = known_and_planned(known);
@@ -227,7 +227,7 @@ PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchC
       is_known ? backend.array(std::span<Index const>(lists)) : DeviceArray<Index>{},
       backend.template array<PatchCounts>(1)};
   auto const to = view_of(work.plan, input.first);
-  auto const stream = side ? side->begin() : backend.stream();
+  auto const stream = side ? side->stream().begin() : backend.stream();
   Index const* const first_known = work.known_and_planned.data();
   auto const planned = is_known ? static_cast<Index>(lists.size()) - cuts.count() : cuts.count();
   bool const takes = planned < cuts.count();
@@ -240,7 +240,7 @@ PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchC
            is_known ? first_known + cuts.count() : nullptr, to, work.most.data());
   if (side)
     check(cudaMemcpyAsync(side->mail(), work.most.data(), sizeof(PatchCounts),
-                          cudaMemcpyDeviceToHost, side->get()),
+                          cudaMemcpyDeviceToHost, stream),
           "cudaMemcpyAsync");
   return work;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include <pliant/cuda/stream.hpp>
 
@@ -20,7 +21,6 @@ class SideStream {
       check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking),
             "cudaStreamCreateWithFlags");
       check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreate");
-      check(cudaMallocHost(&mail_, mail_bytes), "cudaMallocHost");
     } catch (...) {
       release();
       throw;
@@ -42,13 +42,27 @@ class SideStream {
   void wait() const { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
   /// For destructors.
   void wait(std::nothrow_t) const noexcept { cudaStreamSynchronize(stream_); }
-  /// In the host's memory, for what work there tells; of one piece of work at a time.
-  void* mail() const { return mail_; }
+  /// Room in the host's memory for what a piece of work there tells, of mail_bytes; that of another one behind give_mail.
+  void* take_mail() {
+    if (free_mails_.empty()) {
+      auto const device = main_->enter();
+      mails_.reserve(mails_.size() + 1);
+      free_mails_.reserve(mails_.size() + 1);
+      void* mail = nullptr;
+      check(cudaMallocHost(&mail, mail_bytes), "cudaMallocHost");
+      mails_.push_back(mail);
+      free_mails_.push_back(mail);
+    }
+    void* const mail = free_mails_.back();
+    free_mails_.pop_back();
+    return mail;
+  }
+  void give_mail(void* mail) noexcept { free_mails_.push_back(mail); }
 
  private:
   void release() noexcept {
     DeviceGuard const device(main_->device(), std::nothrow);
-    if (mail_ != nullptr) cudaFreeHost(mail_);
+    for (void* mail : mails_) cudaFreeHost(mail);
     if (event_ != nullptr) cudaEventDestroy(event_);
     if (stream_ != nullptr) cudaStreamDestroy(stream_);
   }
@@ -56,26 +70,29 @@ class SideStream {
   SharedStream main_;
   cudaStream_t stream_ = nullptr;
   cudaEvent_t event_ = nullptr;
-  void* mail_ = nullptr;
+  std::vector<void*> mails_, free_mails_;  // the latter has room for all
 };
 
-/// Work on a side stream, which ends before this does.
+/// A piece of work on a side stream, which ends before this does.
 class SideWork {
  public:
-  SideWork() = default;
-  explicit SideWork(std::shared_ptr<SideStream> stream) : stream_(std::move(stream)) {}
+  explicit SideWork(std::shared_ptr<SideStream> stream)
+      : stream_(std::move(stream)), mail_(stream_->take_mail()) {}
   ~SideWork() {
-    if (stream_) stream_->wait(std::nothrow);
+    if (!stream_) return;
+    stream_->wait(std::nothrow);
+    stream_->give_mail(mail_);
   }
   SideWork(SideWork&&) = default;
-  SideWork& operator=(SideWork&& other) noexcept {
-    std::swap(stream_, other.stream_);
-    return *this;
-  }
+  SideWork& operator=(SideWork&&) = delete;
+
   SideStream& stream() const { return *stream_; }
+  /// In the host's memory, for what the work tells.
+  void* mail() const { return mail_; }
 
  private:
   std::shared_ptr<SideStream> stream_;
+  void* mail_;
 };
 
 }  // namespace pliant::detail

@@ -1,3 +1,5 @@
+#pragma once
+
 #include <sstream>
 
 #include <pliant/law/decorators/viscosity.hpp>
@@ -6,9 +8,8 @@
 #include "adaptation/changes_on_backend.hpp"
 #include "adaptation/plane_bodies.hpp"
 
-// Bodies of several element types whose mesh is changed in their backend's memory, beside bodies that the host changes: on backends of
-// the host alone, as Cuda leaves these to the host.
-namespace pliant::test::mixed_on_backend_test {
+// Bodies of several element types whose mesh is changed in their backend's memory, beside bodies that the host changes.
+namespace pliant::test::mixed_on_backend_suite {
 using namespace two_bodies;
 
 template <class E>
@@ -105,6 +106,30 @@ struct BothTypes {
   }
 };
 
+/// A number of each element of a body, by the type, in its backend's memory.
+template <Element A, Element C, class B>
+class ColoursOfTypes {
+ public:
+  template <class TheBody>
+  explicit ColoursOfTypes(TheBody& body) {
+    body.parts().for_each_type([&](auto const& table, auto const&) {
+      std::vector<int> colours(at(table.count()));
+      for (std::size_t e = 0; e < colours.size(); ++e) colours[e] = static_cast<int>(e * e % 7);
+      colours_.push_back(upload(body.parts().backend, colours));
+    });
+    body.on_backend_change([this](BackendChange<Mesh<A, C>, B> const& change) {
+      colours_[0] = change.carry_elements(colours_[0]);
+      colours_[1] = change.carry_elements(colours_, 1);
+    });
+  }
+  [[nodiscard]] std::vector<std::vector<int>> all() const {
+    return {download<int>(colours_[0]), download<int>(colours_[1])};
+  }
+
+ private:
+  std::vector<typename B::template Array<int>> colours_;
+};
+
 template <Element A, Element C, class B>
 void check_both_types(B const& backend, Mesh<A, C> const& mesh, std::size_t one_in) {
   BothTypes<A, C, B> both(backend, mesh);
@@ -116,6 +141,7 @@ void check_both_types(B const& backend, Mesh<A, C> const& mesh, std::size_t one_
   std::vector<double> of_nodes(first.nodes.size());
   for (std::size_t i = 0; i < of_nodes.size(); ++i) of_nodes[i] = std::sin(double(i));
   auto values = upload(backend, of_nodes), by_host = upload(backend, of_nodes);
+  ColoursOfTypes<A, C, B> colours(both.body), colours_by_host(both.host);
   both.body.on_backend_change([&](auto const& change) { values = change.carry_nodes(values); });
   both.host.on_backend_change([&](auto const& change) { by_host = change.carry_nodes(by_host); });
   for (int round = 0; round < 2; ++round) {
@@ -123,6 +149,7 @@ void check_both_types(B const& backend, Mesh<A, C> const& mesh, std::size_t one_
     both.check_all();
     both.refine_one_in(one_in);
     merged += both.coarsen_all_but_one_in(12);
+    CHECK(colours.all() == colours_by_host.all());
     if (round == 1) both.check_all();
     steps(both.body, 2);
     of_host(both.host, 2);
@@ -198,9 +225,26 @@ TEST_CASE("elements that others were split into are refined and merged on a back
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     BothTypes<Tri3, Quad4, B> both(backend, mixed_mesh(6));
     std::stringstream saved(std::ios::in | std::ios::out | std::ios::binary);
+    bool is_told = false;
+    both.host.on_backend_change([&](auto const& change) {
+      if (std::exchange(is_told, true)) return;
+      std::vector<typename B::template Array<int>> colours;
+      for (std::size_t type : {0, 1}) {
+        std::vector<int> own(at(change.elements_before(type)), -1);
+        for (std::size_t e = 0; type == 1 && e < own.size(); ++e) own[e] = static_cast<int>(e);
+        colours.push_back(upload(backend, own));
+      }
+      CHECK_THROWS_WITH(change.carry_elements(colours[0]), says("give the values of all types"));
+      CHECK_THROWS_WITH(change.carry_elements(colours[0], 1),
+                        says("give the array from before it"));
+      auto const triangles = download<int>(change.carry_elements(colours, 0));
+      for (int quad : {0, 1, 2}) CHECK(std::ranges::count(triangles, quad) == 2);
+      CHECK(std::ranges::count(triangles, -1) + 6 == std::ssize(triangles));
+    });
     auto const is_split = split(both.host, {{}, {0, 1, 2}}, {.triangles = 2}).split +
                           split(both.host, {{}, {1}}, {.triangles = 4}).split;
     REQUIRE(is_split == 4);
+    CHECK(is_told);
     both.host.save(saved);
     both.body.load(saved);  // which its backend may change
     for (int round = 0; round < 2; ++round) {
@@ -212,4 +256,4 @@ TEST_CASE("elements that others were split into are refined and merged on a back
   });
 }
 
-}  // namespace pliant::test::mixed_on_backend_test
+}  // namespace pliant::test::mixed_on_backend_suite
