@@ -51,7 +51,7 @@ enum class Beside {
   boundary,        // a pressure at the top, and a right end that is driven
   memory,          // what quadrature points keep
   listener,        // a simulator's array, with a value for each node
-  listener_there,  // the same in the backend's memory
+  listener_there,  // the same in the backend's memory, and one with a value for each element
   steps,  // nothing, and sixteen steps are counted, with what the first needs to know of the mesh
   sleep   // all patches sleep; steps until they do so again are counted
 };
@@ -64,7 +64,7 @@ inline std::string in_words(Beside beside) {
     case Beside::listener:
       return ", and carry an array";
     case Beside::listener_there:
-      return ", and carry an array in the backend's memory";
+      return ", and carry arrays in the backend's memory";
     case Beside::steps:
       return ", and 16 steps";
     case Beside::sleep:
@@ -110,9 +110,13 @@ void time_change(benchmark::State& state, B const& backend, int cells,
       temperature = change.transfer.carry_nodes(std::move(temperature));
     });
   auto temperature_there = upload(backend, temperature);
+  auto stiffness_there =
+      upload(backend, std::vector<double>(static_cast<std::size_t>(element_count<E>(cells)), 2.0));
   if (beside == Beside::listener_there)
-    body.on_backend_change(
-        [&](auto const& change) { temperature_there = change.carry_nodes(temperature_there); });
+    body.on_backend_change([&](auto const& change) {
+      temperature_there = change.carry_nodes(temperature_there);
+      stiffness_there = change.carry_elements(stiffness_there);
+    });
   CentralDifference step;
   auto adapt = Adaptation{sleep({.below = 1e6, .for_steps = 2})}.every(1);
   auto const go_on = [&] {

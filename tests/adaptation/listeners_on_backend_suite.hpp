@@ -116,7 +116,8 @@ TEST_CASE("listeners are told at once of what rules refine and coarsen", "[adapt
   });
 }
 
-/// Two values of each node of a body, in its backend's memory, and how often they were carried over.
+/// Two values of each node and of each element of a body, and a colour of each element, in its backend's memory, and how often they
+/// were carried over.
 template <class TheBody>
 class CarriedThere {
   using B = typename TheBody::backend_type;
@@ -124,7 +125,9 @@ class CarriedThere {
 
  public:
   explicit CarriedThere(TheBody& body, int* calls_before = nullptr)
-      : values_(upload(body.parts().backend, first(at(body.nodes())))) {
+      : values_(upload(body.parts().backend, first(at(body.nodes())))),
+        of_elements_(upload(body.parts().backend, first(at(count(body))))),
+        colours_(upload(body.parts().backend, colours_of(at(count(body))))) {
     body.on_backend_change([this, &body, calls_before](Change const& change) {
       ++calls;
       if (calls_before != nullptr) CHECK(*calls_before >= calls);  // others are told first
@@ -133,9 +136,18 @@ class CarriedThere {
       CHECK_THROWS_WITH(change.carry_nodes(values_.data(), values_.data(), 0),
                         says("0 components"));
       values_ = change.carry_nodes(values_, 2);
+      CHECK(change.elements() == count(body));
+      CHECK(at(change.elements_before()) == colours_.size());
+      CHECK_THROWS_WITH(change.carry_elements(of_elements_, 0, 3),
+                        says("give the array from before it"));
+      CHECK_THROWS_WITH(change.carry_elements(of_elements_, 0, 0), says("a width of 0"));
+      of_elements_ = change.carry_elements(of_elements_, 0, 2);
+      colours_ = change.carry_elements(colours_);
     });
   }
   [[nodiscard]] std::vector<double> values() const { return download<double>(values_); }
+  [[nodiscard]] std::vector<double> of_elements() const { return download<double>(of_elements_); }
+  [[nodiscard]] std::vector<int> colours() const { return download<int>(colours_); }
   int calls = 0;
 
  private:
@@ -145,8 +157,23 @@ class CarriedThere {
       values[i] = i % 2 == 0 ? std::sin(double(i)) : 0.1;
     return values;
   }
-  typename B::template Array<double> values_;
+  static std::vector<int> colours_of(std::size_t elements) {
+    std::vector<int> colours(elements);
+    for (std::size_t e = 0; e < elements; ++e) colours[e] = static_cast<int>(e * e % 5);
+    return colours;
+  }
+  typename B::template Array<double> values_, of_elements_;
+  typename B::template Array<int> colours_;
 };
+
+/// Of numbers of the size of one: by no more than rounding, which devices do in another order.
+void check_close(std::vector<double> const& values, std::vector<double> const& wanted) {
+  REQUIRE(values.size() == wanted.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    largest = std::max(largest, std::abs(values[i] - wanted[i]));
+  CHECK(largest < 1e-15 * 8);
+}
 
 template <class G, class B>
 void check_carried_there(B const& backend, Index cells, std::size_t one_in) {
@@ -159,6 +186,9 @@ void check_carried_there(B const& backend, Index cells, std::size_t one_in) {
     CHECK(values == by_host.values());
     CHECK(values.size() == 2 * at(both.body.nodes()));
     for (std::size_t i = 1; i < values.size(); i += 2) REQUIRE(values[i] == 0.1);
+    CHECK(there.of_elements().size() == 2 * at(count(both.body)));
+    check_close(there.of_elements(), by_host.of_elements());
+    CHECK(there.colours() == by_host.colours());
   };
   int calls = 0;
   for (int round = 0; round < 2; ++round) {
@@ -183,7 +213,7 @@ void check_carried_there(B const& backend, Index cells, std::size_t one_in) {
   CHECK(both.body.parts().topology_on->on_host.changes > 0);  // the host planned none of them
 }
 
-TEST_CASE("values of nodes in a backend's memory follow the mesh there as on the host",
+TEST_CASE("values of nodes and elements in a backend's memory follow the mesh there as on the host",
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     check_carried_there<F>(backend, 6, 5);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/adaptation/changes_there.hpp>
 #include <pliant/adaptation/commit.hpp>
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/body/changed_parts_on.hpp>
@@ -32,7 +33,9 @@ class ChangesOnBackend {
 
  public:
   ChangesOnBackend(Parts& parts, int max_level)
-      : parts_(parts), limits_{parts.limits.nodes, parts.limits.elements, max_level} {}
+      : parts_(parts),
+        limits_{parts.limits.nodes, parts.limits.elements, max_level},
+        there_(parts) {}
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
   std::optional<Done> operator()(MarkedOn const& marked) {
@@ -107,7 +110,7 @@ class ChangesOnBackend {
       return change(marked);
     } catch (...) {
       if (parts_.topology_on) on().tree.take_back();
-      if (!merged_.empty() || nodes_) tell_of_merged();
+      if (!merged_.empty() || there_.any()) tell_of_merged();
       throw;
     }
   }
@@ -131,7 +134,6 @@ class ChangesOnBackend {
         commit("coarsen", done.merged, merged, is_all,
                [&](auto& parts) { return parts.coarsened(merged); });
         merged_ = std::move(parents);
-        if (!parts_.backend_listeners.empty()) nodes_ = nodes_after(merged);
       }
     }
     if (to_refine.size() > 0) {
@@ -142,11 +144,10 @@ class ChangesOnBackend {
         commit("refine", done.refined, refined, plan_.has_value(),
                [&](auto& parts) { return parts.refined(refined); });
         merged_.clear();
-        if (!parts_.backend_listeners.empty()) add_new_nodes(refined);
       }
     }
     if (done.merged > 0 && done.refined > 0) enter_as_one();
-    done.to_tell.nodes = std::move(nodes_);
+    done.to_tell.there = there_.take();
     return done;
   }
   std::vector<Index> parents_of(Coarsened const& merged) const {
@@ -155,28 +156,13 @@ class ChangesOnBackend {
     copy_values<B, Index>(backend(), merged.parents, parents.data(), count);
     return download<Index>(parents);
   }
-  /// What listeners get of a coarsening: a copy, since the tree is gone where what is refined beside it fails.
-  ChangedNodesOn<B> nodes_after(Coarsened const& merged) const {
-    auto const moved = static_cast<std::size_t>(merged.before.nodes - merged.initial.nodes);
-    auto numbers = std::make_shared<Cells>(unset<Index>(backend(), moved));
-    copy_values<B, Index>(backend(), merged.nodes, numbers->data(), moved);
-    return {merged.before.nodes, merged.now.nodes, merged.initial.nodes, std::move(numbers)};
-  }
-  /// And of a refinement, behind that.
-  void add_new_nodes(typename TreeOn<B>::Refined const& refined) {
-    Index const now = on().tree.sizes().nodes;
-    if (!nodes_) nodes_ = ChangedNodesOn<B>{.before = now - refined.new_nodes};
-    nodes_->now = now;
-    nodes_->tree = on().tree.view();
-    nodes_->refined = refined;
-  }
   /// Where what was to be refined beside elements that were merged is not.
   void tell_of_merged() {
     ToTell<M, B> to_tell;
     if (!merged_.empty())
       to_tell.plan =
           plan_on_host(plan_->before, merged_, true, element_values_of(std::as_const(parts_)));
-    to_tell.nodes = std::exchange(nodes_, std::nullopt);
+    to_tell.there = there_.take();
     tell_listeners(parts_, to_tell);
   }
   void renumber(Cells& cells, Coarsened const& merged) {
@@ -225,13 +211,16 @@ class ChangesOnBackend {
   void commit(char const* action, std::size_t count, Done const& done, bool is_planned,
               Change const& make) {
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
+    there_.begin(*kept);
     commit_change(parts_, action, count, [&] {
       ChangedPartsOn<Parts> parts(parts_, kept, is_planned ? planned_ : MeshOnHost<M>{});
       auto changed = make(parts);
       // Patches are there now, beside whose plans this takes longer.
       for (auto& numbers : kept->numbers) numbers.follow(backend(), kept->tree, done);
+      there_.follow(*kept, done, changed.parts);
       return changed;
     });
+    there_.keep();
     kept->tree.keep();
     ++kept->on_host.version;
     ++kept->on_host.changes;
@@ -253,10 +242,10 @@ class ChangesOnBackend {
 
   Parts& parts_;
   RefinementLimits limits_;
-  std::optional<TopologyPlan<M>> plan_{};     // where the host has made one
-  MeshOnHost<M> planned_{};                   // behind it
-  std::vector<Index> merged_{};               // cells, while the rest of the plan is not made
-  std::optional<ChangedNodesOn<B>> nodes_{};  // what became of them, where somebody listens
+  std::optional<TopologyPlan<M>> plan_{};  // where the host has made one
+  MeshOnHost<M> planned_{};                // behind it
+  std::vector<Index> merged_{};            // cells, while the rest of the plan is not made
+  ChangesThere<Parts> there_;              // that are made
 };
 
 /// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.

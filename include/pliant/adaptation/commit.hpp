@@ -141,8 +141,8 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
 template <class M, Backend B>
 struct ToTell {
   std::optional<TopologyPlan<M>> plan{};  // where the host has one
-  std::optional<detail::ChangedNodesOn<B>>
-      nodes{};  // where the backend made it, and somebody listens
+  std::optional<detail::ChangedOn<M, B>>
+      there{};  // where the backend made it, and somebody listens
 };
 
 namespace detail {
@@ -150,7 +150,7 @@ namespace detail {
 /// Either may be null.
 template <class Parts>
 void tell(Parts& parts, TopologyPlan<typename Parts::mesh_type> const* plan,
-          ChangedNodesOn<typename Parts::backend_type> const* nodes) {
+          ChangedOn<typename Parts::mesh_type, typename Parts::backend_type> const* there) {
   struct Telling {
     bool& is_telling;
     explicit Telling(bool& flag) : is_telling(flag) { is_telling = true; }
@@ -162,8 +162,8 @@ void tell(Parts& parts, TopologyPlan<typename Parts::mesh_type> const* plan,
     for (auto const& listener : parts.listeners)
       listener({*plan->before, *plan->after, plan->transfer});
   for (auto const& listener : parts.backend_listeners)
-    if (nodes != nullptr)
-      listener({parts.backend, *nodes});
+    if (there != nullptr)
+      listener({parts.backend, *there});
     else if (plan != nullptr)
       listener({parts.backend, plan->transfer});
 }
@@ -180,7 +180,7 @@ template <class Parts>
 void tell_listeners(
     Parts& parts, ToTell<typename Parts::mesh_type, typename Parts::backend_type> const& to_tell) {
   detail::tell(parts, to_tell.plan ? &*to_tell.plan : nullptr,
-               to_tell.nodes ? &*to_tell.nodes : nullptr);
+               to_tell.there ? &*to_tell.there : nullptr);
 }
 
 }  // namespace pliant

@@ -1,91 +1,36 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <memory>
+#include <deque>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
+#include <pliant/body/changed_elements_on.hpp>
+#include <pliant/body/changed_nodes_on.hpp>
 #include <pliant/error.hpp>
-#include <pliant/math/uncontracted.hpp>
-#include <pliant/topology/compaction_view.hpp>
 #include <pliant/topology/transfer.hpp>
-#include <pliant/topology/tree_on.hpp>
 
-// What becomes of nodes in a change of a mesh, for values of nodes in a backend's memory.
+// A change of a mesh, for values of nodes and elements in a backend's memory.
 namespace pliant {
 
 namespace detail {
 
-/// Nodes of a mesh that was changed in a backend's memory: those that stay, and behind them those that a refinement made.
-template <Backend B>
-struct ChangedNodesOn {
-  Index before = 0, now = 0;  // how many there were, and are
-  Index first_moved = 0;      // the first that may have another number or be gone
-  std::shared_ptr<typename B::template Array<Index>>
-      numbers{};    // from that one on; null: all keep theirs
-  TreeView tree{};  // with the new nodes
-  typename TreeOn<B>::Refined refined{};
-
-  [[nodiscard]] NewNumbers new_numbers() const {
-    return {numbers ? first_moved : before, numbers ? numbers->data() : nullptr};
-  }
-};
-
-/// Gives nodes that stay the values that they had.
-template <class U>
-struct MoveNodeValues {
-  NewNumbers numbers;
-  std::ptrdiff_t components;
-  U const* before;
-  U* now;
-  PLIANT_HOST_DEVICE void operator()(Index node) const {
-    Index const to = numbers(node);
-    if (to < 0) return;
-    for (std::ptrdiff_t c = 0; c < components; ++c)
-      now[components * to + c] = before[components * node + c];
-  }
-};
-/// Gives a new node the weighted sums of the values that the nodes have that its cell had: see Transfer::fill_new_nodes.
-template <Element E, class U>
-struct CarryNewNodes {
-  TreeView tree;
-  PlacedNode const* nodes;
-  bool has_others;  // whether they may lie in cells of other kinds
-  std::ptrdiff_t components;
-  U* values;
-
-  PLIANT_HOST_DEVICE void operator()(Index k) const {
-    PlacedNode const& placed = nodes[k];
-    if (has_others &&
-        tree.cells[static_cast<std::size_t>(placed.cell)].kind != kind_of<typename E::cell>)
-      return;
-    Vector<double, E::dim> xi;
-    for (int d = 0; d < E::dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
-    auto const weights = E::shape(xi);
-    auto const parents = tree.nodes_of(placed.cell);
-    for (std::ptrdiff_t c = 0; c < components; ++c) {
-      U first{};
-      Uncontracted sum = 0.0;
-      bool same = true, none = true;  // what all have is not rounded
-      for (int a = 0; a < E::nodes; ++a) {
-        if (weights[a] == 0) continue;
-        U const value = values[components * parents[static_cast<std::size_t>(a)] + c];
-        if (none) first = value;
-        none = false;
-        same = same && value == first;
-        sum += Uncontracted(weights[a]) * Uncontracted(value);
-      }
-      values[components * placed.node + c] = same ? first : static_cast<U>(sum.value);
-    }
-  }
+/// What became of nodes and elements in a change that was made in a backend's memory.
+template <class M, Backend B>
+struct ChangedOn;
+template <Element... Es, Backend B>
+struct ChangedOn<Mesh<Es...>, B> {
+  ChangedNodesOn<B> nodes;
+  std::array<ElementOriginsOn<B>, sizeof...(Es)> elements{};  // by type
 };
 
 }  // namespace detail
 
-/// A change of a mesh, as listeners of Body::on_backend_change get it, who keep values of nodes in the backend's memory, by the
-/// user's numbers. Valid during the call.
+/// A change of a mesh, as listeners of Body::on_backend_change get it, who keep values of nodes and elements in the backend's memory,
+/// by the user's numbers. Valid during the call.
 template <class M, Backend B>
 class BackendChange {
  public:
@@ -96,13 +41,24 @@ class BackendChange {
   BackendChange(B const& backend, Transfer<M::dim> const& transfer)
       : backend_(backend), transfer_(&transfer) {}
   /// One that was made in the backend's memory.
-  BackendChange(B const& backend, detail::ChangedNodesOn<B> const& nodes)
-      : backend_(backend), nodes_(&nodes) {}
+  BackendChange(B const& backend, detail::ChangedOn<M, B> const& there)
+      : backend_(backend), there_(&there) {}
 
   [[nodiscard]] Index nodes_before() const {
-    return nodes_ != nullptr ? nodes_->before : transfer_->old_nodes();
+    return there_ != nullptr ? there_->nodes.before : transfer_->old_nodes();
   }
-  [[nodiscard]] Index nodes() const { return nodes_ != nullptr ? nodes_->now : transfer_->nodes(); }
+  [[nodiscard]] Index nodes() const {
+    return there_ != nullptr ? there_->nodes.now : transfer_->nodes();
+  }
+  /// Of a type, by its place among the mesh's.
+  [[nodiscard]] Index elements_before(std::size_t type = 0) const {
+    return there_ != nullptr ? there_->elements.at(type).before
+                             : static_cast<Index>(transfer_->old_elements(type));
+  }
+  [[nodiscard]] Index elements(std::size_t type = 0) const {
+    return there_ != nullptr ? there_->elements.at(type).now
+                             : static_cast<Index>(transfer_->elements(type));
+  }
 
   /// Values of nodes on the new mesh, as Transfer::carry_nodes gives them: `now`, (nodes(), components), of `before`,
   /// (nodes_before(), components), floating-point numbers in the backend's memory. Waits for the backend only where the host made
@@ -111,7 +67,7 @@ class BackendChange {
   void carry_nodes(U const* before, U* now, int components = 1) const {
     if (components < 1)
       throw Error("carry_nodes: ", components, " components; give how many each node has");
-    if (nodes_ != nullptr)
+    if (there_ != nullptr)
       carry_there(before, now, components);
     else
       carry_by_host(before, now, at(components));
@@ -128,23 +84,65 @@ class BackendChange {
     carry_nodes(before.data(), now.data(), components);
     return now;
   }
+  /// Values of the elements of one type, (elements_before(type), width), on the new mesh, (elements(type), width), as
+  /// Transfer::carry_elements gives them. Waits for the backend only where the host made the change. Throws Error for an array that
+  /// is not of the mesh before, a width of less than one, and where elements come from another type.
+  template <class U>
+  [[nodiscard]] Array<U> carry_elements(Array<U> const& before, std::size_t type = 0,
+                                        int width = 1) const {
+    return carry_elements_from<U>(type, width, [&](std::size_t old_type) -> Array<U> const& {
+      if (old_type != type)
+        throw Error("carry_elements: elements of type ", type, " come from type ", old_type,
+                    "; give the values of all types");
+      return before;
+    });
+  }
+  /// The same where elements may come from other types: `before` has an array of each.
+  template <class U>
+  [[nodiscard]] Array<U> carry_elements(std::vector<Array<U>> const& before, std::size_t type,
+                                        int width = 1) const {
+    return carry_elements_from<U>(
+        type, width, [&](std::size_t old_type) -> Array<U> const& { return before.at(old_type); });
+  }
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   template <class U>
   void carry_there(U const* before, U* now, int components) const {
-    auto const numbers = nodes_->new_numbers();
-    backend_.for_each(nodes_->before, detail::MoveNodeValues<U>{numbers, components, before, now});
+    auto const numbers = there_->nodes.new_numbers();
+    backend_.for_each(there_->nodes.before,
+                      detail::MoveNodeValues<U>{numbers, components, before, now});
     fill_new_nodes(static_cast<M*>(nullptr), now, components);
   }
   template <Element... Es, class U>
   void fill_new_nodes(Mesh<Es...>*, U* values, int components) const {
-    auto const& refined = nodes_->refined;
+    auto const& refined = there_->nodes.refined;
     (backend_.for_each(refined.new_nodes,
-                       detail::CarryNewNodes<Es, U>{nodes_->tree, refined.nodes, sizeof...(Es) > 1,
-                                                    components, values}),
+                       detail::CarryNewNodes<Es, U>{there_->nodes.tree, refined.nodes,
+                                                    sizeof...(Es) > 1, components, values}),
      ...);
+  }
+  /// `before`(type): the values of the elements of a type before the change.
+  template <class U, class Before>
+  Array<U> carry_elements_from(std::size_t type, int width, Before const& before) const {
+    if (width < 1)
+      throw Error("carry_elements: a width of ", width, "; give how many values each element has");
+    auto const checked = [&](std::size_t old_type) -> Array<U> const& {
+      auto const& values = before(old_type);
+      if (auto const wanted = at(elements_before(old_type)) * at(width); values.size() != wanted)
+        throw Error("carry_elements: got ", values.size(), " values of elements of type ", old_type,
+                    ", but those before the change take ", wanted,
+                    "; give the array from before it");
+      return values;
+    };
+    if (there_ != nullptr) return there_->elements.at(type).carry(backend_, checked(type), width);
+    std::deque<std::vector<U>> lists;
+    return upload(backend_, transfer_->carry_elements_from(
+                                [&](std::size_t old_type) -> std::vector<U> const& {
+                                  return lists.emplace_back(download<U>(checked(old_type)));
+                                },
+                                type, at(width)));
   }
 
   template <class U>
@@ -165,7 +163,7 @@ class BackendChange {
 
   B const& backend_;
   Transfer<M::dim> const* transfer_ = nullptr;
-  detail::ChangedNodesOn<B> const* nodes_ = nullptr;
+  detail::ChangedOn<M, B> const* there_ = nullptr;
 };
 
 }  // namespace pliant

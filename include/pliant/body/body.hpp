@@ -188,7 +188,7 @@ class Body {
     detail::check_nobody_is_told(*parts_, "on_change");
     parts_->listeners.push_back(std::move(listener));
   }
-  /// The same for who keeps values of nodes in the backend's memory, or has to know of changes only: calls
+  /// The same for who keeps values of nodes or elements in the backend's memory, or has to know of changes only: calls
   /// listener(BackendChange), behind those listeners. The host plans nothing for these.
   void on_backend_change(std::function<void(BackendChange<M, B> const&)> listener) {
     detail::check_nobody_is_told(*parts_, "on_backend_change");

@@ -23,6 +23,15 @@
 
 namespace pliant::detail {
 
+/// The elements of type I that a change merged, of which `on` has what came out. `before`, `now`: the body's layouts.
+template <std::size_t I, class On, class Layout>
+auto merged_elements(On const& on, Layout const& before, Layout const& now) {
+  using E = typename std::tuple_element_t<I, decltype(Layout::tables)>::element;
+  return MergedElements<E>{
+      on.leaves(I), on.order.merged_count(), std::get<I>(before.tables).elements.rows_of_nodes(),
+      std::get<I>(now.tables).elements.rows_of_nodes(), ElementsByRows<E>({on.points.data()})};
+}
+
 /// A body's parts behind a change of its mesh in the backend's memory. `On` has the tree after it, and follows.
 template <class Parts>
 class ChangedPartsOn {
@@ -137,7 +146,7 @@ class ChangedPartsOn {
     });
     MassWeightsOn<B> const weights(backend_, layout.interpolation, rows_);
     return on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
-      std::tuple const families{merged<I>(layout)...};
+      std::tuple const families{merged_elements<I>(*on_, parts_.layout, layout)...};
       exchange_masses(weights, layout, speed, v, std::get<I>(families)...);
       auto const clear = [&](Array<T>& field) {
         return LoopStep{on_->rows.freed_count(),
@@ -170,14 +179,6 @@ class ChangedPartsOn {
   [[nodiscard]] Index come_in_all(typename TreeOn<B>::Refined const& done) const {
     return on_->order.count() - on_->order.count_before() + done.leaves;
   }
-  template <std::size_t I>
-  MergedElements<ElementOf<I>> merged(Layout const& layout) const {
-    return {on_->leaves(I), on_->order.merged_count(),
-            std::get<I>(parts_.layout.tables).elements.rows_of_nodes(),
-            std::get<I>(layout.tables).elements.rows_of_nodes(),
-            ElementsByRows<ElementOf<I>>(at_rest())};
-  }
-
   void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
     if (!topology_) {
       auto const changed = changed_when_asked(parts_, on_, std::move(cells), merged);

@@ -80,7 +80,8 @@ class Transfer {
   /// Of the elements of one type (its place among the mesh's), in the new order; one entry for those that follow each
   /// other as they did before.
   std::vector<Origin> const& origins(std::size_t type = 0) const { return p_.origins[type]; }
-  /// How many elements a type has.
+  /// How many elements a type had, and has.
+  std::size_t old_elements(std::size_t type = 0) const { return p_.old_elements[type]; }
   std::size_t elements(std::size_t type = 0) const {
     std::size_t count = 0;
     for (Origin const& origin : origins(type)) count += static_cast<std::size_t>(origin.count);
