@@ -235,7 +235,7 @@ TEST_CASE("where a condition holds a part of what would be merged, the rest is m
       CHECK(done->refined == plan->counts.refined);
       CHECK(done->merged == plan->counts.coarsened);
       CHECK(!done->to_tell.plan);
-      CHECK(!done->to_tell.nodes);
+      CHECK(!done->to_tell.there);
       both.check_place();
       both.check_all();
     }

@@ -146,7 +146,7 @@ class Hierarchy {
                    RefinementLimits const& limits = {}) {
     auto const nodes = points_.size() + TreeQueries(tree_).count_new_nodes(conversions);
     if (nodes > std::min(limits.nodes, most_))
-      throw Error("Hierarchy: to raise the degree of ", conversions.size(), " cells takes ", nodes,
+      throw Error("raise: to raise the degree of ", conversions.size(), " cells takes ", nodes,
                   " nodes in all, and the limit is ", std::min(limits.nodes, most_),
                   "; mark fewer cells or raise the limit");
     std::vector<PlacedNode> made;
@@ -237,7 +237,7 @@ class Hierarchy {
     auto plan = tree_.plan_division(leaves);
     auto const check = [&](char const* what, std::size_t in_all, std::size_t limit) {
       if (in_all > limit)
-        throw Error("Hierarchy: to ", verb, " ", leaves.size(),
+        throw Error(verb, ": to ", verb, " ", leaves.size(),
                     " cells, coarser neighbours included, takes ", in_all, " ", what,
                     " in all, and the limit is ", limit, "; mark fewer cells or raise the limit");
     };
