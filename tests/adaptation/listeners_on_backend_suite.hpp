@@ -145,6 +145,11 @@ class CarriedThere {
       colours_ = change.carry_elements(colours_);
     });
   }
+  /// Gives elements other values, so that those of a family differ.
+  void renew(TheBody const& body) {
+    of_elements_ = upload(body.parts().backend, first(at(count(body))));
+    colours_ = upload(body.parts().backend, colours_of(at(count(body))));
+  }
   [[nodiscard]] std::vector<double> values() const { return download<double>(values_); }
   [[nodiscard]] std::vector<double> of_elements() const { return download<double>(of_elements_); }
   [[nodiscard]] std::vector<int> colours() const { return download<int>(colours_); }
@@ -196,8 +201,12 @@ void check_carried_there(B const& backend, Index cells, std::size_t one_in) {
     check(++calls);
     both.refine_one_in(one_in);
     check(++calls);
+    there.renew(both.body);
+    by_host.renew(both.host);
     CHECK(both.coarsen_all_but_one_in(12) > 0);
     check(++calls);
+    there.renew(both.body);
+    by_host.renew(both.host);
     auto const marked = both.refine_one_in_and_coarsen(9);
     auto const plan = plan_change(both.host.parts(), marked, 3);
     REQUIRE(plan);
@@ -217,6 +226,7 @@ TEST_CASE("values of nodes and elements in a backend's memory follow the mesh th
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     check_carried_there<F>(backend, 6, 5);
+    check_carried_there<Formulation<Quad4, Gauss<2>, NeoHookean>>(backend, 4, 5);
     check_carried_there<Formulation<Tet10, Gauss<2>, NeoHookean>>(backend, 2, 3);
   });
 }
