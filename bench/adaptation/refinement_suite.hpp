@@ -45,9 +45,10 @@ void time_refinement(benchmark::State& state, B const& backend, int cells) {
   report_elements(state, body);
 }
 
-/// What a change of a mesh has to carry, or to undo.
+/// What a change of a mesh has to carry, or to undo, or stands beside.
 enum class Beside {
   nothing,
+  half,            // the first half of the mesh is refined, and stays so
   boundary,        // a pressure at the top, and a right end that is driven
   memory,          // what quadrature points keep
   listener,        // a simulator's array, with a value for each node
@@ -57,6 +58,8 @@ enum class Beside {
 };
 inline std::string in_words(Beside beside) {
   switch (beside) {
+    case Beside::half:
+      return ", beside a half that is refined";
     case Beside::boundary:
       return ", pressed and driven";
     case Beside::memory:
@@ -123,7 +126,10 @@ void time_change(benchmark::State& state, B const& backend, int cells,
     if (beside == Beside::sleep) step(body, 4, adapt);
     if (beside == Beside::steps) step(body, 16);
   };
-  auto const last = static_cast<Index>(element_count<E>(cells)) - 1;
+  auto const elements = static_cast<Index>(element_count<E>(cells));
+  Index const half = beside == Beside::half ? elements / 2 : 0;
+  if (half > 0) refine(body, {first_elements(static_cast<std::size_t>(half))});
+  Index const last = elements - half - 1;  // those that are not refined come first
   Lists const marked_lists{marked};
   auto const children = [&] {
     std::vector<Index> found;
@@ -132,21 +138,25 @@ void time_change(benchmark::State& state, B const& backend, int cells,
       if (levels[e] > 0) found.push_back(static_cast<Index>(e));
     return found;
   };
+  // Those of a list of children behind so many: new ones follow others.
+  auto const behind = [](std::vector<Index> const& all, std::ptrdiff_t others) {
+    return Lists{{all.begin() + others, all.end()}};
+  };
+  auto const of_half = static_cast<std::ptrdiff_t>(children().size());
   for (auto _ : state) {
     refine(body, {{last}});
-    auto const beside = static_cast<std::ptrdiff_t>(children().size());
+    auto const others = static_cast<std::ptrdiff_t>(children().size());
     go_on();
     double const there = seconds(backend, [&] {
       refine(body, marked_lists);
       go_on();
     });
-    auto const all = children();  // new ones follow others
-    Lists const made{{all.begin() + beside, all.end()}};
+    Lists const made = behind(children(), others);
     double const again = seconds(backend, [&] {
       coarsen(body, made);
       go_on();
     });
-    coarsen(body, {children()});
+    coarsen(body, behind(children(), of_half));
     state.SetIterationTime(back ? again : there);
   }
   if (beside == Beside::sleep && asleep(body).patches == 0) state.SkipWithError("nothing sleeps");
@@ -202,6 +212,7 @@ inline void add_refinements() {
       std::size_t const count = element_count<E>(cells);
       change("two", first_elements(2));
       change("a tenth", first_elements(count / 10));
+      change.template operator()<Beside::half>("two", first_elements(2));
       if (elements < 1e6) return;
       change("a ten thousandth", first_elements(count / 10000));
       change("a hundredth", first_elements(count / 100));
