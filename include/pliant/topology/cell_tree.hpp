@@ -150,6 +150,10 @@ class CellTree {
   /// the nodes between their corners. Nodes, cells, edges and sides that nothing uses any more go, but for those
   /// of the initial mesh; the others move up.
   Renumbering merge(std::vector<Index> const& parents, std::vector<Index> const& lowered = {}) {
+    std::vector<Index> children;
+    for (Index const c : parents)
+      for (Index k = 0; k < lists_.cells[at(c)].divided().children; ++k)
+        children.push_back(lists_.cells[at(c)].first_child + k);
     detail::CellMerging{lists_}(parents);
     auto touched = parents;
     for (Index const c : lowered) {
@@ -157,7 +161,7 @@ class CellTree {
       touched.push_back(c);
     }
     std::erase_if(lists_.divided, [&](Index c) { return is_leaf(c); });
-    auto renumbered = detail::TreeCompaction{lists_}(touched);
+    auto renumbered = detail::TreeCompaction{lists_}(touched, std::move(children));
     forget_old_conversions();
     return renumbered;
   }

@@ -53,9 +53,11 @@ struct CompactionView {
     move(edge.first_half, edges);
   }
   PLIANT_HOST_DEVICE void renumber_within(TreeSide& side) const {
-    bool is_divided = false;
-    for (Index const c : side.cells) is_divided = is_divided || (c >= 0 && !tree.is_leaf(c));
-    if (!is_divided) side.first_child = side.first_inner_edge = -1;
+    if (side.first_inner_edge >= 0) {
+      bool is_divided = false;
+      for (Index const c : side.cells) is_divided = is_divided || (c >= 0 && !tree.is_leaf(c));
+      if (!is_divided) side.first_child = side.first_inner_edge = -1;
+    }
     move(side.centre, nodes);
     move(side.first_child, sides);
     move(side.first_inner_edge, edges);

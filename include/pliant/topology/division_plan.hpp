@@ -54,6 +54,7 @@ class DivisionPlan {
 
   /// Makes room in the lists for what is new, and gives it numbers: now the leaves have to be divided.
   void make_room() {
+    lists_.note_division();
     auto const next = [](Index& first, Index& end, Index count) {
       first = end;
       end += count;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
+#include <iterator>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,93 +19,185 @@
 namespace pliant::detail {
 
 /// Takes away what nothing uses any more after cells of a tree became leaves, or leaves lost the nodes between their corners,
-/// on the threads of the host. What the initial mesh has stays, and of it only what refined and converted cells have knows
-/// of the rest. Refers to the tree's lists.
+/// on the threads of the host. What the initial mesh has stays. Refers to the tree's lists.
+///
+/// What divisions made that came before all of what goes keeps its numbers. It is left alone but for what it knows of newer entries,
+/// which is what divided cells have, and sides at which newer cells lie: unless leaves have nodes between their corners, which may
+/// be newer than all of these.
 class TreeCompaction {
  public:
   explicit TreeCompaction(TreeLists& lists)
-      : lists_(lists), node_used_(at(lists.nodes - lists.initial.nodes)) {}
+      : lists_(lists), are_linear_(lists.quadratic_leaves == 0 && lists.converted.empty()) {}
 
-  /// `touched` became leaves or lost their nodes. Children of leaves go.
-  Renumbering operator()(std::vector<Index> const& touched) {
+  /// `touched` became leaves or lost their nodes, and `gone`, each once, were children of some of them.
+  Renumbering operator()(std::vector<Index> const& touched, std::vector<Index> gone) {
     auto const& i = lists_.initial;
-    CompactionView view{.tree = lists_.view(), .initial = i};
-    find_nodes_in_use(view);
-    Numbers node(lists_.nodes, i.nodes, [&](Index n) { return node_used_[at(n - i.nodes)]; }),
-        cell(size(lists_.cells), i.cells, [&](Index c) { return view.stays(c); }),
-        edge(size(lists_.edges), i.edges,
-             [&](Index e) { return CompactionView::is_used(lists_.edges[at(e)]); }),
-        side(size(lists_.sides), i.sides,
-             [&](Index s) { return CompactionView::is_used(lists_.sides[at(s)]); });
-    view.nodes = node.view();
-    view.cells = cell.view();
-    view.edges = edge.view();
-    view.sides = side.view();
-    auto known = initial_of(touched);
-    auto const divided = initial_of(lists_.divided);
-    known.insert(known.end(), divided.begin(), divided.end());
-    known.insert(known.end(), lists_.converted.begin(), lists_.converted.end());
-    known = each_once(std::move(known), at(i.cells));
-    auto const known_edges = lists_.edges_of(known), known_sides = lists_.sides_of(known);
+    auto const parts =
+        edges_and_sides_of(gone, size(lists_.cells), size(lists_.edges), size(lists_.sides));
+    auto const view = lists_.view();
+    auto const unused = [](std::vector<Index> const& numbers, Index initial, auto const& entries) {
+      std::vector<Index> found;
+      std::ranges::copy_if(numbers, std::back_inserter(found), [&](Index k) {
+        return k >= initial && !CompactionView::is_used(entries[at(k)]);
+      });
+      return found;
+    };
+    auto const cells = each_once(std::move(gone), lists_.cells.size()),
+               edges = unused(parts.edges, i.edges, view.edges),
+               sides = unused(parts.sides, i.sides, view.sides), nodes = nodes_that_go(touched);
+    auto const first = first_to_change({front(cells), front(edges), front(sides), front(nodes)});
+    Numbers const node(lists_.nodes, first.nodes, nodes),
+        cell(size(lists_.cells), first.cells, cells), edge(size(lists_.edges), first.edges, edges),
+        side(size(lists_.sides), first.sides, sides);
+    CompactionView const moved{view, i, node.view(), cell.view(), edge.view(), side.view()};
+    auto const known = cells_that_know(touched, cell.first);
+    auto const around = edges_and_sides_of(known, cell.first, edge.first, side.first);
     // Sides look at cells, which are still where they were.
-    move_up(lists_.sides, known_sides, side, view);
-    move_up(lists_.edges, known_edges, edge, view);
-    move_up(lists_.cells, known, cell, view);
-    move_rows_up(cell, view);
-    for (Index& c : lists_.divided) c = view.cells(c);
+    move_up(lists_.sides, around.sides, side, moved);
+    move_up(lists_.edges, around.edges, edge, moved);
+    move_up(lists_.cells, known, cell, moved);
+    move_rows_up(cell, moved);
+    for (Index& c : lists_.divided) c = moved.cells(c);
     lists_.nodes = node.count;
-    return {{i.nodes, std::move(node.others)}, {i.cells, std::move(cell.others)}};
+    for (TreeSizes& before : lists_.before_divisions)
+      before = {before.cells - count_before(cells, before.cells),
+                before.edges - count_before(edges, before.edges),
+                before.sides - count_before(sides, before.sides),
+                before.nodes - count_before(nodes, before.nodes)};
+    return {{node.first, node.others}, {cell.first, cell.others}};
   }
 
  private:
   static constexpr Index few = 4096;
+  struct EdgesAndSides {
+    std::vector<Index> edges, sides;
+  };
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
 
-  void find_nodes_in_use(CompactionView const& view) {
-    auto const& i = lists_.initial;
-    auto const use_nodes_of = [&](Index c) {
-      view.use_nodes_of(c, [&](Index node) {
-        std::atomic_ref(node_used_[at(node)]).store(1, std::memory_order_relaxed);
-      });
-    };
-    for_each_on_host(size(lists_.cells) - i.cells, few, [&](Index k) {
-      if (view.stays(i.cells + k)) use_nodes_of(i.cells + k);
-    });
-    std::ranges::for_each(lists_.converted, use_nodes_of);
+  /// The first of a list; behind all where there is none.
+  static Index front(std::vector<Index> const& list) {
+    return list.empty() ? std::numeric_limits<Index>::max() : list.front();
+  }
+  /// How many of a list are below a number.
+  static Index count_before(std::vector<Index> const& list, Index number) {
+    return static_cast<Index>(std::ranges::lower_bound(list, number) - list.begin());
+  }
+  /// How many of each there were before the last division that came before all of what goes. `gone`: the first of each that goes.
+  [[nodiscard]] TreeSizes first_to_change(TreeSizes const& gone) const {
+    TreeSizes first = lists_.initial;
+    if (!are_linear_) return first;
+    for (TreeSizes const& before : lists_.before_divisions)
+      if (before.cells <= gone.cells && before.edges <= gone.edges && before.sides <= gone.sides &&
+          before.nodes <= gone.nodes)
+        first = before;
+    return first;
   }
 
-  /// New numbers of what is used, as all before `first` is. What goes has −1.
-  struct Numbers {
-    Index first, count;
-    std::vector<Index> others;  // from `first` on
-    std::vector<Index> kept;    // the old numbers of those that stay
+  /// Nodes behind those of the initial mesh that no element has any more, ascending.
+  [[nodiscard]] std::vector<Index> nodes_that_go(std::vector<Index> const& touched) const {
+    return are_linear_ ? nodes_of_divisions(touched) : nodes_without_element();
+  }
+  /// Where elements have corners only: of the nodes that divided these cells, those that divide no other one.
+  [[nodiscard]] std::vector<Index> nodes_of_divisions(std::vector<Index> const& touched) const {
+    auto const view = lists_.view();
+    std::vector<Index> found;
+    auto const add = [&](Index node) {
+      if (node >= lists_.initial.nodes) found.push_back(node);
+    };
+    for (Index const c : touched) {
+      auto const& cell = view.cells[at(c)];
+      auto const own = view.row(c);
+      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
+        if (auto const& edge = view.edges[at(own.edges[e])]; edge.cells.refined() == 0)
+          add(edge.middle);
+      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s)
+        if (auto const& side = view.sides[at(own.sides[s])];
+            std::ranges::none_of(side.cells, [&](Index k) { return k >= 0 && !view.is_leaf(k); }))
+          add(side.centre);
+      add(cell.centre);
+    }
+    return each_once(std::move(found), at(lists_.nodes));
+  }
+  [[nodiscard]] std::vector<Index> nodes_without_element() const {
+    auto const& i = lists_.initial;
+    CompactionView const view{.tree = lists_.view(), .initial = i};
+    std::vector<std::uint8_t> is_used(at(lists_.nodes - i.nodes));
+    auto const use = [&](Index node) {
+      std::atomic_ref(is_used[at(node)]).store(1, std::memory_order_relaxed);
+    };
+    for_each_on_host(size(lists_.cells) - i.cells, few, [&](Index k) {
+      if (view.stays(i.cells + k)) view.use_nodes_of(i.cells + k, use);
+    });
+    for (Index const c : lists_.converted) view.use_nodes_of(c, use);
+    std::vector<Index> found;
+    for (Index n = i.nodes; n < lists_.nodes; ++n)
+      if (is_used[at(n - i.nodes)] == 0) found.push_back(n);
+    return found;
+  }
 
-    template <class Used>
-    Numbers(Index end, Index begin, Used const& used) : first(begin), others(at(end - begin)) {
-      HostParts const parts(end - begin, few);
-      std::vector<Index> next(at(parts.count()) + 1);  // of each part
-      parts([&](Index from, Index to, int part) {
-        Index n = 0;
-        for (Index k = from; k < to; ++k) n += (others[at(k)] = used(begin + k) ? 1 : 0);
-        next[at(part) + 1] = n;
-      });
-      std::partial_sum(next.begin(), next.end(), next.begin());
-      kept.resize(at(next.back()));
-      count = begin + next.back();
-      parts([&](Index from, Index to, int part) {
-        Index n = next[at(part)];
-        for (Index k = from; k < to; ++k) {
-          bool const stays = others[at(k)] != 0;
-          if (stays) kept[at(n)] = begin + k;
-          others[at(k)] = stays ? begin + n++ : -1;
+  /// New numbers where some go, as all before `first` is. What goes has −1.
+  struct Numbers {
+    Index first, count;         // the first that may change; how many there are then
+    std::vector<Index> others;  // from `first` on
+    std::vector<Index> kept;    // from `first` on: the old numbers of those that stay
+
+    /// Of `end` entries. `gone`: ascending, from `first` on.
+    Numbers(Index end, Index first_to_change, std::vector<Index> const& gone)
+        : first(first_to_change),
+          count(end - size(gone)),
+          others(at(end - first)),
+          kept(at(count - first)) {
+      HostParts const parts(end - first, few);
+      parts([&](Index from, Index to, int) {
+        auto next = std::ranges::lower_bound(gone, first + from);
+        for (Index k = from; k < to;) {
+          Index const passed = static_cast<Index>(next - gone.begin());
+          Index const until = next == gone.end() ? to : std::min(to, *next - first);
+          for (; k < until; ++k) {
+            others[at(k)] = first + k - passed;
+            kept[at(k - passed)] = first + k;
+          }
+          if (k == to) break;
+          others[at(k++)] = -1;
+          ++next;
         }
       });
     }
     [[nodiscard]] NewNumbers view() const { return {first, others.data()}; }
   };
-  /// Those behind the initial mesh's move up, and the known ones of the initial mesh are told.
+
+  /// Of the cells before one, those that know of newer ones: that became leaves or lost nodes, are divided, or have not the nodes
+  /// that they had. Each once, ascending.
+  [[nodiscard]] std::vector<Index> cells_that_know(std::vector<Index> const& touched,
+                                                   Index end) const {
+    std::vector<Index> known;
+    for (auto const* cells :
+         std::array{&touched, &std::as_const(lists_).divided, &std::as_const(lists_).converted})
+      std::ranges::copy_if(*cells, std::back_inserter(known), [&](Index c) { return c < end; });
+    return each_once(std::move(known), at(end));
+  }
+  /// The edges and sides of these cells, and of all from `first_cell` on, that are before others. Each once, ascending.
+  [[nodiscard]] EdgesAndSides edges_and_sides_of(std::vector<Index> const& cells, Index first_cell,
+                                                 Index end_of_edges, Index end_of_sides) const {
+    EdgesAndSides found;
+    auto const view = lists_.view();
+    auto const add = [&](Index c) {
+      auto const own = view.row(c);
+      auto const& p = view.cells[at(c)].pattern();
+      for (std::size_t e = 0; e < at(p.edges); ++e)
+        if (own.edges[e] < end_of_edges) found.edges.push_back(own.edges[e]);
+      for (std::size_t s = 0; s < at(p.sides); ++s)
+        if (own.sides[s] < end_of_sides) found.sides.push_back(own.sides[s]);
+    };
+    for (Index const c : cells) add(c);
+    for (Index c = first_cell; c < size(lists_.cells); ++c) add(c);
+    return {each_once(std::move(found.edges), at(end_of_edges)),
+            each_once(std::move(found.sides), at(end_of_sides))};
+  }
+
+  /// Those from `first` on move up to their new numbers, and of those before, what the known ones know of others.
   template <class V>
   static void move_up(SharedList<V>& list, std::vector<Index> const& known, Numbers const& numbers,
                       CompactionView const& view) {
@@ -117,24 +211,18 @@ class TreeCompaction {
 
   void move_rows_up(Numbers const& cell, CompactionView const& view) {
     auto const& layout = lists_.layout;
-    std::size_t const per_row = layout.entry(1);
+    auto const rows = lists_.rows.pages();
     lists_.rows.replace_from(layout.entry(at(cell.first)), layout.entry(cell.kept.size()),
                              [&](std::size_t i) {
-                               auto const old = at(cell.kept[i / per_row]);
-                               auto const k = i % per_row;
-                               RowEntry entry = lists_.rows[layout.entry(old) + k];
+                               auto const row = i >> layout.shift, k = i - layout.entry(row);
+                               RowEntry entry = rows[layout.entry(at(cell.kept[row])) + k];
                                view.renumber(entry, static_cast<Index>(k));
                                return entry;
                              });
   }
 
-  [[nodiscard]] std::vector<Index> initial_of(std::vector<Index> cells) const {
-    std::erase_if(cells, [&](Index c) { return c >= lists_.initial.cells; });
-    return cells;
-  }
-
   TreeLists& lists_;
-  std::vector<std::uint8_t> node_used_;  // behind the initial mesh's
+  bool are_linear_;  // whether all elements have corners only
 };
 
 }  // namespace pliant::detail
