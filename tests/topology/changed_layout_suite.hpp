@@ -236,7 +236,7 @@ TEST_CASE("blocks that are said to stay have the elements that they had", "[topo
     auto const before = elements_in_order(made.before, first);
     auto const changed =
         changed_blocks(first, places_of_families(made.after, first, made.transfer));
-    OrderBefore<1, 3> const known{{before.cells[0]}, made.transfer, changed};
+    OrderBefore<1> const known{{before.cells[0]}, changed};
     auto const after = elements_in_order(made.after, first, &known);
     auto const& [now, then] = std::pair(after.blocks[0], before.blocks[0]);
     auto const old = old_elements(made), new_numbers = numbers(after, made.after),

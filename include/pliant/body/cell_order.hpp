@@ -52,12 +52,10 @@ struct OrderedElements {
   std::array<ElementBlocks, Types> blocks;
 };
 
-/// The same cells before a change, as a layout keeps them (of a first mesh it keeps none), what the change means, and by the
-/// block whether other elements stand there now.
-template <std::size_t Types, int Dim>
+/// The same cells before a change, as a layout keeps them (of a first mesh it keeps none), and by the block whether other elements stand there now.
+template <std::size_t Types>
 struct OrderBefore {
   std::array<std::span<std::shared_ptr<BlockCells const> const>, Types> cells;
-  Transfer<Dim> const& transfer;
   std::span<char const> changed;
 };
 
@@ -126,17 +124,15 @@ void for_each_leaf(Hierarchy<Dim> const& tree, CellOrder const& first, Index blo
 template <Element... Es>
 OrderedElements<sizeof...(Es)> elements_in_order(
     Topology<Mesh<Es...>> const& topology, CellOrder const& first,
-    OrderBefore<sizeof...(Es), Mesh<Es...>::dim> const* before = nullptr) {
+    OrderBefore<sizeof...(Es)> const* before = nullptr) {
   constexpr std::size_t types = sizeof...(Es);
   auto const blocks = static_cast<std::size_t>(first.blocks());
   auto const stays = [&](std::size_t block) {
     return before != nullptr && before->changed[block] == 0;
   };
-  // Cells of the first mesh have the same numbers for good.
   auto const is_known = [&](std::size_t block) {
     return stays(block) && std::ranges::all_of(before->cells, [&](auto const& known) {
-             return !known.empty() &&
-                    (!before->transfer.renumbers() || known[block]->greatest < first.count());
+             return !known.empty() && known[block]->greatest < topology.first_renumbered_cell;
            });
   };
   OrderedElements<types> ordered;

@@ -59,7 +59,7 @@ std::tuple<OrderedElements<sizeof...(Es)>, NodeRows, std::vector<Index>> order_a
   auto [rows, freed] = rows_after(change.before.node_rows(), change.transfer,
                                   change.touched.families_after(), places);
   auto const changed = changed_blocks(first, places);
-  OrderBefore<sizeof...(Es), Mesh<Es...>::dim> before{{}, change.transfer, changed};
+  OrderBefore<sizeof...(Es)> before{{}, changed};
   std::apply([&](auto const&... table) { before.cells = {table.numbers->blocks()...}; },
              change.before.tables);
   auto ordered = elements_in_order(topology, first, &before);

@@ -89,6 +89,7 @@ auto plan_change(std::shared_ptr<Topology<M> const> const& before, MarkedElement
   detail::share_volumes(*before, parts.families);
   Transfer<dim> transfer(std::move(parts));
   auto topology = std::make_shared<Topology<M>>(changed.tree, std::move(cells));
+  topology->first_renumbered_cell = changed.first_renumbered();
   topology->set_boundaries(before->boundaries(), [&](auto const& facets) {
     auto others = transfer.changed_facets(*facets);
     return others ? std::make_shared<std::vector<Facet<dim>> const>(std::move(*others)) : facets;

@@ -30,6 +30,8 @@ class Topology {
   std::shared_ptr<Hierarchy<dim> const> tree;  ///< null before the first refinement
   std::vector<CellSet> cells;  ///< per type: the cells of the tree that its elements are
   std::vector<std::vector<double>> element_values;  ///< per type: (elements, values) that laws read
+  Index first_renumbered_cell =
+      0;  ///< those before have the numbers that they had before the change of which it came
 
   Topology() = default;
   /// Of a mesh that nothing was done to.

@@ -32,26 +32,22 @@ class TreeCompaction {
   /// `touched` became leaves or lost their nodes, and `gone`, each once, were children of some of them.
   Renumbering operator()(std::vector<Index> const& touched, std::vector<Index> gone) {
     auto const& i = lists_.initial;
-    auto const parts =
-        edges_and_sides_of(gone, size(lists_.cells), size(lists_.edges), size(lists_.sides));
     auto const view = lists_.view();
-    auto const unused = [](std::vector<Index> const& numbers, Index initial, auto const& entries) {
-      std::vector<Index> found;
-      std::ranges::copy_if(numbers, std::back_inserter(found), [&](Index k) {
-        return k >= initial && !CompactionView::is_used(entries[at(k)]);
-      });
-      return found;
-    };
-    auto const cells = each_once(std::move(gone), lists_.cells.size()),
-               edges = unused(parts.edges, i.edges, view.edges),
-               sides = unused(parts.sides, i.sides, view.sides), nodes = nodes_that_go(touched);
+    auto const unused = edges_and_sides_of(
+        gone, size(lists_.cells),
+        [&](Index e) { return e >= i.edges && !CompactionView::is_used(view.edges[at(e)]); },
+        [&](Index s) { return s >= i.sides && !CompactionView::is_used(view.sides[at(s)]); });
+    auto const cells = each_once(std::move(gone)), nodes = nodes_that_go(touched);
+    auto const& [edges, sides] = unused;
     auto const first = first_to_change({front(cells), front(edges), front(sides), front(nodes)});
     Numbers const node(lists_.nodes, first.nodes, nodes),
         cell(size(lists_.cells), first.cells, cells), edge(size(lists_.edges), first.edges, edges),
         side(size(lists_.sides), first.sides, sides);
     CompactionView const moved{view, i, node.view(), cell.view(), edge.view(), side.view()};
     auto const known = cells_that_know(touched, cell.first);
-    auto const around = edges_and_sides_of(known, cell.first, edge.first, side.first);
+    auto const around = edges_and_sides_of(
+        known, cell.first, [&](Index e) { return e < edge.first; },
+        [&](Index s) { return s < side.first; });
     // Sides look at cells, which are still where they were.
     move_up(lists_.sides, around.sides, side, moved);
     move_up(lists_.edges, around.edges, edge, moved);
@@ -118,7 +114,7 @@ class TreeCompaction {
           add(side.centre);
       add(cell.centre);
     }
-    return each_once(std::move(found), at(lists_.nodes));
+    return each_once(std::move(found));
   }
   [[nodiscard]] std::vector<Index> nodes_without_element() const {
     auto const& i = lists_.initial;
@@ -168,33 +164,40 @@ class TreeCompaction {
     [[nodiscard]] NewNumbers view() const { return {first, others.data()}; }
   };
 
-  /// Of the cells before one, those that know of newer ones: that became leaves or lost nodes, are divided, or have not the nodes
-  /// that they had. Each once, ascending.
+  /// Of the cells before one, those that know of it or of what came with it: that became leaves or lost nodes, were divided since,
+  /// or have not the nodes that they had. Each once, ascending.
   [[nodiscard]] std::vector<Index> cells_that_know(std::vector<Index> const& touched,
                                                    Index end) const {
     std::vector<Index> known;
-    for (auto const* cells :
-         std::array{&touched, &std::as_const(lists_).divided, &std::as_const(lists_).converted})
-      std::ranges::copy_if(*cells, std::back_inserter(known), [&](Index c) { return c < end; });
-    return each_once(std::move(known), at(end));
+    auto const add = [&](std::vector<Index> const& list, Index from) {
+      for (Index const c : list)
+        if (c < end && lists_.cells[at(c)].first_child >= from) known.push_back(c);
+    };
+    constexpr Index any = -1;
+    add(touched, any);
+    add(lists_.divided, end);
+    add(lists_.converted, any);
+    return each_once(std::move(known));
   }
-  /// The edges and sides of these cells, and of all from `first_cell` on, that are before others. Each once, ascending.
+  /// Edges and sides of these cells, and of all from `first_cell` on: those for which is_edge(number) or is_side(number), each once,
+  /// ascending.
+  template <class IsEdge, class IsSide>
   [[nodiscard]] EdgesAndSides edges_and_sides_of(std::vector<Index> const& cells, Index first_cell,
-                                                 Index end_of_edges, Index end_of_sides) const {
+                                                 IsEdge const& is_edge,
+                                                 IsSide const& is_side) const {
     EdgesAndSides found;
     auto const view = lists_.view();
     auto const add = [&](Index c) {
       auto const own = view.row(c);
       auto const& p = view.cells[at(c)].pattern();
       for (std::size_t e = 0; e < at(p.edges); ++e)
-        if (own.edges[e] < end_of_edges) found.edges.push_back(own.edges[e]);
+        if (is_edge(own.edges[e])) found.edges.push_back(own.edges[e]);
       for (std::size_t s = 0; s < at(p.sides); ++s)
-        if (own.sides[s] < end_of_sides) found.sides.push_back(own.sides[s]);
+        if (is_side(own.sides[s])) found.sides.push_back(own.sides[s]);
     };
     for (Index const c : cells) add(c);
     for (Index c = first_cell; c < size(lists_.cells); ++c) add(c);
-    return {each_once(std::move(found.edges), at(end_of_edges)),
-            each_once(std::move(found.sides), at(end_of_sides))};
+    return {each_once(std::move(found.edges)), each_once(std::move(found.sides))};
   }
 
   /// Those from `first` on move up to their new numbers, and of those before, what the known ones know of others.
