@@ -208,6 +208,7 @@ class Storm {
     }
   }
   void hold() {
+    if (handles_.size() > 5) return release();  // some nodes are to stay free
     auto const nodes = some_nodes(15);
     auto const directions = static_cast<DirectionMask>(1 + random_.below((1u << dim) - 1));
     bool const drives = random_.below(2) == 0;

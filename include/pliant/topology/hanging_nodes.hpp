@@ -31,7 +31,8 @@ class HangingNodes {
     }
     auto const& divided_cells = tree_.divided();
     auto const edges = tree_.edges_of(divided_cells);
-    auto divided = divided_sides(tree_.sides_of(divided_cells));
+    auto divided = sides_have_nodes() ? divided_sides(tree_.sides_of(divided_cells))
+                                      : std::vector<DividedSide>{};
     if (mixed()) lower_sides(divided);
     detail::HostParts const parts(static_cast<Index>(edges.size() + divided.size()),
                                   mixed() ? std::numeric_limits<Index>::max() : Index{2048});
@@ -64,6 +65,12 @@ class HangingNodes {
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] bool mixed() const { return !listed_.empty(); }
 
+  /// Whether nodes may hang on sides, beside those on their edges: not where all cells are tetrahedra with corners only.
+  [[nodiscard]] bool sides_have_nodes() const {
+    auto const& lists = tree_.lists();
+    return mixed() || lists.quadratic_leaves > 0 ||
+           lists.layout.shift != RowLayout::of_tetrahedra().shift;
+  }
   /// Whether the displacement on a whole edge of a leaf is linear.
   [[nodiscard]] bool is_linear(Index e) const {
     auto const& edge = edges_[at(e)];
