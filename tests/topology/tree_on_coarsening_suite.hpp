@@ -71,10 +71,11 @@ void merge_all(TreeBeside<B>& on, Hierarchy<Dim>& host) {
 
 /// The same from a mesh, back to it, and back to where that began.
 template <class B, class M>
-void check_changes_of(B const& backend, M const& mesh, int rounds) {
+void check_changes_of(B const& backend, M const& mesh, int rounds, Index few = TreeView::few) {
   Hierarchy<M::dim> host(mesh);
   auto const first = state(host);
   TreeBeside<B> on(backend, host);
+  on.few = few;
   check_changes(on, host, rounds);
   auto const changed = host;
   merge_all(on, host);
@@ -96,6 +97,36 @@ TEST_CASE("trees of every cell are coarsened in a backend's memory", "[topology]
     // of several pages
     check_changes_of(backend, regular_mesh<Tri3>(16), 12);
     check_changes_of(backend, regular_mesh<Tet4>(5), 10);
+  });
+}
+
+TEST_CASE("what came before all that goes stays where it is in a backend's memory", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    constexpr Index few = 0;
+    check_changes_of(backend, regular_mesh<Tri3>(5), 30, few);
+    check_changes_of(backend, regular_mesh<Quad4>(5), 30, few);
+    check_changes_of(backend, regular_mesh<Tet4>(2), 20, few);
+    check_changes_of(backend, regular_mesh<Hex8>(3), 20, few);
+    check_changes_of(backend, regular_mesh<Wedge6>(3), 20, few);
+    check_changes_of(backend, regular_mesh<Pyramid5>(2), 20, few);
+    check_changes_of(backend, mixed_mesh(4), 30, few);
+    check_changes_of(backend, mesh::raised<Tri6>(regular_mesh<Tri3>(4)), 20, few);
+    check_changes_of(backend, regular_mesh<Tri3>(16), 12, few);  // of several pages
+    check_changes_of(backend, regular_mesh<Tet4>(5), 10, few);
+    // What was refined last goes: all that came before stays.
+    auto const mesh = regular_mesh<Tet4>(3);
+    Hierarchy<3> host(mesh);
+    TreeBeside<B> on(backend, host);
+    on.few = few;
+    Random random(4);
+    refine_both(on, host, some_leaves(host, 2, random));
+    auto const before = on.tree.sizes();
+    refine_both(on, host, {host.leaves().front(), host.leaves().back()});
+    std::vector<Index> made(static_cast<std::size_t>(on.tree.sizes().cells - before.cells));
+    std::iota(made.begin(), made.end(), before.cells);
+    auto const done = coarsen_both(on, host, made, random);
+    CHECK(done.merged > 0);
+    CHECK(listed(std::vector{done.staying}) == listed(std::vector{before}));
   });
 }
 

@@ -167,7 +167,7 @@ class ChangesOnBackend {
   }
   void renumber(Cells& cells, Coarsened const& merged) {
     backend().for_each(size(cells),
-                       RenumberCells{{merged.initial.cells, merged.cells}, cells.data()});
+                       RenumberCells{{merged.staying.cells, merged.cells}, cells.data()});
   }
 
   /// Tries a change on the tree, and takes from the elements to merge those of families that a refinement beside them would
@@ -185,7 +185,7 @@ class ChangesOnBackend {
       auto again = zeros<Index>(backend(), families + 1);  // and whether there are any
       backend().for_each(refined.leaves, FindMergedAgain{refined.cells,
                                                          parents.data(),
-                                                         {merged.initial.cells, merged.cells},
+                                                         {merged.staying.cells, merged.cells},
                                                          merged.merged,
                                                          again.data()});
       auto any = zeros<Index>(backend(), 1);

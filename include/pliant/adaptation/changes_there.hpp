@@ -63,11 +63,11 @@ class ChangesThere {
  private:
   /// The numbers are a copy, since the tree is gone where what is refined behind it fails.
   ChangedNodesOn<B> nodes_after(On const&, Coarsened const& merged) const {
-    auto const moved = static_cast<std::size_t>(merged.before.nodes - merged.initial.nodes);
+    auto const moved = static_cast<std::size_t>(merged.before.nodes - merged.staying.nodes);
     auto numbers =
         std::make_shared<typename B::template Array<Index>>(unset<Index>(parts_.backend, moved));
     copy_values<B, Index>(parts_.backend, merged.nodes, numbers->data(), moved);
-    return {merged.before.nodes, merged.now.nodes, merged.initial.nodes, std::move(numbers)};
+    return {merged.before.nodes, merged.now.nodes, merged.staying.nodes, std::move(numbers)};
   }
   ChangedNodesOn<B> nodes_after(On const& on, typename TreeOn<B>::Refined const& refined) const {
     Index const now = on.tree.sizes().nodes;

@@ -155,7 +155,7 @@ class ElementNumbersOn {
   }
   /// And after a coarsening.
   void follow(B const& backend, TreeOn<B> const& tree, Coarsened const& coarsened) {
-    follow(backend, tree, coarsened.initial.cells / per_word, coarsened.merged,
+    follow(backend, tree, coarsened.staying.cells / per_word, coarsened.merged,
            detail::ChangeMergedLeaves{{}, coarsened.parents});
   }
 

@@ -134,21 +134,21 @@ class HeldSidesOn {
                Index const* of_node) {
     if (found_.size() == 0) found_ = ReadBack<B, Index>(backend, 1);
     found_.set_all(0);
-    Index const first = Dim == 2 ? done.initial.edges : done.initial.sides,
+    Index const first = Dim == 2 ? done.staying.edges : done.staying.sides,
                 now = count_in(done.now);
     detail::grow(backend, moved_, at(now - first));
     backend.for_each(
         count_ - first,
         detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()});
     backend.for_each(done.merged, detail::FindCutSides<Sides>{Sides{tree.view()},
-                                                              {done.initial.cells, done.cells},
+                                                              {done.staying.cells, done.cells},
                                                               done.parents,
                                                               bits_.data(),
                                                               moved_.data(),
                                                               first,
                                                               found_.data()});
-    backend.for_each(done.before.nodes - done.initial.nodes,
-                     detail::FindNamedNodes{done.nodes, of_node + done.initial.nodes, named_.data(),
+    backend.for_each(done.before.nodes - done.staying.nodes,
+                     detail::FindNamedNodes{done.nodes, of_node + done.staying.nodes, named_.data(),
                                             found_.data()});
     backend.synchronize();
     if (found_.template first<1>()[0] != 0) return false;

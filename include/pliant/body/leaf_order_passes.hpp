@@ -77,7 +77,7 @@ struct MoveBlocks {
 
 /// New numbers of the cells of a tree that was coarsened.
 inline NewNumbers new_cells(Coarsened const& of) {
-  return {of.merged > 0 ? of.initial.cells : of.before.cells, of.cells};
+  return {of.merged > 0 ? of.staying.cells : of.before.cells, of.cells};
 }
 
 /// Notes where children were, and how many a place is kept for: none for those behind the first.
@@ -89,7 +89,7 @@ struct FindFamilies {
   std::uint8_t* merged;  // by the place before: 1 for first children, 2 for the others
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    Index const cell = NewNumbers{of.initial.cells, of.cells}(of.parents[r]),
+    Index const cell = NewNumbers{of.staying.cells, of.cells}(of.parents[r]),
                 first = places[of.first_children[r]],
                 children = tree.cells[static_cast<std::size_t>(cell)].pattern().children;
     families[r] = {cell, -1, first, children};

@@ -141,18 +141,18 @@ class NodeRowsOn {
   /// Frees the rows of nodes that a coarsening took away; the others keep theirs. There are as many rows as before: pages
   /// without nodes wait for a refinement, those at the end too. Waits for nothing.
   void coarsen(Coarsened const& done) {
-    Index const staying = done.now.nodes - done.initial.nodes;
+    Index const staying = done.now.nodes - done.staying.nodes;
     freed_count_ = done.before.nodes - done.now.nodes;
     if (freed_count_ == 0) return;
-    Index const n = done.before.nodes - done.initial.nodes;
-    Index* const of_node = of_node_.data() + done.initial.nodes;
+    Index const n = done.before.nodes - done.staying.nodes;
+    Index* const of_node = of_node_.data() + done.staying.nodes;
     need(freed_, freed_count_);
     need(found_, staying);
     backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counter_.data());
     backend_.for_each(freed_count_, detail::LookUp{of_node, freed_.data()});
     backend_.for_each(
         n, detail::MoveRows{
-               {done.initial.nodes, done.nodes}, of_node_.data(), node_.data(), found_.data()});
+               {done.staying.nodes, done.nodes}, of_node_.data(), node_.data(), found_.data()});
     detail::copy_values<B, Index>(backend_, found_.data(), of_node, at(staying));
     nodes_ = done.now.nodes;
     most_partial_ += freed_count_;

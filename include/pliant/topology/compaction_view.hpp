@@ -42,7 +42,30 @@ struct CompactionView {
       if (list[i] >= initial.nodes) use(list[i] - initial.nodes);
   }
 
-  /// New numbers in what an entry of the initial mesh knows of the rest.
+  /// visit(node) for the nodes that divided a cell that is a leaf now, and divide no other one; −1: none. All elements have
+  /// corners only.
+  template <class Visit>
+  static PLIANT_HOST_DEVICE void visit_nodes_that_go(TreeView const& tree, Index c,
+                                                     Visit const& visit) {
+    auto const own = tree.row(c);
+    auto const& cell = tree.cells[at(c)];
+    auto const& p = cell.pattern();
+    for (std::size_t e = 0; e < at(p.edges); ++e)
+      if (auto const& edge = tree.edges[at(own.edges[e])]; edge.cells.refined() == 0)
+        visit(edge.middle);
+    for (std::size_t s = 0; s < at(p.sides); ++s)
+      if (auto const& side = tree.sides[at(own.sides[s])]; !is_divided(tree, side))
+        visit(side.centre);
+    visit(cell.centre);
+  }
+  /// Whether a cell at a side is divided.
+  static PLIANT_HOST_DEVICE bool is_divided(TreeView const& tree, TreeSide const& side) {
+    for (Index const c : side.cells)
+      if (c >= 0 && !tree.is_leaf(c)) return true;
+    return false;
+  }
+
+  /// New numbers in what an entry that stays where it is knows of others.
   PLIANT_HOST_DEVICE void renumber_within(TreeCell& cell) const {
     move(cell.first_child, cells);
     move(cell.centre, nodes);
@@ -53,11 +76,8 @@ struct CompactionView {
     move(edge.first_half, edges);
   }
   PLIANT_HOST_DEVICE void renumber_within(TreeSide& side) const {
-    if (side.first_inner_edge >= 0) {
-      bool is_divided = false;
-      for (Index const c : side.cells) is_divided = is_divided || (c >= 0 && !tree.is_leaf(c));
-      if (!is_divided) side.first_child = side.first_inner_edge = -1;
-    }
+    if (side.first_inner_edge >= 0 && !is_divided(tree, side))
+      side.first_child = side.first_inner_edge = -1;
     move(side.centre, nodes);
     move(side.first_child, sides);
     move(side.first_inner_edge, edges);

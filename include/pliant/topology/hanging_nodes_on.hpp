@@ -101,8 +101,8 @@ class HangingNodesOn {
     using EdgesOfMerged = detail::ListHungEdgesOfMerged<Dim>;
     using SidesOfMerged = detail::ListHungSidesOfMerged<Dim>;
     detail::HangingView<Dim> const view{tree.view()};
-    auto const& initial = coarsened.initial;
-    NewNumbers const cells{initial.cells, coarsened.cells};
+    auto const& staying = coarsened.staying;
+    NewNumbers const cells{staying.cells, coarsened.cells};
     std::swap(edges_, edges_before_);
     std::swap(sides_, sides_before_);
     Index const of_edges = EdgesOfMerged::each * coarsened.merged,
@@ -119,10 +119,10 @@ class HangingNodesOn {
         backend_, LoopStep{2, FillValue<Index>{counters_.data(), 0}},
         LoopStep{edge_count_,
                  ListStaying<IsHungOnEdge<Dim>>{
-                     {view}, edges_before_.data(), {initial.edges, coarsened.edges}, edges}},
+                     {view}, edges_before_.data(), {staying.edges, coarsened.edges}, edges}},
         LoopStep{side_count_,
                  ListStaying<IsHungOnSide<Dim>>{
-                     {view}, sides_before_.data(), {initial.sides, coarsened.sides}, sides}},
+                     {view}, sides_before_.data(), {staying.sides, coarsened.sides}, sides}},
         LoopStep{of_edges, EdgesOfMerged{{view}, coarsened.parents, cells, edges}},
         LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}},
         LoopStep{2, CopyValue<Index>{counters_.data(), counts_.data()}});

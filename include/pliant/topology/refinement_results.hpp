@@ -40,11 +40,11 @@ struct Coarsened {
   Index const* parents = nullptr;  ///< (merged): these, by their old numbers, ascending
   /// (merged): the old number of the first child of each; the others followed it.
   Index const* first_children = nullptr;
-  TreeSizes initial;      ///< of the initial mesh, whose cells and nodes keep their numbers
+  TreeSizes staying;      ///< so many of each, the first, keep their numbers
   TreeSizes before, now;  ///< how many there were, and are
-  /// (before.nodes - initial.nodes): the new number of node initial.nodes + k is nodes[k]; −1: gone.
+  /// (before.nodes - staying.nodes): the new number of node staying.nodes + k is nodes[k]; −1: gone.
   Index const* nodes = nullptr;
-  Index const* cells = nullptr;  ///< (before.cells - initial.cells): the same for cells
+  Index const* cells = nullptr;  ///< (before.cells - staying.cells): the same for cells
   Index const* edges = nullptr;  ///< and edges
   Index const* sides = nullptr;  ///< and sides
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include <pliant/backend/backend.hpp>
@@ -12,11 +13,17 @@
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
 #include <pliant/topology/coarsening_passes.hpp>
+#include <pliant/topology/compaction_passes.hpp>
+#include <pliant/topology/division_marks.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/stamps.hpp>
 
 namespace pliant::detail {
+
+/// Whether all elements of a tree have corners only, all have nodes between these, or some have other nodes than others, or than in the
+/// initial mesh.
+enum class Degrees { one, two, several };
 
 /// Merges families of a tree in a backend's memory, as CellMerging and TreeCompaction do on the host. Has what passes take
 /// between them.
@@ -25,29 +32,39 @@ class TreeCoarsening {
  public:
   /// See TreeOn::coarsen. `sizes`: of the tree; `initial`: of the initial mesh; stamps: by cell.
   Coarsened operator()(B const& backend, PagedTree<B>& tree, TreeSizes const& initial,
-                       TreeSizes const& sizes, Stamps<B>& stamps, Index const* marked,
-                       Index count) {
-    Coarsened done{.initial = initial, .before = sizes, .now = sizes};
+                       TreeSizes const& sizes, Degrees has, Index few, Stamps<B>& stamps,
+                       Index const* marked, Index count) {
+    Coarsened done{.staying = initial, .before = sizes, .now = sizes};
+    bool const finds_first =
+        has == Degrees::one && !divisions_.empty() && sizes.cells - initial.cells > few;
     find_families(backend, tree.view(), done, stamps, marked, count);
+    if (!finds_first) list_knowing(backend, tree.view(), done, 0, has == Degrees::several);
     auto const found = counted(backend);
-    Index const merged = found[1], knowing = found[2];
-    if (merged == 0) {
-      std::swap(counters_, counters_before_);
-      return done;
-    }
+    Index const merged = found[1];
+    if (merged == 0) return done;
     // Parents are put in order in the launch that marks pages.
     tree.own(backend, [&](PageMarks const& marks) {
+      Index const knowing = finds_first ? 0 : found[2];
       in_turn(backend, SortStep{merged, keys_.data(), parents_.data(), key_bits(done.before.cells)},
               LoopStep{merged * MarkMerged::each, MarkMerged{parents_.data(), marks}},
-              LoopStep{knowing, MarkKnowing{knowing_.data(), marks}});
+              LoopStep{knowing, MarkKnowing{listed(done, knowing), nullptr, marks}});
     });
     grow(backend, first_children_, at(merged));
     in_turn(
         backend,
         LoopStep{merged * LeaveChildrenOut::each, LeaveChildrenOut{tree.view(), parents_.data()}},
         LoopStep{merged, MergeCells{tree.view(), parents_.data(), first_children_.data()}});
-    auto const view = number(backend, tree, done, knowing);
-    move_up(backend, tree, done, view, knowing);
+    KnowingCells knowing = listed(done, found[2]);
+    Index newer = 0;  // cells that may know of others beside these
+    if (finds_first) {
+      done.staying =
+          divisions_.last_before(first_gone(backend, tree.view(), initial, merged), initial);
+      knowing = own_knowing(backend, tree, done, merged);
+      newer = sizes.cells - done.staying.cells;
+    }
+    auto const view = number(backend, tree, done, knowing.count);
+    move_up(backend, tree, done, view, knowing, knowing.count + newer);
+    divisions_.forget_behind(done.staying);
     done.merged = merged;
     done.parents = parents_.data();
     done.first_children = first_children_.data();
@@ -58,20 +75,17 @@ class TreeCoarsening {
     return done;
   }
 
-  /// Follows a refinement, after which the tree looks so, in a step of a list of steps.
-  LoopStep<ListRefined> follow(TreeView const& tree, Index initial, CellSplit const* refined,
-                               Index leaves) {
-    if (!knows_) return {};
-    return {leaves, {tree, initial, refined, knowing_.data(), counters_.data() + of_knowing}};
-  }
-  /// The tree is what it was some changes ago.
-  void forget() { knows_ = false; }
+  /// Before a division.
+  void note_division(TreeSizes const& sizes) { divisions_.add(sizes); }
+  /// The tree is what it is for good; or what it was when that was said the last time.
+  void keep() { kept_divisions_ = divisions_; }
+  void take_back() { divisions_ = kept_divisions_; }
 
  private:
   template <class U>
   using Array = typename B::template Array<U>;
-  /// Counters: three of a call's lists; and of cells that know of others, until the next call.
-  static constexpr std::size_t of_knowing = 3, counters = 4;
+  /// Of families of which any child is marked, of those that are merged, and of listed cells that know of newer entries.
+  static constexpr std::size_t counters = 3;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   /// Numbers that loops counted, which this waits for.
@@ -79,45 +93,83 @@ class TreeCoarsening {
     backend.synchronize();
     return counts_.template first<4>();
   }
+  KnowingCells listed(Coarsened const& of, Index count) const {
+    return {knowing_.data(), count, of.staying};
+  }
 
-  /// Lists the parents of families that are merged, and the cells of the initial mesh that know of what came later. Counts
-  /// them behind the families of which any child is marked.
+  /// Lists the parents of families that are merged. Counts them behind the families of which any child is marked.
   void find_families(B const& backend, TreeView const& tree, Coarsened const& of, Stamps<B>& stamps,
                      Index const* marked, Index count) {
-    Index const most = std::min(count, of.before.cells), initial = of.initial.cells;
+    Index const most = std::min(count, of.before.cells);
     stamps.begin(backend, at(of.before.cells));
-    std::swap(counters_, counters_before_);
     counters_ = zeros<Index>(backend, counters);
     auto* const counts = counters_.data();
     if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
     grow(backend, families_, at(most));
     grow(backend, parents_, at(most));
     grow(backend, keys_, at(most));
-    grow(backend, knowing_, at(initial));
-    if (!knows_) backend.select(initial, IsKnowing{tree}, knowing_.data(), counts + 2);
     in_turn(backend,
             LoopStep{count,
                      ListFamilies{
                          tree, marked, {stamps.data(), stamps.now(), families_.data(), counts}}},
             LoopStep{most, ListMergeable{tree, families_.data(), counts, stamps.data(),
                                          stamps.now(), parents_.data(), counts + 1, keys_.data()}},
-            LoopStep{knows_ ? 1 : 0,
-                     CopyValue<Index>{knows_ ? counters_before_.data() + of_knowing : nullptr,
-                                      counts + 2}},
-            LoopStep{3, CopyValue<Index>{counts, counts_.data()}});
+            LoopStep{2, CopyValue<Index>{counts, counts_.data()}});
+  }
+
+  /// Lists cells among those that stay that know of newer entries, `merged` cells that became leaves among them. Gives how many
+  /// there are at most.
+  Index list_knowing(B const& backend, TreeView const& tree, Coarsened const& of, Index merged,
+                     bool are_converted) {
+    Index const end = of.staying.cells, newer = of.before.cells - end,
+                converted = are_converted ? of.staying.cells : 0;
+    Index const most = std::min(end, merged + newer / 2 + 1 + converted);
+    knowing_stamps_.begin(backend, at(end));
+    grow(backend, knowing_, at(most));
+    auto* const count = counters_.data() + 2;
+    ListOnce const list{knowing_stamps_.data(), knowing_stamps_.now(), knowing_.data(), count};
+    in_turn(backend, LoopStep{merged, ListMerged{parents_.data(), end, list}},
+            LoopStep{newer, ListDividedSince{tree, end, list}},
+            LoopStep{converted, ListConverted{tree, list}},
+            LoopStep{1, CopyValue<Index>{count, counts_.data() + 2}});
+    return most;
+  }
+  /// Finds the first of each that goes with children that were left out; waits.
+  TreeSizes first_gone(B const& backend, TreeView const& tree, TreeSizes const& initial,
+                       Index merged) {
+    grow(backend, first_gone_, 4);
+    in_turn(backend,
+            LoopStep{4, FillValue<Index>{first_gone_.data(), std::numeric_limits<Index>::max()}},
+            LoopStep{merged * FindFirstGone::each,
+                     FindFirstGone{tree, initial, parents_.data(), first_children_.data(),
+                                   first_gone_.data()}},
+            LoopStep{4, CopyValue<Index>{first_gone_.data(), counts_.data()}});
+    auto const [cells, edges, sides, nodes] = counted(backend);
+    return {cells, edges, sides, nodes};
+  }
+  /// Makes what knows of newer entries than those that stay the tree's own, and gives what of it is listed; waits.
+  KnowingCells own_knowing(B const& backend, PagedTree<B>& tree, Coarsened const& of,
+                           Index merged) {
+    tree.own(backend, [&](PageMarks const& marks) {
+      Index const most = list_knowing(backend, tree.view(), of, merged, false);
+      in_turn(
+          backend, LoopStep{most, MarkKnowing{listed(of, most), counters_.data() + 2, marks}},
+          LoopStep{of.before.cells - of.staying.cells, MarkKnowing{listed(of, 0), nullptr, marks}});
+    });
+    return listed(of, counts_.template first<4>()[2]);
   }
 
   /// Numbers what stays. Notes how many of each that are.
   CompactionView number(B const& backend, PagedTree<B> const& tree, Coarsened& of, Index knowing) {
-    auto const &initial = of.initial, &before = of.before;
-    std::array<Index, 4> const first{initial.nodes, initial.cells, initial.edges, initial.sides},
+    auto const &staying = of.staying, &before = of.before;
+    std::array<Index, 4> const first{staying.nodes, staying.cells, staying.edges, staying.sides},
         counts{before.nodes - first[0], before.cells - first[1], before.edges - first[2],
                before.sides - first[3]};
     used_.begin(backend, at(counts[0]));
     grow(backend, before_, at(*std::ranges::max_element(counts)) + 1);
     for (std::size_t k = 0; k < 4; ++k) grow(backend, numbers_[k], at(counts[k]));
     auto const numbers = [&](std::size_t k) { return NewNumbers{first[k], numbers_[k].data()}; };
-    CompactionView const view{tree.view(), initial, numbers(0), numbers(1), numbers(2), numbers(3)};
+    CompactionView const view{tree.view(), staying, numbers(0), numbers(1), numbers(2), numbers(3)};
     UseNodes const use{view, used_.data(), used_.now()};
     auto const sum = [&](std::size_t k, auto const& stays) {
       return ScanStep{counts[k], stays, before_.data()};
@@ -132,18 +184,19 @@ class TreeCoarsening {
             number_staying(1), sum(2, CountUsed<TreeEdge>{view.tree.edges, first[2]}),
             number_staying(2), sum(3, CountUsed<TreeSide>{view.tree.sides, first[3]}),
             number_staying(3));
-    auto const staying = counted(backend);
-    of.now = {.cells = first[1] + staying[1],
-              .edges = first[2] + staying[2],
-              .sides = first[3] + staying[3],
-              .nodes = first[0] + staying[0]};
+    auto const stay = counted(backend);
+    of.now = {.cells = first[1] + stay[1],
+              .edges = first[2] + stay[2],
+              .sides = first[3] + stay[3],
+              .nodes = first[0] + stay[0]};
     return view;
   }
 
-  /// Moves what stays to its new numbers. Sides look at cells, which are still where they were.
+  /// Moves what stays to its new numbers, and tells cells that know of others, `told` in all. Sides look at cells, which are still
+  /// where they were.
   void move_up(B const& backend, PagedTree<B>& tree, Coarsened const& of,
-               CompactionView const& view, Index knowing) {
-    auto const &first = of.initial, &before = of.before, &now = of.now;
+               CompactionView const& view, KnowingCells const& knowing, Index told) {
+    auto const &first = of.staying, &before = of.before, &now = of.now;
     auto const move = [&](auto& list, NewNumbers const& numbers, Index count_before, Index count) {
       auto const old = list.replace_from(backend, at(numbers.first), at(count - numbers.first));
       using V = std::remove_cvref_t<decltype(old[0])>;
@@ -154,37 +207,33 @@ class TreeCoarsening {
     auto const move_sides = move(tree.sides, view.sides, before.sides, now.sides);
     auto const move_edges = move(tree.edges, view.edges, before.edges, now.edges);
     // Few cells leave threads to share them.
-    bool const are_few = knowing <= TreeView::few;
+    bool const are_few = told <= TreeView::few;
     Index const sides = are_few ? TellSides::most : 1, edges = are_few ? TellEdges::most : 1;
     in_turn(backend, move_sides,
-            LoopStep{knowing * sides, TellSides{view, tree.view(), knowing_.data(), sides,
-                                                side_stamps_.data(), side_stamps_.now()}},
+            LoopStep{told * sides, TellSides{view, tree.view(), knowing, sides, side_stamps_.data(),
+                                             side_stamps_.now()}},
             move_edges,
-            LoopStep{knowing * edges, TellEdges{view, tree.view(), knowing_.data(), edges,
-                                                edge_stamps_.data(), edge_stamps_.now()}});
+            LoopStep{told * edges, TellEdges{view, tree.view(), knowing, edges, edge_stamps_.data(),
+                                             edge_stamps_.now()}});
     auto const move_cells = move(tree.cells, view.cells, before.cells, now.cells);
     auto const entries = [&](Index cells) { return tree.layout.entry(at(cells)); };
     auto const old_rows =
         tree.rows.replace_from(backend, entries(first.cells), entries(now.cells - first.cells));
-    grow(backend, still_knowing_, at(first.cells));
     in_turn(backend, move_cells,
             LoopStep{static_cast<Index>(entries(before.cells - first.cells)),
                      MoveRowsUp{view, old_rows, tree.rows.pages()}},
-            LoopStep{knowing, TellCells{view, tree.view(), knowing_.data(), still_knowing_.data(),
-                                        counters_.data() + of_knowing}});
-    std::swap(knowing_, still_knowing_);
-    knows_ = true;
+            LoopStep{knowing.count, TellCells{view, tree.view(), knowing.listed}});
   }
 
+  DivisionMarks divisions_, kept_divisions_;
   Array<Index> families_, parents_, first_children_, before_;
-  Array<Index> counters_, counters_before_;
+  Array<Index> counters_, first_gone_;
   ReadBack<B, Index> counts_;
-  // Cells of the initial mesh that know of what came later, each once, from one call to the next: (initial cells).
-  Array<Index> knowing_, still_knowing_;
-  bool knows_ = false;
+  Array<Index> knowing_;      // see list_knowing
+  Stamps<B> knowing_stamps_;  // by cell
   Array<std::uint64_t> keys_;
-  Stamps<B> used_;                       // by nodes behind the initial mesh's
-  Stamps<B> edge_stamps_, side_stamps_;  // of the initial mesh
+  Stamps<B> used_;                       // by nodes behind those that stay
+  Stamps<B> edge_stamps_, side_stamps_;  // of those that stay
   std::array<Array<Index>, 4> numbers_;  // of nodes, cells, edges, sides
 };
 

@@ -21,9 +21,7 @@ namespace pliant::detail {
 /// Takes away what nothing uses any more after cells of a tree became leaves, or leaves lost the nodes between their corners,
 /// on the threads of the host. What the initial mesh has stays. Refers to the tree's lists.
 ///
-/// What divisions made that came before all of what goes keeps its numbers. It is left alone but for what it knows of newer entries,
-/// which is what divided cells have, and sides at which newer cells lie: unless leaves have nodes between their corners, which may
-/// be newer than all of these.
+/// What came before the last division before all of what goes is left alone but for what it knows of newer entries: see DivisionMarks.
 class TreeCompaction {
  public:
   explicit TreeCompaction(TreeLists& lists)
@@ -38,8 +36,11 @@ class TreeCompaction {
         [&](Index e) { return e >= i.edges && !CompactionView::is_used(view.edges[at(e)]); },
         [&](Index s) { return s >= i.sides && !CompactionView::is_used(view.sides[at(s)]); });
     auto const cells = each_once(std::move(gone)), nodes = nodes_that_go(touched);
-    auto const& [edges, sides] = unused;
-    auto const first = first_to_change({front(cells), front(edges), front(sides), front(nodes)});
+    auto const &edges = unused.edges, &sides = unused.sides;
+    auto const first = are_linear_
+                           ? lists_.divisions.last_before(
+                                 {front(cells), front(edges), front(sides), front(nodes)}, i)
+                           : i;
     Numbers const node(lists_.nodes, first.nodes, nodes),
         cell(size(lists_.cells), first.cells, cells), edge(size(lists_.edges), first.edges, edges),
         side(size(lists_.sides), first.sides, sides);
@@ -55,11 +56,12 @@ class TreeCompaction {
     move_rows_up(cell, moved);
     for (Index& c : lists_.divided) c = moved.cells(c);
     lists_.nodes = node.count;
-    for (TreeSizes& before : lists_.before_divisions)
-      before = {before.cells - count_before(cells, before.cells),
-                before.edges - count_before(edges, before.edges),
-                before.sides - count_before(sides, before.sides),
-                before.nodes - count_before(nodes, before.nodes)};
+    lists_.divisions.renumber([&](TreeSizes const& before) -> TreeSizes {
+      return {before.cells - count_before(cells, before.cells),
+              before.edges - count_before(edges, before.edges),
+              before.sides - count_before(sides, before.sides),
+              before.nodes - count_before(nodes, before.nodes)};
+    });
     return {{node.first, node.others}, {cell.first, cell.others}};
   }
 
@@ -80,40 +82,17 @@ class TreeCompaction {
   static Index count_before(std::vector<Index> const& list, Index number) {
     return static_cast<Index>(std::ranges::lower_bound(list, number) - list.begin());
   }
-  /// How many of each there were before the last division that came before all of what goes. `gone`: the first of each that goes.
-  [[nodiscard]] TreeSizes first_to_change(TreeSizes const& gone) const {
-    TreeSizes first = lists_.initial;
-    if (!are_linear_) return first;
-    for (TreeSizes const& before : lists_.before_divisions)
-      if (before.cells <= gone.cells && before.edges <= gone.edges && before.sides <= gone.sides &&
-          before.nodes <= gone.nodes)
-        first = before;
-    return first;
-  }
-
   /// Nodes behind those of the initial mesh that no element has any more, ascending.
   [[nodiscard]] std::vector<Index> nodes_that_go(std::vector<Index> const& touched) const {
     return are_linear_ ? nodes_of_divisions(touched) : nodes_without_element();
   }
   /// Where elements have corners only: of the nodes that divided these cells, those that divide no other one.
   [[nodiscard]] std::vector<Index> nodes_of_divisions(std::vector<Index> const& touched) const {
-    auto const view = lists_.view();
     std::vector<Index> found;
-    auto const add = [&](Index node) {
-      if (node >= lists_.initial.nodes) found.push_back(node);
-    };
-    for (Index const c : touched) {
-      auto const& cell = view.cells[at(c)];
-      auto const own = view.row(c);
-      for (std::size_t e = 0; e < at(cell.pattern().edges); ++e)
-        if (auto const& edge = view.edges[at(own.edges[e])]; edge.cells.refined() == 0)
-          add(edge.middle);
-      for (std::size_t s = 0; s < at(cell.pattern().sides); ++s)
-        if (auto const& side = view.sides[at(own.sides[s])];
-            std::ranges::none_of(side.cells, [&](Index k) { return k >= 0 && !view.is_leaf(k); }))
-          add(side.centre);
-      add(cell.centre);
-    }
+    for (Index const c : touched)
+      CompactionView::visit_nodes_that_go(lists_.view(), c, [&](Index node) {
+        if (node >= lists_.initial.nodes) found.push_back(node);
+      });
     return each_once(std::move(found));
   }
   [[nodiscard]] std::vector<Index> nodes_without_element() const {

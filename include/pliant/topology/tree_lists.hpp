@@ -8,6 +8,7 @@
 
 #include <pliant/config.hpp>
 #include <pliant/math/each_once.hpp>
+#include <pliant/topology/division_marks.hpp>
 #include <pliant/topology/shared_list.hpp>
 #include <pliant/topology/tree_view.hpp>
 
@@ -26,10 +27,7 @@ struct TreeLists {
   Index linear_leaves = 0, quadratic_leaves = 0;  ///< with corners only, and others
   TreeSizes initial;                              ///< of the initial mesh
   Index nodes = 0;
-  /// How many of each there were before some of the divisions, ascending: TreeCompaction leaves alone what came before. Nothing
-  /// else hangs on it.
-  std::vector<TreeSizes> before_divisions{};
-  static constexpr std::size_t most_divisions = 64;
+  detail::DivisionMarks divisions{};  ///< for TreeCompaction, which leaves alone what came before
 
   [[nodiscard]] bool is_leaf(Index c) const { return cells[at(c)].first_child < 0; }
 
@@ -89,17 +87,10 @@ struct TreeLists {
     sides.own(touched.sides_);
   }
 
-  /// Notes how many of each there are before a division. Of too many, each other one is forgotten.
+  /// Before a division.
   void note_division() {
-    TreeSizes const now{static_cast<Index>(cells.size()), static_cast<Index>(edges.size()),
-                        static_cast<Index>(sides.size()), nodes};
-    auto& noted = before_divisions;
-    if (!noted.empty() && noted.back().cells == now.cells) noted.pop_back();
-    if (noted.size() == most_divisions) {
-      for (std::size_t k = 0; k < most_divisions / 2; ++k) noted[k] = noted[2 * k + 1];
-      noted.resize(most_divisions / 2);
-    }
-    noted.push_back(now);
+    divisions.add({static_cast<Index>(cells.size()), static_cast<Index>(edges.size()),
+                   static_cast<Index>(sides.size()), nodes});
   }
 
   /// Counts a leaf at its edges, which become the tree's own, or with `by` = −1 no more.

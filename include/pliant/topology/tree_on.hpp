@@ -122,6 +122,7 @@ class TreeOn {
     });
     auto const totals = number_parts(n);
     check(n, totals, limits);
+    coarsening_.note_division(sizes());
     auto const edges = lists_.edges.extend(backend_, at(totals[1]));
     auto const sides = lists_.sides.extend(backend_, at(totals[2]));
     auto const cells = lists_.cells.extend(backend_, at(totals[3]));
@@ -132,8 +133,7 @@ class TreeOn {
                     for_each_part(n, detail::MakeOnEdges{dividing}),
                     for_each_part(n, detail::MakeOnSides{dividing}),
                     detail::LoopStep{n, detail::MakeInside{dividing}},
-                    for_each_part(n, detail::MakeChildren{dividing}),
-                    coarsening_.follow(view(), initial_.cells, leaves_.data(), n));
+                    for_each_part(n, detail::MakeChildren{dividing}));
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
     if (has_quadratic_) make_quadratic(n, limits);
@@ -144,9 +144,11 @@ class TreeOn {
   /// children is not marked, is divided or has another degree than the others, and where it touches cells two levels finer
   /// than the parent. Parents take the degree of their children. Cells, edges, sides and nodes that nothing uses any more
   /// go, but for those of the initial mesh, and the others keep their order and move up. `marked`: as for `refine`. Throws
-  /// Error where memory runs out; what was kept is there then after take_back.
-  Coarsened coarsen(Index const* marked, Index count) {
-    auto const done = coarsening_(backend_, lists_, initial_, sizes(), stamps_, marked, count);
+  /// Error where memory runs out; what was kept is there then after take_back. `few`: up to so many cells behind the initial
+  /// mesh's, all that goes with them is moved, which takes less than to find out what may stay where it is.
+  Coarsened coarsen(Index const* marked, Index count, Index few = TreeView::few) {
+    auto const done =
+        coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_, marked, count);
     now_.nodes = done.now.nodes;
     now_.leaves += done.merged - (done.before.cells - done.now.cells);
     return done;
@@ -155,12 +157,13 @@ class TreeOn {
   /// Keeps what changed since the last time.
   void keep() {
     lists_.keep();
+    coarsening_.keep();
     kept_ = now_;
   }
   /// The tree is what it was when it was kept the last time.
   void take_back() {
     lists_.take_back(backend_);
-    coarsening_.forget();
+    coarsening_.take_back();
     now_ = kept_;
   }
 
@@ -173,6 +176,10 @@ class TreeOn {
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
 
+  [[nodiscard]] detail::Degrees degrees() const {
+    using detail::Degrees;
+    return mixes_degrees_ ? Degrees::several : has_quadratic_ ? Degrees::two : Degrees::one;
+  }
   /// The leaves that are divided, as loops see them now.
   [[nodiscard]] detail::DivisionView division() {
     return {view(), leaves_.data(), parts_.data(), first_new_node_, made_.data()};
