@@ -127,6 +127,8 @@ class Storm {
         merge_and_refine(body, marked.refine[0], *plan);
       }
       if (changed > 0) changed_there_ += is_on_backend(body);
+      // That what came before all that goes stays where it is, though it is not much.
+      if (is_on_backend(body)) body.parts().topology_on->tree.few = 0;
       return changed;
     });
   }

@@ -75,7 +75,7 @@ void check_changes_of(B const& backend, M const& mesh, int rounds, Index few = T
   Hierarchy<M::dim> host(mesh);
   auto const first = state(host);
   TreeBeside<B> on(backend, host);
-  on.few = few;
+  on.tree.few = few;
   check_changes(on, host, rounds);
   auto const changed = host;
   merge_all(on, host);
@@ -117,7 +117,7 @@ TEST_CASE("what came before all that goes stays where it is in a backend's memor
     auto const mesh = regular_mesh<Tet4>(3);
     Hierarchy<3> host(mesh);
     TreeBeside<B> on(backend, host);
-    on.few = few;
+    on.tree.few = few;
     Random random(4);
     refine_both(on, host, some_leaves(host, 2, random));
     auto const before = on.tree.sizes();

@@ -18,7 +18,6 @@ template <Backend B>
 struct TreeBeside {
   B backend;
   TreeOn<B> tree;
-  Index few = TreeView::few;  // see TreeOn::coarsen
 
   template <int Dim>
   TreeBeside(B const& on, Hierarchy<Dim> const& like)
@@ -30,7 +29,7 @@ struct TreeBeside {
   }
   auto coarsen(std::vector<Index> const& marked) {
     auto const list = upload(backend, marked);
-    return tree.coarsen(list.data(), static_cast<Index>(marked.size()), few);
+    return tree.coarsen(list.data(), static_cast<Index>(marked.size()));
   }
   /// Values that a change gave, on the host.
   template <class V>

@@ -41,6 +41,10 @@ class TreeOn {
     detail::LeafParts const* parts = nullptr;  ///< (leaves): what each made
   };
 
+  /// Up to so many cells behind the initial mesh's, coarsening moves all that came later, which takes less than to find out what may
+  /// stay where it is.
+  Index few = TreeView::few;
+
   TreeOn(B const& backend, TreeLists const& lists, CellsAtEdges const& at_edges)
       : backend_(backend),
         lists_(backend, lists),
@@ -144,9 +148,8 @@ class TreeOn {
   /// children is not marked, is divided or has another degree than the others, and where it touches cells two levels finer
   /// than the parent. Parents take the degree of their children. Cells, edges, sides and nodes that nothing uses any more
   /// go, but for those of the initial mesh, and the others keep their order and move up. `marked`: as for `refine`. Throws
-  /// Error where memory runs out; what was kept is there then after take_back. `few`: up to so many cells behind the initial
-  /// mesh's, all that goes with them is moved, which takes less than to find out what may stay where it is.
-  Coarsened coarsen(Index const* marked, Index count, Index few = TreeView::few) {
+  /// Error where memory runs out; what was kept is there then after take_back.
+  Coarsened coarsen(Index const* marked, Index count) {
     auto const done =
         coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_, marked, count);
     now_.nodes = done.now.nodes;
