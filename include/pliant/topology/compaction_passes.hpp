@@ -111,7 +111,7 @@ struct UseNodes {
   Index const* listed = nullptr;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
-    Index const c = listed != nullptr ? listed[k] : view.initial.cells + k;
+    Index const c = listed != nullptr ? listed[k] : view.staying.cells + k;
     if (!view.stays(c)) return;
     auto* const own = stamps;
     Index const stamp = now;
@@ -128,7 +128,7 @@ struct CountStamped {
 struct CountCells {
   CompactionView view;
   PLIANT_HOST_DEVICE Index operator()(Index k) const {
-    return view.stays(view.initial.cells + k) ? 1 : 0;
+    return view.stays(view.staying.cells + k) ? 1 : 0;
   }
 };
 template <class V>

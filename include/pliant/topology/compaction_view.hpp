@@ -18,15 +18,15 @@ struct NewNumbers {
 };
 
 /// A tree of which cells became leaves, and leaves lost nodes, as loops see it that take away what nothing uses any more.
-/// What the initial mesh has stays; of it only what divided and converted cells have knows of the rest.
+/// The first ones stay, with their numbers.
 struct CompactionView {
-  TreeView tree;  // before anything moves
-  TreeSizes initial;
+  TreeView tree;      // before anything moves
+  TreeSizes staying;  // so many of each, the first
   NewNumbers nodes{}, cells{}, edges{}, sides{};
 
   /// Children of leaves go.
   [[nodiscard]] PLIANT_HOST_DEVICE bool stays(Index c) const {
-    return c < initial.cells || !tree.is_leaf(tree.cells[at(c)].parent);
+    return c < staying.cells || !tree.is_leaf(tree.cells[at(c)].parent);
   }
   [[nodiscard]] static PLIANT_HOST_DEVICE bool is_used(TreeEdge const& edge) {
     return edge.cells.leaves() + edge.cells.refined() > 0;
@@ -34,12 +34,12 @@ struct CompactionView {
   [[nodiscard]] static PLIANT_HOST_DEVICE bool is_used(TreeSide const& side) {
     return side.any_cell() >= 0;
   }
-  /// use(k) for each node that the element on a cell has, if it is node k behind those of the initial mesh.
+  /// use(k) for each node that the element on a cell has, if it is node k behind those that stay.
   template <class Use>
   PLIANT_HOST_DEVICE void use_nodes_of(Index c, Use const& use) const {
     auto const list = tree.nodes_of(c);
     for (std::size_t i = 0; i < list.count; ++i)
-      if (list[i] >= initial.nodes) use(list[i] - initial.nodes);
+      if (list[i] >= staying.nodes) use(list[i] - staying.nodes);
   }
 
   /// visit(node) for the nodes that divided a cell that is a leaf now, and divide no other one; −1: none. All elements have

@@ -12,6 +12,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/topology/coarsening_passes.hpp>
 #include <pliant/topology/compaction_passes.hpp>
 #include <pliant/topology/division_marks.hpp>

@@ -97,7 +97,7 @@ class TreeCompaction {
   }
   [[nodiscard]] std::vector<Index> nodes_without_element() const {
     auto const& i = lists_.initial;
-    CompactionView const view{.tree = lists_.view(), .initial = i};
+    CompactionView const view{.tree = lists_.view(), .staying = i};
     std::vector<std::uint8_t> is_used(at(lists_.nodes - i.nodes));
     auto const use = [&](Index node) {
       std::atomic_ref(is_used[at(node)]).store(1, std::memory_order_relaxed);
