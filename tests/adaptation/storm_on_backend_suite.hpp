@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -128,7 +129,8 @@ class Storm {
       }
       if (changed > 0) changed_there_ += is_on_backend(body);
       // That what came before all that goes stays where it is, though it is not much.
-      if (is_on_backend(body)) body.parts().topology_on->tree.few = 0;
+      if (is_on_backend(body))
+        body.parts().topology_on->tree.few = std::numeric_limits<Index>::min();
       return changed;
     });
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -102,7 +103,7 @@ TEST_CASE("trees of every cell are coarsened in a backend's memory", "[topology]
 
 TEST_CASE("what came before all that goes stays where it is in a backend's memory", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
-    constexpr Index few = 0;
+    constexpr Index few = std::numeric_limits<Index>::min();
     check_changes_of(backend, regular_mesh<Tri3>(5), 30, few);
     check_changes_of(backend, regular_mesh<Quad4>(5), 30, few);
     check_changes_of(backend, regular_mesh<Tet4>(2), 20, few);

@@ -37,7 +37,8 @@ class TreeCoarsening {
                        Index const* marked, Index count) {
     Coarsened done{.staying = initial, .before = sizes, .now = sizes};
     bool const finds_first =
-        has == Degrees::one && !divisions_.empty() && sizes.cells - initial.cells > few;
+        has == Degrees::one && !divisions_.empty() &&
+        std::int64_t{sizes.cells} - initial.cells - 8 * std::int64_t{count} > few;
     find_families(backend, tree.view(), done, stamps, marked, count);
     if (!finds_first) list_knowing(backend, tree.view(), done, 0, has == Degrees::several);
     auto const found = counted(backend);

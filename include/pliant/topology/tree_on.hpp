@@ -41,8 +41,8 @@ class TreeOn {
     detail::LeafParts const* parts = nullptr;  ///< (leaves): what each made
   };
 
-  /// Up to so many cells behind the initial mesh's, coarsening moves all that came later, which takes less than to find out what may
-  /// stay where it is.
+  /// Where there are up to so many cells behind the initial mesh's, beside eight for each that is marked, coarsening moves all that
+  /// came later, which takes less than to find out what may stay where it is.
   Index few = TreeView::few;
 
   TreeOn(B const& backend, TreeLists const& lists, CellsAtEdges const& at_edges)
