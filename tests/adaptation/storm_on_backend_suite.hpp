@@ -39,6 +39,7 @@ struct Longer {
   }
 };
 
+/// Actions at random on a body that its backend changes and on one that the host changes.
 template <class F, class B>
 class Storm {
   static constexpr int dim = F::element::dim;

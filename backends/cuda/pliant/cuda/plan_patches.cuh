@@ -211,8 +211,9 @@ struct PlanInWork {
   DeviceArray<PatchCounts> most;         // that any patch needs
 };
 
-/// Begins to plan patches, as a piece of work on a side stream if there is one; what any needs goes there to its mail. `known`: a plan of patches of
-/// the same size: patches are planned while they are counted, or taken from there, which has to stay until that is done.
+/// Begins to plan patches, as a piece of work on a side stream if there is one; what any needs goes there to its mail. `known`: a
+/// plan of patches of the same size: patches are planned while they are counted, or taken from there, which has to stay until that
+/// is done.
 template <class Planner, class B>
 PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchCuts const& cuts,
                                KnownPatches<Planner> const& known, SideWork const* side = nullptr) {
