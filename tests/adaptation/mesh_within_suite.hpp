@@ -1,6 +1,7 @@
 #pragma once
 
 #include "adaptation/criteria.hpp"
+#include "support/small_patches.hpp"
 
 // Meshes that keep an estimated error or a budget while what has to be resolved wanders.
 namespace pliant::test::mesh_within_suite {
@@ -217,6 +218,33 @@ TEST_CASE("a budget in milliseconds asks the clock what an element takes", "[ada
     CHECK(count(body) > 450);
     CHECK(count(body) < 550);
   });
+}
+
+TEST_CASE("families of which an element sleeps stay as they are", "[adaptation]") {
+  SmallPatches<double, 3> const backend;  // which tear families apart
+  auto body = body_on(backend, mesh::rectangle<Tri3>({.size = {8, 1}, .cells = {32, 4}}));
+  std::vector<Index> all(static_cast<std::size_t>(count(body)));
+  for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+  refine(body, {all});
+  // The far end rests.
+  auto v = body.mesh().nodes;
+  for (auto& p : v) p = {0, p[0] < 2 ? 1.0 : 0.0};
+  body.set_velocities(v);
+  CentralDifference steps({.step = 1e-3 * stable_step(body)});
+  auto rest = Adaptation{sleep({.below = 1e-6, .for_steps = 1})}.every(1);
+  steps(body, 4, rest);
+  auto const asleep = asleep_elements<Tri3>(body);
+  double kept = 0, torn = 0;  // families
+  for (std::size_t e = 0; e < asleep.size(); e += 4) {
+    auto const sleepers = asleep[e] + asleep[e + 1] + asleep[e + 2] + asleep[e + 3];
+    kept += sleepers > 0 ? 1 : 0;
+    torn += sleepers > 0 && sleepers < 4 ? 1 : 0;
+  }
+  CHECK(torn > 0);
+  Adaptation{within<Held<Tri3>>(RecoveredStress{}, {.error = 1e9})}.now(body);
+  auto const levels = refinement_levels<Tri3>(body);
+  CHECK(static_cast<double>(std::ranges::count(levels, 1)) == 4 * kept);
+  CHECK(std::ranges::count(levels, 0) > 0);
 }
 
 TEST_CASE("limits of a mesh are in range", "[adaptation]") {

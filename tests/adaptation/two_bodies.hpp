@@ -161,6 +161,7 @@ void check_same(OnBackend& body, OnHost& host, double rounding) {
 /// A body whose mesh is changed in its backend's memory, and one that the host changes.
 template <class F, class B, class Other = Stiffer<F>>
 struct TwoBodies {
+  using Element = typename F::element;
   using Body = decltype(body_of<F, Other>(std::declval<B const&>(), false, 2));
   double rounding = std::numeric_limits<typename B::scalar>::epsilon();
   Body body, host;

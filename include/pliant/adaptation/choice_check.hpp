@@ -196,10 +196,6 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
   ChoiceOfElement<T, Table::groups, count> choice() const {
     auto const& w = workspace();
     auto const own = target();
-    constexpr std::size_t type = Parts::layout_type::template type_of<typename Table::element>;
-    std::uint8_t const* const asleep =
-        parts_.awake ? parts_.awake->asleep.data() + parts_.patch_nodes->first_of_type[type]
-                     : nullptr;
     return {places(),
             w.values.data(),
             table_.count(),
@@ -207,9 +203,8 @@ class ChoiceCheck<Parts, Table, Elements, ChoiceRule<Fs...>>
             own.tags,
             own.since,
             own.step,
-            asleep,
+            SleepOfElement::of(parts_, table_),
             w.patch_levels.size() > 0 ? w.patch_levels.data() : nullptr,
-            table_.elements.patches(),
             static_cast<T>(rule_.tolerance),
             static_cast<T>(rule_.release),
             rule_.stay,

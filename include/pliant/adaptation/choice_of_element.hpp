@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <pliant/adaptation/choice.hpp>
-#include <pliant/backend/patch_ranges.hpp>
+#include <pliant/adaptation/sleep_of_element.hpp>
 #include <pliant/body/criteria_workspace.hpp>
 #include <pliant/body/step_schedule.hpp>
 
@@ -49,11 +49,10 @@ struct ChoiceOfElement {
   Index elements;
   Index const* number;  // (elements): in the order of which equal offers are taken
   Tag const* tags;
-  std::int64_t const* since;   // (elements)
-  std::int64_t const* step;    // (1): of this look
-  std::uint8_t const* asleep;  // (patches); null: none sleeps
-  StepLevel const* levels;     // (patches), of local steps; null: one step serves all
-  PatchRanges patches;
+  std::int64_t const* since;  // (elements)
+  std::int64_t const* step;   // (1): of this look
+  SleepOfElement sleep;
+  StepLevel const* levels;  // (patches), of local steps; null: one step serves all
   T tolerance, release;
   std::int64_t stay;
   bool waits;  // nothing may switch
@@ -72,10 +71,10 @@ struct ChoiceOfElement {
     T const own = error(e, place);
     return own == own ? own : T(0);
   }
-  PLIANT_HOST_DEVICE bool sleeps(Index e) const { return asleep && asleep[patches.patch_of(e)]; }
+  PLIANT_HOST_DEVICE bool sleeps(Index e) const { return sleep.sleeps(e); }
   /// How many forces of its own a step of the body takes: local steps evaluate a patch 2^level times.
   PLIANT_HOST_DEVICE std::int64_t updates(Index e) const {
-    return std::int64_t{1} << (levels ? levels[patches.patch_of(e)] : 0);
+    return std::int64_t{1} << (levels ? levels[sleep.patches.patch_of(e)] : 0);
   }
   PLIANT_HOST_DEVICE std::int64_t whole_cost(Index e, int place) const {
     return table.whole[place] * updates(e);

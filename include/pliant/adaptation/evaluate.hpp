@@ -20,8 +20,19 @@ struct Store {
   }
 };
 
+/// Values of an array, those left out that are NaN, for sums.
+template <class T>
+struct KnownValue {
+  T const* values;
+  PLIANT_HOST_DEVICE double operator()(Index e) const {
+    T const own = values[e];
+    return own == own ? static_cast<double>(own) : 0;
+  }
+};
+
+/// The value of a criterion for every element of a type by its internal number, in the backend's memory.
 template <Element E, class Parts, class C>
-std::vector<double> evaluate_on(Parts const& parts, C const& criterion) {
+auto values_on_backend(Parts const& parts, C const& criterion) {
   using T = typename Parts::T;
   auto const& table = parts.layout.template table<E>();
   using Table = std::remove_cvref_t<decltype(table)>;
@@ -35,9 +46,14 @@ std::vector<double> evaluate_on(Parts const& parts, C const& criterion) {
   CriteriaWorkspace<typename Parts::backend_type> workspace;
   evaluate_criteria(parts, table, active(table.elements), rules, workspace, Store<T>{values.data()},
                     parts.no_counters);
-  auto const internal = download<T>(values);
+  return values;
+}
+/// By the user's, on the host.
+template <Element E, class Parts, class C>
+std::vector<double> evaluate_on(Parts const& parts, C const& criterion) {
+  auto const internal = download<typename Parts::T>(values_on_backend<E>(parts, criterion));
   std::vector<double> in_user_order(internal.size());
-  auto const& user = table.user_elements();
+  auto const& user = parts.layout.template table<E>().user_elements();
   for (std::size_t e = 0; e < internal.size(); ++e)
     in_user_order[static_cast<std::size_t>(user[e])] = static_cast<double>(internal[e]);
   return in_user_order;
@@ -59,10 +75,12 @@ double estimate(TheBody const& body, C const& estimator) {
                 "estimate: an estimator says `static constexpr Unit unit = Unit::joule;`");
   static_assert(C::unit == Unit::joule, "estimate: only what is in joules adds up over elements");
   double sum = 0;
-  body.parts().for_each_type([&](auto const& table, auto const&) {
-    for (double value :
-         evaluate<typename std::remove_cvref_t<decltype(table)>::element>(body, estimator))
-      if (!std::isnan(value)) sum += value;
+  auto const& parts = body.parts();
+  parts.for_each_type([&](auto const& table, auto const&) {
+    using E = typename std::remove_cvref_t<decltype(table)>::element;
+    auto const values = detail::values_on_backend<E>(parts, estimator);
+    sum += parts.backend.sum(table.count(),
+                             detail::KnownValue<typename TheBody::scalar>{values.data()});
   });
   return sum;
 }

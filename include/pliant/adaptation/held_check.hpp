@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
+#include <utility>
 
 #include <pliant/adaptation/choice_check.hpp>
 #include <pliant/adaptation/mesh_within.hpp>
+#include <pliant/adaptation/siblings_on.hpp>
 
 namespace pliant::detail {
 
@@ -54,9 +55,18 @@ class HeldCheck : private ElementCheck<Parts, Table, Elements> {
     if constexpr (switches)
       if (reserve()) ++parts_.revision;
   }
-  /// What each element, by the user's number, gets wrong in each of the groups of the list, J: (elements, groups). NaN
+  /// The user's number of each element, and its siblings.
+  void find_numbers_and_siblings() const {
+    auto& w = workspace();
+    auto const count = static_cast<std::size_t>(table_.count());
+    if (w.number.size() < count) w.number = numbers_on_backend(parts_, table_);
+    if (w.siblings.size() < count)
+      w.siblings = siblings_on_backend(std::as_const(parts_), std::as_const(table_),
+                                       std::as_const(w).number.data());
+  }
+  /// Puts what each element gets wrong in each of the groups of the list but the last into the workspace's values, J; NaN
   /// where that is not known.
-  std::vector<double> errors_of_groups() const
+  void find_errors_of_groups() const
     requires switches
   {
     using Looks = typename Of::Looks;
@@ -64,21 +74,6 @@ class HeldCheck : private ElementCheck<Parts, Table, Elements> {
                       active(std::as_const(table_).elements), Looks{}, workspace(),
                       StoreRows<T, Looks::rows>{workspace().values.data(), table_.count()},
                       parts_.no_counters);
-    auto const rows = download<T>(workspace().values);
-    auto const count = static_cast<std::size_t>(table_.count());
-    std::vector<double> errors(count * Of::count);
-    auto const& user = table_.user_elements();
-    for (std::size_t e = 0; e < count; ++e)
-      for (std::size_t k = 0; k + 1 < Of::count; ++k)
-        errors[static_cast<std::size_t>(user[e]) * Of::count + k] =
-            static_cast<double>(rows[count * k + e]);
-    return errors;
-  }
-  /// Notes the groups that elements, by the user's number, are to go to.
-  void note_next(std::vector<Tag> const& groups) const {
-    auto internal = table_.tags_in_internal_order(groups);
-    internal.resize(workspace().next.size());
-    workspace().next.upload(internal);
   }
 
   void act() const {

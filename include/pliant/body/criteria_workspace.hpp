@@ -68,6 +68,17 @@ struct Ranking {
   explicit Ranking(int) : Ranking() {}  // arrays begin zeroed
 };
 
+/// An element beside those that its parent in the refinement tree was divided into.
+struct Siblings {
+  Index first = -1;        // of them, by the user's number; −1: not all are elements of its type
+  std::uint8_t count = 0;  // of them
+  std::uint8_t level = 0;  // how often it was refined
+
+  Siblings() = default;
+  Siblings(Index the_first, std::uint8_t the_count, std::uint8_t the_level)
+      : first(the_first), count(the_count), level(the_level) {}
+};
+
 /// What a check of criteria keeps from pass to pass. It is kept from check to check as well, and goes
 /// with the mesh.
 template <Backend B>
@@ -84,6 +95,7 @@ struct CriteriaWorkspace {
   Array<Index> number;               // (elements): the user's
   Array<Candidate> candidates;       // (elements): of the rule whose cut is searched
   Array<int> levels;                 // (elements): how often each was refined
+  Array<Siblings> siblings;          // (elements), by the user's number
   Array<std::uint8_t> patch_levels;  // (patches): of local steps, where a choice counts them
   Array<std::int64_t> histogram;     // (histogram_bins), zero between searches
   Array<Ranking<T>> rankings;        // (rules)
