@@ -161,7 +161,8 @@ TEST_CASE("rules refine and coarsen a body at once in its backend's memory as on
       auto const plan = plan_change(both.host.parts(), marked, 3);
       REQUIRE(plan);
       commit(both.host.parts(), *plan);
-      auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
+      auto const done =
+          detail::change_on_backend(both.body.parts(), marked.refine, marked.coarsen, 3);
       REQUIRE(done);
       CHECK(done->refined == plan->counts.refined);
       CHECK(done->merged == plan->counts.coarsened);
@@ -230,7 +231,8 @@ TEST_CASE("where a condition holds a part of what would be merged, the rest is m
       REQUIRE(plan);
       REQUIRE(plan->counts.refined > 0);
       commit(both.host.parts(), *plan);
-      auto const done = detail::change_on_backend(both.body.parts(), marked, 3);
+      auto const done =
+          detail::change_on_backend(both.body.parts(), marked.refine, marked.coarsen, 3);
       REQUIRE(done);
       CHECK(done->refined == plan->counts.refined);
       CHECK(done->merged == plan->counts.coarsened);

@@ -117,7 +117,8 @@ struct Tables {
     std::vector<Index> list(at(on.count()));
     std::iota(list.begin(), list.end(), Index{0});
     auto cells = upload(backend, list);
-    backend.for_each(on.count(), detail::LookUpCells{numbers.of(mesh.order.view()), cells.data()});
+    backend.for_each(
+        on.count(), detail::LookUpCells{numbers.of(mesh.order.view()), cells.data(), cells.data()});
     return download<Index>(cells);
   }
 

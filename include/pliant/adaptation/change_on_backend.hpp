@@ -8,6 +8,7 @@
 
 #include <pliant/adaptation/changes_there.hpp>
 #include <pliant/adaptation/commit.hpp>
+#include <pliant/adaptation/mesh_marks.hpp>
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/body/changed_parts_on.hpp>
 
@@ -30,6 +31,8 @@ class ChangesOnBackend {
   using On = TopologyOn<M, B>;
   using Done = ChangeOn<M, B>;
   using Cells = typename B::template Array<Index>;
+  using Marked = MarkedThere<B>;
+  using Lists = std::vector<typename Marked::List>;
 
  public:
   ChangesOnBackend(Parts& parts, int max_level)
@@ -38,21 +41,21 @@ class ChangesOnBackend {
         there_(parts) {}
 
   /// Elements by the user's numbers. Nothing where the host has to do it.
-  std::optional<Done> operator()(MarkedOn const& marked) {
+  std::optional<Done> operator()(Marked const& marked) {
     check_nobody_is_told(std::as_const(parts_), "change of the mesh");
-    if (!parts_.topology_on && MarkedOn::none_in(marked.refine) && !parts_.state.topology->tree)
+    if (!parts_.topology_on && Marked::none_in(marked.refine) && !parts_.state.topology->tree)
       return Done{};  // nothing to merge
     if (!follow_body()) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
     bool const tells = !parts_.listeners.empty();
     if (!tells)
-      if (auto done = make(marked)) return done;
+      if (auto done = make(marked.refine, marked.coarsen)) return done;
     // The host knows what conditions forbid to merge.
     plan_ = plan_change(std::as_const(parts_), marked.lists(), limits_.max_level);
     if (!plan_) return Done{};
     planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
     auto const merged = merged_by(*plan_);
-    auto done = make({marked.refine, merged});
+    auto done = make(marked.refine, Marked::of(backend(), merged));
     if (done && tells) done->to_tell.plan = std::move(plan_);
     return done;
   }
@@ -75,13 +78,14 @@ class ChangesOnBackend {
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   On& on() { return *parts_.topology_on; }
   B const& backend() const { return parts_.backend; }
-  Cells cells_of(MarkedOn::Lists numbers) {
-    std::vector<Index> all;
-    for (auto const& list : numbers) all.insert(all.end(), list.begin(), list.end());
-    auto cells = upload(backend(), all);
-    Index* first = cells.data();
-    for (std::size_t type = 0; type < numbers.size(); first += size(numbers[type++]))
-      backend().for_each(size(numbers[type]), LookUpCells{on().element_numbers(type), first});
+  Cells cells_of(Lists const& lists) {
+    std::size_t count = 0;
+    for (auto const& list : lists) count += static_cast<std::size_t>(list.count);
+    auto cells = unset<Index>(backend(), count);
+    Index* to = cells.data();
+    for (std::size_t type = 0; type < lists.size(); to += lists[type++].count)
+      backend().for_each(lists[type].count,
+                         LookUpCells{on().element_numbers(type), lists[type].numbers.data(), to});
     return cells;
   }
 
@@ -104,19 +108,19 @@ class ChangesOnBackend {
   }
 
   /// Nothing where conditions forbid some of it; then nothing has changed.
-  std::optional<Done> make(MarkedOn const& marked) {
+  std::optional<Done> make(Lists const& refine, Lists const& coarsen) {
     Changing const changing(parts_.topology_on);
     try {
-      return change(marked);
+      return change(refine, coarsen);
     } catch (...) {
       if (parts_.topology_on) on().tree.take_back();
       if (!merged_.empty() || there_.any()) tell_of_merged();
       throw;
     }
   }
-  std::optional<Done> change(MarkedOn const& marked) {
+  std::optional<Done> change(Lists const& refine, Lists const& coarsen) {
     Done done;
-    auto to_refine = cells_of(marked.refine), to_merge = cells_of(marked.coarsen);
+    auto to_refine = cells_of(refine), to_merge = cells_of(coarsen);
     if (!plan_ && to_refine.size() > 0 && to_merge.size() > 0)
       leave_what_is_refined(to_refine, to_merge);
     if (to_merge.size() > 0) {
@@ -248,36 +252,48 @@ class ChangesOnBackend {
   ChangesThere<Parts> there_;              // that are made
 };
 
-/// Changes a body's mesh in its backend's memory, where that can be; else nothing. Errors as of refine.
-template <class Parts>
-auto change_on_backend(Parts& parts, MarkedOn const& marked, int max_level = 30)
+/// Changes a body's mesh in its backend's memory, where that can be; else nothing. `find_marked`: gives a MarkedThere. Errors as
+/// of refine.
+template <class Parts, class FindMarked>
+auto change_on_backend_by(Parts& parts, int max_level, FindMarked const& find_marked)
     -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
   using Done = ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>;
   if constexpr (changes_on_backend<Parts>) {
     if (!can_change_on_backend(parts)) return std::nullopt;
-    std::size_t type = 0;
-    parts.for_each_type([&](auto const& table, auto const&) {
-      using E = typename std::remove_cvref_t<decltype(table)>::element;
-      auto const check = [&](char const* verb, MarkedOn::Lists lists) {
-        if (type < lists.size())
-          check_numbers<E>(verb, lists[type], static_cast<std::size_t>(table.count()));
-      };
-      check("refine", marked.refine);
-      check("coarsen", marked.coarsen);
-      ++type;
-    });
-    if (MarkedOn::none_in(marked.refine) && MarkedOn::none_in(marked.coarsen)) return Done{};
+    auto const marked = find_marked();
+    if (marked.none_in(marked.refine) && marked.none_in(marked.coarsen)) return Done{};
     return ChangesOnBackend<Parts>(parts, max_level)(marked);
   } else {
     return std::nullopt;
   }
 }
-/// The same where nothing else is marked.
+/// Of elements by the user's numbers, for each type; lists of no types name none.
 template <class Parts>
-auto change_on_backend(Parts& parts, MarkedElements const& marked, int max_level)
+auto change_on_backend(Parts& parts, std::vector<std::vector<Index>> const& refine,
+                       std::vector<std::vector<Index>> const& coarsen, int max_level) {
+  return change_on_backend_by(parts, max_level, [&] {
+    std::size_t type = 0;
+    parts.for_each_type([&](auto const& table, auto const&) {
+      using E = typename std::remove_cvref_t<decltype(table)>::element;
+      auto const check = [&](char const* verb, auto const& lists) {
+        if (type < lists.size())
+          check_numbers<E>(verb, lists[type], static_cast<std::size_t>(table.count()));
+      };
+      check("refine", refine);
+      check("coarsen", coarsen);
+      ++type;
+    });
+    using Marked = MarkedThere<typename Parts::backend_type>;
+    return Marked{Marked::of(parts.backend, refine), Marked::of(parts.backend, coarsen)};
+  });
+}
+/// Of those that are marked, where that is all.
+template <class Parts>
+auto change_on_backend(Parts& parts, MeshMarks const& marks)
     -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
-  if (!marked.only_refines_and_coarsens()) return std::nullopt;
-  return change_on_backend(parts, MarkedOn{marked.refine, marked.coarsen}, max_level);
+  if (!marks.only_refine_and_coarsen()) return std::nullopt;
+  return change_on_backend_by(parts, marks.max_level,
+                              [&] { return marked_there(std::as_const(parts), marks); });
 }
 
 }  // namespace pliant::detail

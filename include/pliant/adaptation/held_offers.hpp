@@ -112,6 +112,7 @@ class HeldOffers final : public OffersOfType {
   using E = typename Table::element;
   using Places = HeldPlaces<E, Rule>;
   static constexpr int count = Places::count, groups = Table::groups;
+  static constexpr bool has_degrees = Places::kinds > count;
   using Offers = MeshOffers<count, Places::kinds>;
   template <class U>
   using Array = typename B::template Array<U>;
@@ -163,8 +164,7 @@ class HeldOffers final : public OffersOfType {
   bool settle(OfferLimits const& one, OfferLimits const& other) override {
     auto const at = outcome_at(one);
     IsOpen<Offers> const is_open{offers_, at.listed, one, other};
-    if constexpr (Places::kinds > count)
-      return backend().sum(open_, IsOpenNumber<Offers>{is_open}) > 0;
+    if constexpr (has_degrees) return backend().sum(open_, IsOpenNumber<Offers>{is_open}) > 0;
     auto list = unset<Index>(backend(), static_cast<std::size_t>(open_));
     auto how_many = zeros<Index>(backend(), 1);
     settled_ += backend().sum(open_, SettledOutcome<Offers>{at, other});
@@ -177,7 +177,7 @@ class HeldOffers final : public OffersOfType {
     return left > 0;
   }
 
-  void decide(OfferLimits const& limits, MarkedElements& marked) const override {
+  void decide(OfferLimits const& limits, MarkBits& bits) const override {
     auto& w = table_.criteria;
     if constexpr (count > 1)
       backend().add_sum(
@@ -189,15 +189,12 @@ class HeldOffers final : public OffersOfType {
     CriteriaWorkspace<B>::reserve(backend(), w.mesh_marks,
                                   static_cast<std::size_t>(table_.count()));
     backend().for_each(table_.count(), Mark{offers_, limits, w.number.data(), w.mesh_marks.data()});
-    std::array const lists{std::pair{&marked.coarsen, Mark::merged},
-                           std::pair{&marked.refine, Mark::bit(MeshAction::divide)},
-                           std::pair{&marked.raise, Mark::bit(MeshAction::raise)},
-                           std::pair{&marked.lower, Mark::bit(MeshAction::lower)}};
-    visit_marked(std::as_const(parts_), std::as_const(table_), w.mesh_marks.data(),
-                 [&](Index e, std::uint32_t marks) {
-                   for (auto const& [list, mark] : lists)
-                     if ((marks & mark) != 0) list->back().push_back(e);
-                 });
+    bits[MeshList::refine] = Mark::bit(MeshAction::divide);
+    bits[MeshList::coarsen] = Mark::merged;
+    if constexpr (has_degrees) {
+      bits[MeshList::raise] = Mark::bit(MeshAction::raise);
+      bits[MeshList::lower] = Mark::bit(MeshAction::lower);
+    }
   }
 
  private:

@@ -98,21 +98,18 @@ class LookAt {
   /// to the mesh, of which listeners are still to be told.
   auto change() const {
     if constexpr (Rules::holds_mesh) {
-      auto const marked = [&] {
+      auto const marks = [&] {
         auto const measured = parts_.timers.criteria.measure();
         return decide_on_mesh(parts_, rules_.holding(), evaluations_);
       }();
-      return switch_and_change_mesh([&](int& max_level) -> MarkedElements const& {
-        max_level = rules_.holding().options.max_level;
-        return marked;
-      });
+      return switch_and_change_mesh([&] { return marks; });
     } else {
       decide();
-      return switch_and_change_mesh([&](int& max_level) {
+      return switch_and_change_mesh([&] {
         auto const measured = parts_.timers.criteria.measure();
-        MarkedElements marked;
-        for_each_check([&](auto const& check) { check.mark(marked, max_level); });
-        return marked;
+        MeshMarks marks;
+        for_each_check([&](auto const& check) { check.mark(marks); });
+        return marks;
       });
     }
   }
@@ -129,9 +126,9 @@ class LookAt {
   }
 
  private:
-  /// `find_marked` looks at the groups after the switch.
-  template <class FindMarked>
-  auto switch_and_change_mesh(FindMarked const& find_marked) const {
+  /// `find_marks` looks at the groups after the switch.
+  template <class FindMarks>
+  auto switch_and_change_mesh(FindMarks const& find_marks) const {
     bool moved = false;
     auto to_tell = [&] {
       try {
@@ -142,13 +139,12 @@ class LookAt {
             move_elements();
           }
         }
-        int max_level = 0;
-        auto const& marked = find_marked(max_level);
+        MeshMarks const marks = find_marks();
         auto const measured = parts_.timers.migration.measure();
-        if (auto done = change_on_backend(parts_, marked, max_level))
-          return std::move(done->to_tell);
+        if (auto done = change_on_backend(parts_, marks)) return std::move(done->to_tell);
         ToTell<typename Parts::mesh_type, typename Parts::backend_type> found;
-        found.plan = plan_change(parts_, marked, max_level);
+        found.plan =
+            plan_change(parts_, marked_elements(std::as_const(parts_), marks), marks.max_level);
         if (found.plan) commit(parts_, *found.plan);
         return found;
       } catch (...) {  // where some of the mesh has changed, what was kept is gone, and moves stay

@@ -96,11 +96,12 @@ std::array<OfferKind, sizeof...(Fs)> kinds_of(Parts const& parts, TypeList<Fs...
 /// What a rule wants of a mesh, of which `evaluations` is the budget; NaN: not known yet. Which elements go to other groups is
 /// noted in workspaces, and how many in Parts::moves.
 template <class Parts, class Estimate, class... Fs>
-MarkedElements decide_on_mesh(Parts& parts, MeshWithinRule<Estimate, Fs...> const& rule,
-                              double evaluations) {
+MeshMarks decide_on_mesh(Parts& parts, MeshWithinRule<Estimate, Fs...> const& rule,
+                         double evaluations) {
   using Rule = MeshWithinRule<Estimate, Fs...>;
-  MarkedElements marked;
-  if (std::isnan(evaluations)) return marked;
+  MeshMarks marks{.of_types = std::vector<MarkBits>(TypesOf<typename Parts::mesh_type>::count),
+                  .max_level = rule.options.max_level};
+  if (std::isnan(evaluations)) return marks;
   auto const kinds = kinds_of(std::as_const(parts), TypeList<Fs...>{});
   // The offers of all types come before decisions about each.
   std::vector<std::unique_ptr<OffersOfType>> all;
@@ -115,12 +116,9 @@ MarkedElements decide_on_mesh(Parts& parts, MeshWithinRule<Estimate, Fs...> cons
   });
   auto const limits =
       OfferSearch(all, rule.options.release).limits_for(rule.options.error, evaluations);
-  for (auto const& of_type : all) {
-    for (auto* list : {&marked.refine, &marked.coarsen, &marked.raise, &marked.lower})
-      list->emplace_back();
-    if (of_type) of_type->decide(limits, marked);
-  }
-  return marked;
+  for (std::size_t type = 0; type < all.size(); ++type)
+    if (all[type]) all[type]->decide(limits, marks.of_types[type]);
+  return marks;
 }
 
 }  // namespace pliant::detail

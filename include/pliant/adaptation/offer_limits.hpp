@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/adaptation/mesh_marks.hpp>
 #include <pliant/adaptation/mesh_offers.hpp>
-#include <pliant/topology/marked_elements.hpp>
 
 namespace pliant::detail {
 
@@ -31,8 +31,8 @@ class OffersOfType {
   [[nodiscard]] virtual double sum(OfferLimits const& limits) const = 0;
   /// Settles those of which two limits make the same, as do all between them. Whether others are left.
   virtual bool settle(OfferLimits const& one, OfferLimits const& other) = 0;
-  /// Notes which elements go to other groups, and adds lists of those that are to change.
-  virtual void decide(OfferLimits const& limits, MarkedElements& marked) const = 0;
+  /// Notes which elements go to other groups, and marks those that are to change.
+  virtual void decide(OfferLimits const& limits, MarkBits& bits) const = 0;
 };
 
 /// Looks for the limits of what elements of several types offer.

@@ -3,24 +3,10 @@
 #include <vector>
 
 #include <pliant/adaptation/change_on_backend.hpp>
+#include <pliant/adaptation/lists_on.hpp>
 #include <pliant/adaptation/rule.hpp>
 
 namespace pliant {
-
-namespace detail {
-
-/// How often each element of a type was refined, by the user's number.
-template <Element E, class Parts>
-std::vector<int> levels_of(Parts const& parts) {
-  auto const& topology = *parts.state.topology;
-  if (!topology.tree) return std::vector<int>(topology.mesh().template elements<E>().size(), 0);
-  std::vector<int> levels;
-  for (Index c : topology.cells[Parts::layout_type::template type_of<E>])
-    levels.push_back(topology.tree->cell(c).level);
-  return levels;
-}
-
-}  // namespace detail
 
 /// What refinement did.
 struct RefinementReport {
@@ -76,8 +62,7 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
-  if (auto const done =
-          detail::change_on_backend(body.parts(), detail::MarkedOn{.refine = marked}, max_level)) {
+  if (auto const done = detail::change_on_backend(body.parts(), marked, {}, max_level)) {
     tell_listeners(body.parts(), done->to_tell);
     return {done->refined, done->new_nodes};
   }
@@ -100,8 +85,7 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
-  if (auto const done =
-          detail::change_on_backend(body.parts(), detail::MarkedOn{.coarsen = marked})) {
+  if (auto const done = detail::change_on_backend(body.parts(), {}, marked, most_levels)) {
     tell_listeners(body.parts(), done->to_tell);
     return {done->merged, done->gone_nodes};
   }

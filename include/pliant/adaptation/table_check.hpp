@@ -4,7 +4,7 @@
 #include <pliant/adaptation/element_check.hpp>
 #include <pliant/adaptation/gradient_range.hpp>
 #include <pliant/adaptation/lists_on.hpp>
-#include <pliant/adaptation/mesh_lists.hpp>
+#include <pliant/adaptation/mesh_marks.hpp>
 #include <pliant/adaptation/move_where_noted.hpp>
 #include <pliant/adaptation/ranking.hpp>
 #include <pliant/adaptation/refinement.hpp>
@@ -135,15 +135,13 @@ class TableCheck<Parts, Table, Elements, std::tuple<Rules...>>
     if constexpr (switches) this->count_those_stiffened(allowance);
   }
 
-  /// Adds lists of the elements that rules want changed: see MeshLists.
-  void mark(MarkedElements& marked, int& max_level) const {
-    MeshLists<Rules...> lists(rules_.rules, marked, max_level);
+  /// Marks the elements that rules want changed, and adds what the marks mean.
+  void mark(MeshMarks& marks) const {
+    marks.add(rules_.rules);
     if constexpr (changes_mesh) {
       auto const decision = this->decision();
       if (decision.ranks) find_cuts(decision, []<class R>(R const&) { return MeshRule<R>; });
       backend().for_each(table_.count(), MarkForMesh<Decision<Table, Rules...>>{decision});
-      visit_marked(parts_, table_, workspace().mesh_marks.data(),
-                   [&](Index element, std::uint32_t by_rules) { lists.add(element, by_rules); });
     }
   }
   void keep() const {

@@ -113,11 +113,12 @@ struct PutNumbers {
     numbers[i] = of.number(places == nullptr ? i : places[i]);
   }
 };
-/// The cells of elements with some numbers take the place of these.
+/// The cells of elements with some numbers.
 struct LookUpCells {
   ElementNumbersView of;
-  Index* numbers;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { numbers[i] = of.cell(numbers[i]); }
+  Index const* numbers;
+  Index* cells;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { cells[i] = of.cell(numbers[i]); }
 };
 
 }  // namespace detail

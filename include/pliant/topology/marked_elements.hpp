@@ -24,35 +24,16 @@ struct MarkedElements {
       merge{};
   int raised_rings = 0;  ///< so many rings of neighbours across edges are raised along
 
-  bool none() const { return are_empty(refine, coarsen) && only_refines_and_coarsens(); }
-  bool only_refines_and_coarsens() const {
-    return are_empty(raise, lower, split, split_in_two, merge);
-  }
-
- private:
-  template <class... Lists>
-  static bool are_empty(Lists const&... lists) {
+  bool none() const {
     auto const is_empty = [](auto const& list) {
       return std::ranges::all_of(list, [](auto const& own) { return own.empty(); });
     };
-    return (is_empty(lists) && ...);
+    return is_empty(refine) && is_empty(coarsen) && is_empty(raise) && is_empty(lower) &&
+           is_empty(split) && is_empty(split_in_two) && is_empty(merge);
   }
 };
 
 namespace detail {
-
-/// Elements to refine, and to coarsen, where nothing else is marked: lists of others.
-struct MarkedOn {
-  using Lists = std::span<std::vector<Index> const>;
-  Lists refine{}, coarsen{};
-
-  [[nodiscard]] MarkedElements lists() const {
-    return {.refine = {refine.begin(), refine.end()}, .coarsen = {coarsen.begin(), coarsen.end()}};
-  }
-  static bool none_in(Lists lists) {
-    return std::ranges::all_of(lists, [](auto const& list) { return list.empty(); });
-  }
-};
 
 /// The refinement tree of a topology, and for each type the cells that its elements are: those that it has, or those of a first tree.
 template <class M>
