@@ -70,37 +70,10 @@ struct MarkKnowing {
   }
 };
 
-/// Finds the first cell, edge, side and node behind the initial mesh's that go with children that were left out. So many calls for
-/// each of their parents, all of whose elements have corners only.
-struct FindFirstGone {
-  static constexpr Index each = RefinementPattern::most_children;
-  TreeView tree;
-  TreeSizes initial;
-  Index const *parents, *first_children;
-  Index* first;  // (4)
-
-  PLIANT_HOST_DEVICE void operator()(Index k) const {
-    Index const c = parents[k / each], i = k % each;
-    auto const& parent = tree.cells[at(c)];
-    if (i >= parent.divided().children) return;
-    Index const child = first_children[k / each] + i;
-    auto const own = tree.row(child);
-    auto const& p = tree.cells[at(child)].pattern();
-    for (std::size_t e = 0; e < at(p.edges); ++e)
-      if (own.edges[e] >= initial.edges && !CompactionView::is_used(tree.edges[at(own.edges[e])]))
-        atomic_min(first[1], own.edges[e]);
-    for (std::size_t s = 0; s < at(p.sides); ++s)
-      if (own.sides[s] >= initial.sides && !CompactionView::is_used(tree.sides[at(own.sides[s])]))
-        atomic_min(first[2], own.sides[s]);
-    if (i > 0) return;
-    atomic_min(first[0], child);
-    CompactionView::visit_nodes_that_go(tree, c, [&](Index node) {
-      if (node >= initial.nodes) atomic_min(first[3], node);
-    });
-  }
-
- private:
-  static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+/// The first children that go, for a maximum: the largest is that of the first.
+struct NegatedFirstChild {
+  Index const* first_children;  // by parent
+  PLIANT_HOST_DEVICE double operator()(Index k) const { return -first_children[k]; }
 };
 
 /// Stamps the nodes behind those that stay that cells use which stay: of those behind these, and of listed ones.

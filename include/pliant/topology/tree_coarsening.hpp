@@ -12,7 +12,6 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
-#include <pliant/backend/value_at.hpp>
 #include <pliant/topology/coarsening_passes.hpp>
 #include <pliant/topology/compaction_passes.hpp>
 #include <pliant/topology/division_marks.hpp>
@@ -59,8 +58,7 @@ class TreeCoarsening {
     KnowingCells knowing = listed(done, found[2]);
     Index newer = 0;  // cells that may know of others beside these
     if (finds_first) {
-      done.staying =
-          divisions_.last_before(first_gone(backend, tree.view(), initial, merged), initial);
+      done.staying = divisions_.last_before(first_gone(backend, merged), initial);
       knowing = own_knowing(backend, tree, done, merged);
       newer = sizes.cells - done.staying.cells;
     }
@@ -136,18 +134,12 @@ class TreeCoarsening {
             LoopStep{1, CopyValue<Index>{count, counts_.data() + 2}});
     return most;
   }
-  /// Finds the first of each that goes with children that were left out; waits.
-  TreeSizes first_gone(B const& backend, TreeView const& tree, TreeSizes const& initial,
-                       Index merged) {
-    grow(backend, first_gone_, 4);
-    in_turn(backend,
-            LoopStep{4, FillValue<Index>{first_gone_.data(), std::numeric_limits<Index>::max()}},
-            LoopStep{merged * FindFirstGone::each,
-                     FindFirstGone{tree, initial, parents_.data(), first_children_.data(),
-                                   first_gone_.data()}},
-            LoopStep{4, CopyValue<Index>{first_gone_.data(), counts_.data()}});
-    auto const [cells, edges, sides, nodes] = counted(backend);
-    return {cells, edges, sides, nodes};
+  /// The first cell that goes; waits. What goes with it, and with those behind it, came with their divisions, or with others
+  /// of which no cell is left: these, and all behind them, are forgotten.
+  [[nodiscard]] TreeSizes first_gone(B const& backend, Index merged) const {
+    constexpr Index any = std::numeric_limits<Index>::max();
+    double const first = -backend.maximum(merged, NegatedFirstChild{first_children_.data()});
+    return {static_cast<Index>(first), any, any, any};
   }
   /// Makes what knows of newer entries than those that stay the tree's own, and gives what of it is listed; waits.
   KnowingCells own_knowing(B const& backend, PagedTree<B>& tree, Coarsened const& of,
@@ -229,7 +221,7 @@ class TreeCoarsening {
 
   DivisionMarks divisions_, kept_divisions_;
   Array<Index> families_, parents_, first_children_, before_;
-  Array<Index> counters_, first_gone_;
+  Array<Index> counters_;
   ReadBack<B, Index> counts_;
   Array<Index> knowing_;      // see list_knowing
   Stamps<B> knowing_stamps_;  // by cell
