@@ -74,4 +74,27 @@ TEST_CASE("a mesh that holds an error or a budget is changed in a backend's memo
   });
 }
 
+TEST_CASE("what a rule refines is not merged by another one in a backend's memory",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    using F = Formulation<Tri3, Gauss<1>, NeoHookean>;
+    using Other = two_bodies::Stiffer<F>;
+    TwoBodies<F, B> both(backend, 6);
+    both.refine_one_in(3);
+    auto const change = [](auto& body) {
+      Adaptation{when<F>(EdgeLengthRatio{}).above(-1).refine({.max_level = 2}),
+                 when<F>(EdgeLengthRatio{}).above(-1).coarsen(),
+                 when<Other>(EdgeLengthRatio{}).above(-1).refine({.max_level = 2}),
+                 when<Other>(EdgeLengthRatio{}).above(-1).coarsen()}
+          .now(body);
+    };
+    Index const before = count(both.host);
+    change(both.body);
+    change(both.host);
+    both.check_place();
+    both.check_all();
+    CHECK(count(both.body) == 4 * before);
+  });
+}
+
 }  // namespace pliant::test::rules_on_backend_suite
