@@ -75,7 +75,7 @@ struct Siblings {
   std::uint8_t level = 0;  // how often it was refined
 
   Siblings() = default;
-  Siblings(Index the_first, std::uint8_t the_count, std::uint8_t the_level)
+  PLIANT_HOST_DEVICE Siblings(Index the_first, std::uint8_t the_count, std::uint8_t the_level)
       : first(the_first), count(the_count), level(the_level) {}
 };
 
