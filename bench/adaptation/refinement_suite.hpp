@@ -54,7 +54,8 @@ enum class Beside {
   listener,        // a simulator's array, with a value for each node
   listener_there,  // the same in the backend's memory, and one with a value for each element
   steps,  // nothing, and sixteen steps are counted, with what the first needs to know of the mesh
-  sleep   // all patches sleep; steps until they do so again are counted
+  local_steps,  // the same of local time steps
+  sleep         // all patches sleep; steps until they do so again are counted
 };
 inline std::string in_words(Beside beside) {
   switch (beside) {
@@ -70,6 +71,8 @@ inline std::string in_words(Beside beside) {
       return ", and carry arrays in the backend's memory";
     case Beside::steps:
       return ", and 16 steps";
+    case Beside::local_steps:
+      return ", and 16 macro steps";
     case Beside::sleep:
       return ", asleep, and steps until it sleeps again";
     default:
@@ -121,10 +124,12 @@ void time_change(benchmark::State& state, B const& backend, int cells,
       stiffness_there = change.carry_elements(stiffness_there);
     });
   CentralDifference step;
+  LocalSteps local;
   auto adapt = Adaptation{sleep({.below = 1e6, .for_steps = 2})}.every(1);
   auto const go_on = [&] {
     if (beside == Beside::sleep) step(body, 4, adapt);
     if (beside == Beside::steps) step(body, 16);
+    if (beside == Beside::local_steps) local(body, 16);
   };
   auto const elements = static_cast<Index>(element_count<E>(cells));
   Index const half = beside == Beside::half ? elements / 2 : 0;
@@ -239,6 +244,8 @@ inline void add_refinements() {
         change_beside.template operator()<Beside::steps>();
         change_beside.template operator()<Beside::sleep>();
         change.template operator()<Beside::steps>("each ten thousandth", each_of(count, 10000));
+        change.template operator()<Beside::local_steps>("each ten thousandth",
+                                                        each_of(count, 10000));
       }
     };
     one(Tri3{}, 2e4);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/is_marked.hpp>
 #include <pliant/body/change_on_backend.hpp>
 
@@ -25,14 +26,6 @@ struct LevelOfLeaf {
     levels[i] = tree.cells[static_cast<std::size_t>(leaves[i])].level;
   }
 };
-template <class U>
-struct TakeListed {
-  U const* from;
-  Index const* places;
-  U* to;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[places[i]]; }
-};
-
 /// The user's numbers.
 template <class Parts, class Table>
 auto numbers_on_backend(Parts const& parts, Table const& table) {

@@ -15,6 +15,15 @@ struct CopyValue {
   PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[i]; }
 };
 
+/// The values at listed places.
+template <class U>
+struct TakeListed {
+  U const* from;
+  Index const* places;
+  U* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[i] = from[places[i]]; }
+};
+
 /// Tells two numbers that lie apart.
 struct TellBoth {
   Index const *first, *second;

@@ -54,8 +54,10 @@ inline double cost_of(LimitCounts const& counts, double shortest, double step) {
     return std::numeric_limits<double>::infinity();
   double cost = 0;
   for (int b = 0; b < histogram_bins; ++b) {
+    auto const count = counts[static_cast<std::size_t>(b)];
+    if (count == 0) continue;  // as of most
     double const level = std::max(0.0, std::ceil((bin - b) / limit_bins_per_octave - 1e-6));
-    cost += static_cast<double>(counts[static_cast<std::size_t>(b)]) * std::exp2(level);
+    cost += static_cast<double>(count) * std::exp2(level);
   }
   return cost / step;
 }

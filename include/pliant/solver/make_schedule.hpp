@@ -1,5 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/solver/step_levels.hpp>
 
 // From the levels at which elements are stable to who acts when.
@@ -59,25 +65,38 @@ auto patches_by_level(B const& backend, std::vector<StepLevel> const& levels, in
   return lists;
 }
 
-/// Sorts nodes by the rate at which they move, finest first.
+/// Nodes by the rate at which they move, for a histogram, and those of one rate.
+struct BinOfRate {
+  StepLevel const* rates;
+  PLIANT_HOST_DEVICE Bin operator()(Index i) const { return {rates[i], 1}; }
+};
+struct IsOfRate {
+  StepLevel const* rates;
+  StepLevel rate;
+  PLIANT_HOST_DEVICE bool operator()(Index i) const { return rates[i] == rate; }
+};
+
+/// Sorts nodes by the rate at which they move, finest first. `rates`: of each, in the backend's memory.
 template <Backend B>
-void sort_nodes(B const& backend, std::vector<StepLevel> const& rates, StepSchedule<B>& schedule) {
-  auto const levels = static_cast<std::size_t>(schedule.finest) + 1;
-  schedule.node_counts.assign(levels, 0);
-  for (StepLevel r : rates) ++schedule.node_counts[r];
-  for (std::size_t l = levels - 1; l > 0; --l)
-    schedule.node_counts[l - 1] += schedule.node_counts[l];
-  std::vector<Index> order(rates.size());
-  std::vector<StepLevel> ordered(rates.size());
-  std::vector<Index> next(schedule.node_counts.begin() + 1, schedule.node_counts.end());
-  next.push_back(0);
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    auto const at = static_cast<std::size_t>(next[rates[i]]++);
-    order[at] = static_cast<Index>(i);
-    ordered[at] = rates[i];
+void sort_nodes(B const& backend, Index nodes, StepLevel const* rates, StepSchedule<B>& schedule) {
+  auto bins = zeros<std::int64_t>(backend, std::size_t{histogram_bins});
+  backend.histogram(nodes, BinOfRate{rates}, bins.data());
+  auto const counts = download<std::int64_t>(bins);
+  schedule.nodes = unset<Index>(backend, static_cast<std::size_t>(nodes));
+  schedule.rates = unset<StepLevel>(backend, static_cast<std::size_t>(nodes));
+  schedule.node_counts.assign(static_cast<std::size_t>(schedule.finest) + 1, 0);
+  auto how_many = unset<Index>(backend, 1);
+  Index before = 0;
+  for (int rate = schedule.finest; rate >= 0; --rate) {
+    auto const own = static_cast<std::size_t>(rate);
+    if (counts[own] > 0)
+      backend.select(nodes, IsOfRate{rates, static_cast<StepLevel>(rate)},
+                     schedule.nodes.data() + before, how_many.data());
+    before += static_cast<Index>(counts[own]);
+    schedule.node_counts[own] = before;
   }
-  schedule.nodes = upload(backend, order);
-  schedule.rates = upload(backend, ordered);
+  backend.for_each(nodes,
+                   TakeListed<StepLevel>{rates, schedule.nodes.data(), schedule.rates.data()});
 }
 
 }  // namespace detail
@@ -86,7 +105,8 @@ void sort_nodes(B const& backend, std::vector<StepLevel> const& rates, StepSched
 /// those that it shares a node with, slaves standing for their masters: with fewer rings around fine
 /// elements some graded meshes are unstable. Then a patch takes the level of its finest element. A node
 /// moves at the highest level of what reads it. Added force terms act at the highest level of the elements
-/// that stand at their nodes. One that is right already stays. Lists are made on the host.
+/// that stand at their nodes. One that is right already stays. Lists of patches are made on the
+/// host.
 template <class Parts>
 void make_schedule(Parts& parts) {
   using T = typename Parts::T;
@@ -124,7 +144,7 @@ void make_schedule(Parts& parts) {
   }
   double work = 0, elements = 0;
   parts.for_each_type([&](auto& table, auto& of_type) {
-    auto levels = zeros<StepLevel>(backend, static_cast<std::size_t>(table.elements.patch_count()));
+    auto levels = unset<StepLevel>(backend, static_cast<std::size_t>(table.elements.patch_count()));
     backend.for_each(
         table.elements.patch_count(),
         detail::RaisePatch<T>{table.scratch.data(), levels.data(), table.elements.patches()});
@@ -137,7 +157,7 @@ void make_schedule(Parts& parts) {
       work += size * std::exp2(level);
       elements += size;
     }
-    schedule.tags.push_back(zeros<Tag>(backend, of_type.tags.size()));
+    schedule.tags.push_back(unset<Tag>(backend, of_type.tags.size()));
     backend.for_each(table.count(),
                      detail::CopyValue<Tag>{of_type.tags.data(), schedule.tags.back().data()});
   });
@@ -152,16 +172,16 @@ void make_schedule(Parts& parts) {
   backend.for_each(parts.layout.rows,
                    detail::SumsToLevels<T>{field, at_terms, schedule.term_level});
   interpolation.raise_masters(backend, field);
-  auto rates = zeros<StepLevel>(backend, static_cast<std::size_t>(parts.layout.rows));
+  auto rates = unset<StepLevel>(backend, static_cast<std::size_t>(parts.layout.rows));
   backend.for_each(parts.layout.rows, detail::TakeLevel<T>{field, rates.data()});
-  detail::sort_nodes(backend, download<StepLevel>(rates), schedule);
+  detail::sort_nodes(backend, parts.layout.rows, std::as_const(rates).data(), schedule);
   parts.for_each_type([&](auto& table, auto&) {
     constexpr bool at_once = detail::takes_levels_at_once<B, std::remove_cvref_t<decltype(table)>>;
     auto const& levels = schedule.patch_levels[schedule.patches.size()];
     schedule.patches.push_back(detail::patches_by_level(backend, levels, schedule.finest, at_once));
     auto& weights = schedule.weights.emplace_back();
     if (!at_once) return;
-    weights = zeros<T>(backend, static_cast<std::size_t>(table.count()));
+    weights = unset<T>(backend, static_cast<std::size_t>(table.count()));
     backend.for_each(table.count(), detail::LevelsToShares<T>{table.scratch.data(), schedule.finest,
                                                               weights.data()});
   });
