@@ -154,27 +154,26 @@ class HeldOffers final : public OffersOfType {
 
   void open(OfferSum of) override {
     of_ = of;
-    settled_ = 0;
     is_listed_ = false;
     open_ = table_.count();
   }
-  double sum(OfferLimits const& limits) const override {
-    return settled_ + backend().sum(open_, outcome_at(limits));
+  void add_sum(TriedLimits const& limits, double* to) const override {
+    backend().add_sum(open_, outcome_at(limits), to);
   }
-  bool settle(OfferLimits const& one, OfferLimits const& other) override {
+  void settle(TriedLimits const& one, TriedLimits const& other, double* settled,
+              Index* how_many) override {
     auto const at = outcome_at(one);
-    IsOpen<Offers> const is_open{offers_, at.listed, one, other};
-    if constexpr (has_degrees) return backend().sum(open_, IsOpenNumber<Offers>{is_open}) > 0;
-    auto list = unset<Index>(backend(), static_cast<std::size_t>(open_));
-    auto how_many = zeros<Index>(backend(), 1);
-    settled_ += backend().sum(open_, SettledOutcome<Offers>{at, other});
-    backend().select(open_, is_open, list.data(), how_many.data());
-    Index const left = download<Index>(how_many)[0];
-    if (is_listed_) backend().for_each(left, LookUp{list_.data(), list.data()});
-    list_ = std::move(list);
+    next_ = unset<Index>(backend(), static_cast<std::size_t>(open_));
+    backend().select(open_, IsOpen<Offers>{offers_, at.listed, one, other}, next_.data(), how_many);
+    if constexpr (!has_degrees)
+      backend().add_sum(open_, SettledOutcome<Offers>{at, other}, settled);
+  }
+  void leave_open(Index how_many) override {
+    if constexpr (has_degrees) return;
+    if (is_listed_) backend().for_each(how_many, LookUp{list_.data(), next_.data()});
+    std::swap(list_, next_);
     is_listed_ = true;
-    open_ = left;
-    return left > 0;
+    open_ = how_many;
   }
 
   void decide(OfferLimits const& limits, MarkBits& bits) const override {
@@ -199,7 +198,7 @@ class HeldOffers final : public OffersOfType {
 
  private:
   B const& backend() const { return parts_.backend; }
-  OutcomeAt<Offers> outcome_at(OfferLimits const& limits) const {
+  OutcomeAt<Offers> outcome_at(TriedLimits const& limits) const {
     return {offers_, {is_listed_ ? list_.data() : nullptr}, of_, limits};
   }
   double farthest(bool inverse) const {
@@ -226,10 +225,9 @@ class HeldOffers final : public OffersOfType {
   Offers offers_{};
   // Of a search.
   OfferSum of_ = OfferSum::error;
-  double settled_ = 0;
   bool is_listed_ = false;
-  Index open_ = 0;  // how many
-  Array<Index> list_;
+  Index open_ = 0;            // how many
+  Array<Index> list_, next_;  // of those
 };
 
 }  // namespace pliant::detail

@@ -220,15 +220,24 @@ struct ListedOrAll {
 
 enum class OfferSum { error, evaluations };
 
+/// Limits that are tried, of which one at least is in the backend's memory.
+struct TriedLimits {
+  double const* tried;  // J per evaluation
+  double undo;          // NaN: as well as it makes
+  PLIANT_HOST_DEVICE OfferLimits operator()() const {
+    return {*tried, undo == undo ? undo : *tried};
+  }
+};
+
 /// What limits make of elements, for sums.
 template <class Offers>
 struct OutcomeAt {
   Offers offers;
   ListedOrAll listed;
   OfferSum of;
-  OfferLimits limits;
+  TriedLimits limits;
   PLIANT_HOST_DEVICE double operator()(Index i) const {
-    auto const found = offers.at(listed[i], limits);
+    auto const found = offers.at(listed[i], limits());
     return of == OfferSum::error ? found.error : found.evaluations;
   }
 };
@@ -238,13 +247,13 @@ struct ErrorNow {
   Offers offers;
   PLIANT_HOST_DEVICE double operator()(Index e) const { return offers.error_now(e); }
 };
-/// What limits make of elements of which two limits make the same.
+/// What limits make of elements of which two make the same.
 template <class Offers>
 struct SettledOutcome {
   OutcomeAt<Offers> at;
-  OfferLimits other;
+  TriedLimits other;
   PLIANT_HOST_DEVICE double operator()(Index i) const {
-    return at.offers.is_same(at.listed[i], at.limits, other) ? at(i) : 0;
+    return at.offers.is_same(at.listed[i], at.limits(), other()) ? at(i) : 0;
   }
 };
 /// And those of which they do not, for select.
@@ -252,15 +261,10 @@ template <class Offers>
 struct IsOpen {
   Offers offers;
   ListedOrAll listed;
-  OfferLimits one, other;
+  TriedLimits one, other;
   PLIANT_HOST_DEVICE bool operator()(Index i) const {
-    return !offers.is_same(listed[i], one, other);
+    return !offers.is_same(listed[i], one(), other());
   }
-};
-template <class Offers>
-struct IsOpenNumber {
-  IsOpen<Offers> is_open;
-  PLIANT_HOST_DEVICE double operator()(Index i) const { return is_open(i); }
 };
 /// The largest worth of a change, or the inverse of the least one above zero; 0 where there is none.
 template <class Offers>

@@ -114,8 +114,8 @@ MeshMarks decide_on_mesh(Parts& parts, MeshWithinRule<Estimate, Fs...> const& ru
     else
       all.push_back(nullptr);
   });
-  auto const limits =
-      OfferSearch(all, rule.options.release).limits_for(rule.options.error, evaluations);
+  auto const limits = OfferSearch(parts.backend, all, rule.options.release)
+                          .limits_for(rule.options.error, evaluations);
   for (std::size_t type = 0; type < all.size(); ++type)
     if (all[type]) all[type]->decide(limits, marks.of_types[type]);
   return marks;
