@@ -99,7 +99,7 @@ join(shared/refinement
      shared/criteria adaptation/endurance adaptation/sleep_on_backend
      solver/minres topology/hierarchy)
 join(shared/refinement_on_backend
-     adaptation/boundary_on_backend body/elements_on body/merged_nodes body/refined_nodes
+     adaptation/boundary_on_backend adaptation/rules_on_backend body/elements_on body/merged_nodes body/refined_nodes
      topology/changed_layout topology/known_facets topology/many_changes topology/shape)
 join(shared/changed_meshes
      topology/changed_meshes topology/degree topology/host_threads topology/refined_cells
