@@ -81,7 +81,7 @@ class OfferSearch {
     double const most = largest(&OffersOfType::largest_worth);
     if (most == 0) return {1, 1};  // nothing is wrong anywhere: all is undone
     low_ = 1 / largest(&OffersOfType::inverse_of_least_worth) / 2;
-    high_ = 2 * most / release_;
+    high_ = std::min(2 * most / release_, std::numeric_limits<double>::max());
     auto const both = [](double limit) { return OfferLimits{limit, limit}; };
     bool const has_error = std::isfinite(error);
     double const end = has_error ? search(OfferSum::error, error, as_made_).low : low_;
@@ -96,7 +96,9 @@ class OfferSearch {
 
  private:
   static constexpr double as_made_ = std::numeric_limits<double>::quiet_NaN();
-  static constexpr int halvings_ = 60, at_once_ = 4;
+  static constexpr int at_once_ = 4;  // halvings
+  /// What differs by less counts as equal, as errors of mirrored elements do but for rounding.
+  static constexpr double resolution_ = 1e-12;
 
   template <class Visit>
   void each(Visit const& visit) const {
@@ -125,25 +127,27 @@ class OfferSearch {
     add_sums(as_made_);
     return download<OfferRange>(range_)[0].open;
   }
-  /// Between limits of which those below keep an error, or exceed a budget, and those above do not.
+  /// Between limits of which those below keep an error, or exceed a budget, and those above do not, as close to each other as
+  /// leaves one element of which they make different things, or equal ones.
   OfferRange search(OfferSum of, double goal, double undo) {
     begin(of, low_, high_, std::sqrt(low_) * std::sqrt(high_));
     auto* const range = range_.data();
-    bool some = true;
-    for (int k = 0; k < halvings_ && some; k += at_once_) {
-      for (int own = 0; own < at_once_; ++own) {
+    double width = std::log(high_) - std::log(low_);
+    for (Index open = 2; open > 1 && width > resolution_;) {
+      for (int k = 0; k < at_once_; ++k) {
         add_sums(undo);
         backend_.for_each(1, HalveRange{range, of, goal});
+        width /= 2;
       }
       each([&](std::size_t type, auto& own) {
         own.settle({&range->low, undo}, {&range->high, undo}, &range->settled,
                    counts_.data() + type);
       });
       auto const counts = download<Index>(counts_);
-      some = false;
+      open = 0;
       each([&](std::size_t type, auto& own) {
         own.leave_open(counts[type]);
-        some = some || counts[type] > 0;
+        open += counts[type];
       });
     }
     return download<OfferRange>(range_)[0];
