@@ -52,7 +52,7 @@ if(pliant_has_cuda)
   add_custom_target(pliant_gpu)
   # The device's front end reads host code too, and takes an eighth to a fourth of a whole compilation.
   set(pliant_read_by_nvcc "${CMAKE_CUDA_COMPILER}" -ptx --fdevice-syntax-only -o /dev/null -std=c++20
-                          --expt-relaxed-constexpr --diag-suppress=20012,20014)
+                          --expt-relaxed-constexpr --diag-suppress=20012)
 endif()
 
 # Solvers of matrices, compiled once for all programs of the CPU.
@@ -84,8 +84,8 @@ function(pliant_read_source group target source)
   set(stamp "${CMAKE_CURRENT_BINARY_DIR}/${target}.read")
   add_custom_command(
     OUTPUT "${stamp}"
-    # Solvers of matrices are read with the headers.
-    COMMAND ${ARGN} -DPLIANT_COMPILED_SOLVERS
+    # Solvers of matrices are read with the headers. What devices call and only the host can do is an error (20014).
+    COMMAND ${ARGN} -DPLIANT_COMPILED_SOLVERS --diag-error=20014
             "-I$<JOIN:$<REMOVE_DUPLICATES:$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>>,;-I>" -MD -MF "${stamp}.d" -MT
             "${stamp}" "${source}"
     COMMAND "${CMAKE_COMMAND}" -E touch "${stamp}"
