@@ -80,6 +80,18 @@ TEST_CASE("a mesh holds a budget while what it resolves wanders, and spends it w
   });
 }
 
+TEST_CASE("a budget goes to other elements where some are as fine as they may be", "[adaptation]") {
+  on_each_backend<FewBackends>([](auto const& backend) {
+    auto body = body_on(backend, coarse());
+    double const budget = 0.8 * 4 * count(body);
+    auto adapt = Adaptation{
+        within<Held<Tri3>>(RecoveredStress{}, {.evaluations_per_step = budget, .max_level = 1})};
+    look(body, adapt, 2);
+    CHECK(count(body) > 0.95 * budget);
+    CHECK(count(body) < 1.05 * budget);
+  });
+}
+
 TEST_CASE("of an error and a budget the budget comes first", "[adaptation]") {
   on_each_backend<FewBackends>([](auto const& backend) {
     auto body = body_on(backend, coarse());
