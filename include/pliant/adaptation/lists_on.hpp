@@ -26,6 +26,7 @@ struct LevelOfLeaf {
     levels[i] = tree.cells[static_cast<std::size_t>(leaves[i])].level;
   }
 };
+
 /// The user's numbers.
 template <class Parts, class Table>
 auto numbers_on_backend(Parts const& parts, Table const& table) {
