@@ -201,11 +201,10 @@ int convert_families(Hierarchy<Dim>& host, CellNodes has) {
   return families;
 }
 
-/// A mesh of which some leaves got another degree, and some others another shape, before it came to the backend.
-template <class B, class M>
-void check_converted(B const& backend, M const& mesh, CellNodes has, Division division) {
+/// A mesh of which some leaves got another degree, and some others another shape.
+template <class M>
+Hierarchy<M::dim> converted(M const& mesh, CellNodes has, Division division, Random& random) {
   Hierarchy<M::dim> host(mesh);
-  Random random(4);
   auto const some = [&](std::size_t one_in) {  // few of those that have parents
     auto leaves = some_leaves(host, one_in, random);
     std::erase_if(leaves, [&](Index c) { return host.cell(c).level > 0 && random.below(8) != 0; });
@@ -228,9 +227,14 @@ void check_converted(B const& backend, M const& mesh, CellNodes has, Division di
     if (host.cell(c).has == CellNodes::corners && division != Division::refined)
       splits.push_back({c, division});
   host.split(splits);
-  CHECK(host.tree().lists().converted.size() > 2);
   CHECK((division == Division::refined || splits.size() > 1));
-
+  return host;
+}
+template <class B, class M>
+void check_converted(B const& backend, M const& mesh, CellNodes has, Division division) {
+  Random random(4);
+  auto host = converted(mesh, has, division, random);
+  CHECK(host.tree().lists().converted.size() > 2);
   TreeBeside<B> on(backend, host);
   check_same(on.tree, host);
   check_changes(on, host, 14);
@@ -248,6 +252,53 @@ TEST_CASE("trees of several degrees and shapes are coarsened in a backend's memo
     check_converted(backend, regular_mesh<Hex8>(4), CellNodes::all, Division::six_pyramids);
     check_converted(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(3)), CellNodes::edges,
                     Division::refined);
+  });
+}
+
+/// The nodes that hang in such a mesh, from its first change on and at the end.
+template <class B, class M>
+void check_hanging_of(B const& backend, M const& mesh, CellNodes has, Division division) {
+  Random random(8);
+  for (int one = 0; one < 4; ++one) {
+    auto host = converted(mesh, has, division, random);
+    TreeBeside<B> on(backend, host);
+    REQUIRE(on.tree.mixes_degrees());
+    HangingNodesOn<M::dim, B> hanging(backend), again(backend);
+    auto const find = [&](Index const* row_of_node) { return again.rows(on.tree, row_of_node); };
+    check_hanging(backend, host, find);
+    auto const check = [&](auto const& done) {
+      check_hanging(backend, host, [&](Index const* row_of_node) {
+        return hanging.rows_after(on.tree, done, row_of_node);
+      });
+    };
+    for (int round = 0; round < 5; ++round) {
+      if (round % 2 == 0)
+        check(refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random)));
+      else
+        check(coarsen_both(on, host, some_families(host, 2, random), random));
+      on.tree.keep();
+    }
+    merge_all(on, host);
+    check_hanging(backend, host, find);
+    CHECK(host.slaves().size() > 10);  // of other degrees
+  }
+}
+
+TEST_CASE("nodes that hang in a tree of several degrees are found in a backend's memory",
+          "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    check_hanging_of(backend, regular_mesh<Tri3>(5), CellNodes::edges, Division::refined);
+    check_hanging_of(backend, regular_mesh<Quad4>(6), CellNodes::edges, Division::refined);
+    check_hanging_of(backend, regular_mesh<Quad4>(6), CellNodes::all, Division::four_triangles);
+    check_hanging_of(backend, regular_mesh<Tet4>(3), CellNodes::edges, Division::refined);
+    check_hanging_of(backend, regular_mesh<Hex8>(4), CellNodes::edges, Division::refined);
+    check_hanging_of(backend, regular_mesh<Hex8>(4), CellNodes::all, Division::six_pyramids);
+    check_hanging_of(backend, mesh::raised<Quad9>(regular_mesh<Quad4>(5)), CellNodes::all,
+                     Division::refined);
+    check_hanging_of(backend, mesh::raised<Tet10>(regular_mesh<Tet4>(3)), CellNodes::edges,
+                     Division::refined);
+    check_hanging_of(backend, mesh::raised<Hex27>(regular_mesh<Hex8>(3)), CellNodes::all,
+                     Division::refined);
   });
 }
 

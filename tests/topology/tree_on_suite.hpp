@@ -68,16 +68,6 @@ TEST_CASE("trees of quadratic elements are refined in a backend's memory", "[top
   });
 }
 
-TEST_CASE("hanging nodes of trees that mix degrees are refused", "[topology]") {
-  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
-    Hierarchy<3> host(regular_mesh<Tet4>(2));
-    host.raise({{0, CellNodes::edges}});
-    TreeBeside<B> const on(backend, host);
-    HangingNodesOn<3, B> hanging(backend);
-    CHECK_THROWS_AS(hanging.rows(on.tree, nullptr), Error);
-  });
-}
-
 TEST_CASE("a tree whose refinement would exceed a limit is as it was", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     Hierarchy<3> host(mesh::raised<Tet10>(regular_mesh<Tet4>(2)));

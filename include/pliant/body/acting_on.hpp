@@ -109,16 +109,16 @@ class ActingOn {
   static void press_sides(Parts& parts, On const& on, Pressed const& own,
                           LeavesView const& leaves) {
     [&]<Element... Faces>(detail::TypeList<Faces...>) {
-      (press_faces<Faces, typename E::cell>(parts, on, own, leaves), ...);
+      (press_faces<Faces, E>(parts, on, own, leaves), ...);
     }(detail::faces_of<E>());
   }
-  template <Element Face, class Cell, class Parts, class On>
+  template <Element Face, Element E, class Parts, class On>
   static void press_faces(Parts& parts, On const& on, Pressed const& own,
                           LeavesView const& leaves) {
     using Physics = detail::PressureOn<Dim, Face>;
     using Term = ConnectedTerm<B, Physics::template physics>;
     constexpr int width = row_width<typename Term::Elements>;
-    auto rows = on.held.template facets_of_set<Cell, Face::cell::corners, width>(
+    auto rows = on.held.template facets_of_set<E, Face::cell::corners, width>(
         parts.backend, on.tree, leaves, on.rows.of_node(), own.set);
     if (rows.size() == 0) return;
     parts.pressures.push_back(Term::of_rows(parts.backend, std::move(rows),

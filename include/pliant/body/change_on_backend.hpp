@@ -29,13 +29,12 @@ template <class B>
   requires requires { requires B::keeps_trees; }
 inline constexpr bool keeps_trees<B> = true;
 
-/// Whether the elements of a mesh are of one degree, and have children of their own type, as pyramids have not.
+/// Whether the elements of a mesh have children of their own type, as pyramids have not.
 template <class M>
 inline constexpr bool are_divided_alike = false;
 template <Element... Es>
 inline constexpr bool are_divided_alike<Mesh<Es...>> =
-    ((Refinable<Es> && !std::same_as<typename Es::cell, Pyramid>)&&...) &&
-    (sizeof...(Es) == 1 || ((nodes_on_cell<Es> == CellNodes::corners) && ...));
+    ((Refinable<Es> && !std::same_as<typename Es::cell, Pyramid>)&&...);
 
 /// Whether bodies of a kind may be refined and coarsened in their backend's memory.
 template <class Parts>

@@ -17,7 +17,7 @@ template <std::size_t I>
 using TypeNumber = std::integral_constant<std::size_t, I>;
 /// f(TypeNumber<I>{}...) of so many element types.
 template <std::size_t Types, class F>
-decltype(auto) on_types(F const& f) {
+constexpr decltype(auto) on_types(F const& f) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) -> decltype(auto) {
     return f(TypeNumber<I>{}...);
   }(std::make_index_sequence<Types>());

@@ -49,7 +49,8 @@ class ChangedPartsOn {
   static constexpr int dim = Parts::dim;
   /// Whether elements that are refined have to be given momentum back. Linear ones keep theirs: what their children interpolate is
   /// what they did, and lumped masses are the integrals of shape functions.
-  static constexpr bool moves_momentum = ElementOf<0>::degree > 1;
+  static constexpr bool moves_momentum = on_types<On::types>(
+      []<std::size_t... I>(TypeNumber<I>...) { return ((ElementOf<I>::degree > 1) || ...); });
   template <class U>
   using Array = typename Parts::template Array<U>;
 
@@ -95,7 +96,7 @@ class ChangedPartsOn {
                                                                node_field<dim>(layout.rest)}};
     return on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
       auto const filling = [&]<Element E>(E) {
-        return filling_new_nodes<E>(on_->tree, done, On::has_kinds, on_->rows.of_node(),
+        return filling_new_nodes<E>(on_->tree, done, On::has_several, on_->rows.of_node(),
                                     on_->point_field(), node_field<dim>(u), node_field<dim>(v));
       };
       auto const exchange = [&](auto const&... come) {
@@ -174,7 +175,7 @@ class ChangedPartsOn {
   template <std::size_t I>
   auto refined(typename TreeOn<B>::Refined const& done) const {
     return refined_elements<ElementOf<I>>(on_->tree, done, on_->rows.of_node(), at_rest(),
-                                          On::has_kinds);
+                                          On::has_several);
   }
   [[nodiscard]] Index come_in_all(typename TreeOn<B>::Refined const& done) const {
     return on_->order.count() - on_->order.count_before() + done.leaves;

@@ -16,7 +16,7 @@
 
 namespace pliant {
 
-/// The user's numbers of the elements of one type as loops see them: leaves of its kind have theirs in the order of their cells (see
+/// The user's numbers of the elements of one type as loops see them: its leaves have theirs in the order of their cells (see
 /// CellSet).
 struct ElementNumbersView {
   static constexpr Index per_word = 32;
@@ -48,17 +48,9 @@ struct ElementNumbersView {
 
 namespace detail {
 
-/// Cells of one kind, where a tree has several.
-struct CellsOfKind {
-  CellKind kind;
-  bool has_others;
-  PLIANT_HOST_DEVICE bool operator()(TreeCell const& cell) const {
-    return !has_others || cell.kind == kind;
-  }
-};
 struct FindLeaves {
   TreeView tree;
-  CellsOfKind is_one;
+  CellsOfType is_one;
   Index cells, first_word;
   std::uint32_t* words;
   PLIANT_HOST_DEVICE void operator()(Index k) const {
@@ -79,7 +71,7 @@ struct FindLeaves {
 /// Changes the bits of cells before a word, where these became leaves or ceased to be such.
 struct ChangeLeaves {
   TreeView tree{};
-  CellsOfKind is_one{};
+  CellsOfType is_one{};
   Index first_word = 0;
   std::uint32_t* words = nullptr;
 
@@ -131,9 +123,9 @@ class ElementNumbersOn {
 
  public:
   ElementNumbersOn() = default;
-  /// Of the leaves of a kind that there are now; `has_others`: whether the tree has cells of other kinds.
-  ElementNumbersOn(B const& backend, TreeOn<B> const& tree, CellKind kind, bool has_others)
-      : is_one_{kind, has_others} {
+  /// Of the leaves of a type that there are now.
+  ElementNumbersOn(B const& backend, TreeOn<B> const& tree, detail::CellsOfType const& type)
+      : is_one_(type) {
     follow(backend, tree, 0, 0, detail::ChangeMergedLeaves{});
   }
 
@@ -181,7 +173,7 @@ class ElementNumbersOn {
     backend.scan(count_of_words_, detail::CountLeaves{words_.data()}, before_.data());
   }
 
-  detail::CellsOfKind is_one_{};
+  detail::CellsOfType is_one_{};
   Array<std::uint32_t> words_;
   Array<Index> before_;
   Index cells_ = 0, count_of_words_ = 0;

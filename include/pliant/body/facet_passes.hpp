@@ -68,7 +68,7 @@ struct SidesOfCells {
   }
 };
 /// Puts the rows of the nodes of a listed side, as they are seen from outside of its element.
-template <class Sides, Index Count, int Corners, int Width>
+template <CellNodes Has, class Sides, Index Count, int Corners, int Width>
 struct PutFacet {
   SidesOfCells<Sides, Count, Corners> of_cells;
   Index const* places;  // as SidesOfCells counts
@@ -90,7 +90,7 @@ struct PutFacet {
       auto const c = at(cell.mirrored ? Corners - 1 - a : a);
       put(row.nodes[at(Sides::dim == 2 ? p.edge[s][c] : p.side[s][c])]);
     }
-    if (Sides::has == CellNodes::corners) return;
+    if (Has == CellNodes::corners) return;
     if constexpr (Sides::dim == 2) {
       put(tree.edges[at(row.edges[s])].middle);
     } else {
@@ -98,7 +98,7 @@ struct PutFacet {
         auto const c = at(cell.mirrored ? (2 * Corners - 2 - a) % Corners : a);
         put(tree.edges[at(row.edges[at(p.edges_of_side[s][c])])].middle);
       }
-      if (Sides::has == CellNodes::all && Corners == 4) put(tree.sides[at(row.sides[s])].centre);
+      if (Has == CellNodes::all && Corners == 4) put(tree.sides[at(row.sides[s])].centre);
     }
   }
 };

@@ -23,15 +23,13 @@ struct FillNewNodes {
   static constexpr int dim = E::dim;
   TreeView tree;
   PlacedNode const* nodes;
-  bool has_others;       // whether they may lie in cells of other kinds
+  bool has_others;       // whether they may lie in cells of other types
   Index const* of_node;  // rows, by the user's number
   std::tuple<NodeField<T, dim>...> fields;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     PlacedNode const& placed = nodes[k];
-    if (has_others &&
-        tree.cells[static_cast<std::size_t>(placed.cell)].kind != kind_of<typename E::cell>)
-      return;
+    if (!cells_of_type<E>(has_others)(tree.cells[static_cast<std::size_t>(placed.cell)])) return;
     Vector<double, dim> xi;
     for (int d = 0; d < dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
     auto const weights = E::shape(xi);

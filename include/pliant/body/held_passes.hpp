@@ -20,11 +20,10 @@ using ConditionBits = std::uint32_t;
 inline constexpr std::size_t most_conditions = 31;
 inline constexpr ConditionBits differs = ConditionBits{1} << most_conditions;
 
-/// The sides of cells, all of which have the same nodes.
-template <int Dim, CellNodes Has>
+/// The sides of cells that have so many nodes.
+template <int Dim, CellNodes Least, CellNodes Most>
 struct SidesView {
   static constexpr int dim = Dim;
-  static constexpr CellNodes has = Has;
   TreeView tree;
 
   /// Calls visit(side) for the sides of a cell.
@@ -46,25 +45,31 @@ struct SidesView {
       return tree.sides[at(side)].first_child;
   }
   static constexpr Index parts = Dim == 2 ? 2 : 4;
-  /// Calls visit(node) for the nodes that elements have on a side.
+  /// Calls visit(node) for the nodes that facets have at a side.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_nodes(Index side, Visit const& visit) const {
     if constexpr (Dim == 2) {
       auto const& own = tree.edges[at(side)];
       for (Index const node : own.nodes) visit(node);
-      if constexpr (Has != CellNodes::corners) visit(own.middle);
+      if (nodes_on(side) != CellNodes::corners) visit(own.middle);
     } else {
       auto const& own = tree.sides[at(side)];
+      auto const has = nodes_on(side);
       for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.corner_of(own, k));
-      if constexpr (Has != CellNodes::corners)
-        for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.edges[at(own.edges[k])].middle);
-      if constexpr (Has == CellNodes::all)
-        if (own.corners() == 4) visit(own.centre);
+      if (has == CellNodes::corners) return;
+      for (std::size_t k = 0; k < own.corners(); ++k) visit(tree.edges[at(own.edges[k])].middle);
+      if (has == CellNodes::all && own.corners() == 4) visit(own.centre);
     }
   }
 
  private:
   static PLIANT_HOST_DEVICE std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  [[nodiscard]] PLIANT_HOST_DEVICE CellNodes nodes_on(Index side) const {
+    if constexpr (Least == Most)
+      return Most;
+    else
+      return tree.nodes_of_facet<Dim>(side);
+  }
 };
 
 /// In which directions conditions hold.

@@ -23,11 +23,11 @@
 
 namespace pliant {
 
-/// What conditions hold, and pressures press, of a mesh of elements of one type in a backend's memory: facets, as sides of its
-/// tree, and nodes. Sets of facets are numbered: those of conditions in their order, and those of pressures behind them.
-template <int Dim, CellNodes Has, Backend B>
+/// What conditions hold, and pressures press, of a mesh in a backend's memory, whose elements have so many nodes: facets, as sides
+/// of its tree, and nodes. Sets of facets are numbered: those of conditions in their order, and those of pressures behind them.
+template <int Dim, CellNodes Least, CellNodes Most, Backend B>
 class HeldSidesOn {
-  using Sides = detail::SidesView<Dim, Has>;
+  using Sides = detail::SidesView<Dim, Least, Most>;
   template <class U>
   using Array = typename B::template Array<U>;
 
@@ -175,12 +175,12 @@ class HeldSidesOn {
                                                            bit(set), of_node, marks.data()});
     return selected(backend, rows_, detail::IsMarked<std::uint8_t>{marks.data()});
   }
-  /// The facets of a set with so many corners as elements on leaves of one kind have them: (facets, Width), the first of which are rows
+  /// The facets of a set with so many corners as elements of one type, on these leaves, have them: (facets, Width), the first of which are rows
   /// of nodes, seen from outside.
-  template <class Cell, int Corners, int Width>
+  template <Element E, int Corners, int Width>
   Array<Index> facets_of_set(B const& backend, TreeOn<B> const& tree, LeavesView const& leaves,
                              Index const* of_node, std::size_t set) const {
-    constexpr auto sides = static_cast<Index>(Cell::sides().size());
+    constexpr auto sides = static_cast<Index>(E::cell::sides().size());
     detail::SidesInSet<Sides> const in_set{Sides{tree.view()}, bits_.data(), bit(set)};
     auto cells =
         selected(backend, leaves.count, detail::HasSideInSet<Sides>{in_set, leaves.leaves});
@@ -189,8 +189,8 @@ class HeldSidesOn {
     auto const places = selected(backend, static_cast<Index>(cells.size()) * sides, of_cells);
     auto rows = zeros<Index>(backend, places.size() * Width);
     backend.for_each(static_cast<Index>(places.size()),
-                     detail::PutFacet<Sides, sides, Corners, Width>{of_cells, places.data(),
-                                                                    of_node, rows.data()});
+                     detail::PutFacet<nodes_on_cell<E>, Sides, sides, Corners, Width>{
+                         of_cells, places.data(), of_node, rows.data()});
     return rows;
   }
 

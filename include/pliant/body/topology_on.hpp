@@ -44,14 +44,12 @@ struct OnHost {
 template <class M, Backend B>
 struct TopologyOn;
 
-/// Of a mesh of elements of one degree.
 template <Element... Es, Backend B>
 struct TopologyOn<Mesh<Es...>, B> {
   using M = Mesh<Es...>;
   static constexpr int dim = M::dim;
   static constexpr std::size_t types = sizeof...(Es);
-  /// Whether cells may be of several kinds.
-  static constexpr bool has_kinds = types > 1;
+  static constexpr bool has_several = types > 1;
   /// After so many changes the host follows, or of so many cells for each element, so that what it has to keep has an end.
   static constexpr int most_changes = 512, most_cells = 64;
   /// Where the elements of each type begin among all, and behind the last one.
@@ -69,7 +67,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   FamilyMomentumOn<dim, B> momentum;
   GoneNodesOn<M, B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
-  HeldSidesOn<dim, std::max({nodes_on_cell<Es>...}), B> held;
+  HeldSidesOn<dim, std::min({nodes_on_cell<Es>...}), std::max({nodes_on_cell<Es>...}), B> held;
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
   OnHost<M> on_host;
@@ -82,7 +80,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   /// The leaves of type I.
   [[nodiscard]] LeavesView leaves(std::size_t type) const {
     return order.view(first_place[type], first_place[type + 1] - first_place[type],
-                      first_before[type], first_before[type + 1] - first_before[type], has_kinds);
+                      first_before[type], first_before[type + 1] - first_before[type], has_several);
   }
   [[nodiscard]] ElementNumbersView element_numbers(std::size_t type) const {
     return numbers[type].of(leaves(type));
@@ -153,7 +151,8 @@ struct TopologyOn<Mesh<Es...>, B> {
             bounds([&](std::size_t type) { return parts.layout.first_of_block[type].back(); })),
         first_before(first_place),
         rows(parts.backend, parts.layout.node_rows()),
-        numbers{ElementNumbersOn<B>(parts.backend, tree, kind_of<typename Es::cell>, has_kinds)...},
+        numbers{
+            ElementNumbersOn<B>(parts.backend, tree, detail::cells_of_type<Es>(has_several))...},
         hanging(parts.backend, !(LinearSimplex<Es> && ...)),
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),

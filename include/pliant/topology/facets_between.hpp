@@ -15,7 +15,7 @@
 namespace pliant {
 
 /// Takes facets of one tree over to another one of the same initial mesh, whatever changes lie between: where a facet is
-/// divided there, come its parts, and where it was merged, the whole, once. All leaves are of one degree. Refers to the trees.
+/// divided there, come its parts, and where it was merged, the whole, once. Refers to the trees.
 template <int Dim>
 class FacetsBetween {
  public:
@@ -98,12 +98,12 @@ class FacetsBetween {
       facet.push_back(nodes[(backwards ? start + n - k : start + k) % n]);
     return facet;
   }
-  /// The same of the tree of now, with the nodes between them that elements have.
+  /// The same of the tree of now, with nodes between them.
   [[nodiscard]] Facet<Dim> facet_now(Index side, std::size_t start, bool backwards) const {
     auto const nodes = nodes_at(now_, side);
     auto const n = corners_of(nodes);
     auto facet = facet_of(nodes, start, backwards);
-    auto const has = now_.cells[0].has;
+    auto const has = now_.view().template nodes_of_facet<Dim>(side);
     if (has == CellNodes::corners) return facet;
     if constexpr (Dim == 2) {
       facet.push_back(now_.edges[at(side)].middle);

@@ -13,6 +13,7 @@
 #include <pliant/constraint/interpolation_on.hpp>
 #include <pliant/constraint/rows_on.hpp>
 #include <pliant/error.hpp>
+#include <pliant/topology/hanging_degrees.hpp>
 #include <pliant/topology/hanging_lists.hpp>
 #include <pliant/topology/hanging_passes.hpp>
 #include <pliant/topology/stamps.hpp>
@@ -20,8 +21,7 @@
 
 namespace pliant {
 
-/// Finds the nodes that hang in a tree in a backend's memory, all leaves of which are of one degree, as HangingNodes does on the
-/// host.
+/// Finds the nodes that hang in a tree in a backend's memory, as HangingNodes does on the host.
 template <int Dim, Backend B>
 class HangingNodesOn {
   using T = typename B::scalar;
@@ -31,10 +31,10 @@ class HangingNodesOn {
  public:
   /// `sides_have_nodes`: whether nodes may hang in the middle of sides; not where all sides are those of linear tetrahedra.
   explicit HangingNodesOn(B const& backend, bool sides_have_nodes = true)
-      : backend_(backend), sides_have_nodes_(sides_have_nodes), counts_(backend, 5) {}
+      : backend_(backend), sides_have_nodes_(sides_have_nodes), counts_(backend, 6) {}
 
   /// Every one, ascending by the user's numbers, with its free masters; by row_of_node(the user's number), in the backend's
-  /// memory. Throws Error for a tree that mixes degrees.
+  /// memory.
   RowsOn<B> rows(TreeOn<B> const& tree, Index const* row_of_node) {
     find(tree);
     return rows_waited_for(tree, row_of_node);
@@ -48,19 +48,13 @@ class HangingNodesOn {
 
   // The same in three calls, between each two of which the backend has to be waited for, so that other work may stand there.
 
-  /// Asks for the edges and sides on which nodes hang.
+  /// Asks for the edges and sides on which nodes hang, and the cells in which they do.
   void find(TreeOn<B> const& tree) {
-    if (tree.mixes_degrees())
-      throw Error("hanging nodes: the tree mixes degrees; take HangingNodes, on the host");
-    auto const sizes = tree.sizes();
-    detail::HangingView<Dim> const view{tree.view()};
-    Index const sides = sides_have_nodes_ ? sizes.sides : 0;
-    need(edges_, sizes.edges);
-    need(sides_, sides);
     counts_.set_all(0);
-    backend_.select(sizes.edges, detail::IsHungOnEdge<Dim>{view}, edges_.data(), counts_.data());
-    if (sides > 0)
-      backend_.select(sides, detail::IsHungOnSide<Dim>{view}, sides_.data(), counts_.data() + 1);
+    if (tree.mixes_degrees()) return find_of_degrees(tree);
+    detail::HangingView<Dim> const view{tree.view()};
+    select(tree.sizes().edges, detail::IsHungOnEdge<Dim>{view}, edges_, of_edges);
+    select(sides_of(tree), detail::IsHungOnSide<Dim>{view}, sides_, of_sides);
     knows_all_ = true;
   }
   /// The same after a refinement: looks at what hung before it, and at what was refined.
@@ -127,17 +121,17 @@ class HangingNodesOn {
         LoopStep{of_sides, SidesOfMerged{{view}, coarsened.parents, cells, sides}},
         LoopStep{2, CopyValue<Index>{counters_.data(), counts_.data()}});
   }
-  /// How many edges and sides were found.
+  /// How many edges, sides and cells were found.
   [[nodiscard]] Index count_found() const {
-    auto const found = counts_.template first<2>();
-    return found[0] + found[1];
+    auto const found = counts_.template first<3>();
+    return found[of_edges] + found[of_sides] + found[of_cells];
   }
   /// Numbers the slaves, and asks how many masters they have.
   void find_masters(TreeOn<B> const& tree) {
+    Index const places = count_found(), nodes = tree.sizes().nodes;
     auto const found = counts_.template first<2>();
-    edge_count_ = found[0];
-    side_count_ = found[1];
-    Index const places = edge_count_ + side_count_, nodes = tree.sizes().nodes;
+    edge_count_ = found[of_edges];
+    side_count_ = found[of_sides];
     auto const hung = hung_on(tree);
     std::swap(nodes_, nodes_before_);
     if (slave_at_.size() < at(nodes)) {
@@ -146,29 +140,41 @@ class HangingNodesOn {
     }
     auto const forget = number_slaves(nodes_before_, std::exchange(slaves_, 0), false);
     // One hangs on each edge where all leaves have corners only.
-    bool const is_one_each = tree.is_linear() && side_count_ == 0;
-    Index const n = is_one_each ? places : count_on(hung, places);
+    bool const mixes = tree.mixes_degrees(),
+               is_one_each = tree.is_linear() && !mixes && side_count_ == 0;
+    Index n = is_one_each ? places : count_on(hung, places);
     if (n == 0) return forget.run(backend_);
     need(nodes_, n);
     need(order_, n);
     need(places_, n);
+    detail::LoopStep const listing{
+        places, detail::ListSlaves<Dim>{hung, is_one_each ? nullptr : start_.data(), nodes_.data(),
+                                        order_.data(), places_.data()}};
+    detail::SortStep const sorting{n, nodes_.data(), order_.data(), detail::key_bits(nodes)};
+    if (mixes) {
+      detail::in_turn(backend_, listing, sorting);
+      n = keep_first_of_each(n);
+    }
     first_ = unset<Index>(backend_, at(n) + 1);
     need(counters_, 2);
     node_stamps_.begin(backend_, at(nodes));
-    Index *const masters = counters_.data(), *const too_many = masters + 1;
-    detail::in_turn(
-        backend_, forget, detail::LoopStep{2, detail::FillValue<Index>{masters, 0}},
-        detail::LoopStep{places,
-                         detail::ListSlaves<Dim>{hung, is_one_each ? nullptr : start_.data(),
-                                                 nodes_.data(), order_.data(), places_.data()}},
-        detail::SortStep{n, nodes_.data(), order_.data(), detail::key_bits(nodes)},
-        number_slaves(nodes_, n, true),
-        detail::ScanStep{n,
-                         detail::CountMasters<Dim>{free_masters(tree), node_stamps_.data(),
-                                                   node_stamps_.now(), masters, too_many},
-                         first_.data()},
-        detail::LoopStep{2, detail::CopyValue<Index>{masters, counts_.data() + 2}},
-        detail::LoopStep{1, detail::CopyValue<Index>{first_.data() + n, counts_.data() + 4}});
+    auto const count_masters = [&](auto const&... before) {
+      Index *const masters = counters_.data(), *const too_many = masters + 1;
+      detail::in_turn(
+          backend_, forget, detail::LoopStep{2, detail::FillValue<Index>{masters, 0}}, before...,
+          number_slaves(nodes_, n, true),
+          detail::ScanStep{n,
+                           detail::CountMasters<Dim>{free_masters(tree), node_stamps_.data(),
+                                                     node_stamps_.now(), masters, too_many},
+                           first_.data()},
+          detail::LoopStep{2, detail::CopyValue<Index>{masters, counts_.data() + of_masters}},
+          detail::LoopStep{1,
+                           detail::CopyValue<Index>{first_.data() + n, counts_.data() + of_sum}});
+    };
+    if (mixes)
+      count_masters();
+    else
+      count_masters(listing, sorting);
     slaves_ = n;
   }
   /// The interpolation by what was found. `rows`: a number that those of nodes are below.
@@ -179,6 +185,9 @@ class HangingNodesOn {
   }
 
  private:
+  /// Where counts stand: of edges, sides and cells found; of masters, and behind that whether they are too many; a sum.
+  enum : std::size_t { of_edges, of_sides, of_cells, of_masters, of_sum = of_masters + 2 };
+
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
   RowsOn<B> rows_waited_for(TreeOn<B> const& tree, Index const* row_of_node) {
@@ -189,11 +198,46 @@ class HangingNodesOn {
     filling(tree, row_of_node, slaves).run(backend_);
     return slaves;
   }
+  [[nodiscard]] Index sides_of(TreeOn<B> const& tree) const {
+    return sides_have_nodes_ ? tree.sizes().sides : 0;
+  }
+  /// Asks for the i < n that are wanted, and for how many there are.
+  template <class Wanted>
+  void select(Index n, Wanted const& wanted, Array<Index>& list, std::size_t count) {
+    if (n == 0) return;
+    need(list, n);
+    backend_.select(n, wanted, list.data(), counts_.data() + count);
+  }
+  /// The same as find, of a tree that mixes degrees. Waits.
+  void find_of_degrees(TreeOn<B> const& tree) {
+    auto const sizes = tree.sizes();
+    Index const sides = sides_of(tree);
+    auto const hung = linear_.find(backend_, tree.view(), sizes.edges, sides);
+    select(sizes.edges, detail::IsHungOnAnyEdge<Dim>{hung}, edges_, of_edges);
+    select(sides, detail::IsHungOnAnySide<Dim>{hung}, sides_, of_sides);
+    select(sizes.cells, detail::IsHungInCell{tree.view()}, cells_, of_cells);
+  }
+  /// Of sorted slaves, some of which were found at several places, leaves the first place of each; gives how many are left. Waits.
+  Index keep_first_of_each(Index n) {
+    need(start_, n);
+    need(nodes_kept_, n);
+    need(order_kept_, n);
+    backend_.select(n, detail::IsFirstOfEqual{nodes_.data()}, start_.data(),
+                    counts_.data() + of_sum);
+    backend_.synchronize();
+    Index const count = counts_.template first<6>()[of_sum];
+    backend_.for_each(count, detail::TakeSlaves{start_.data(), nodes_.data(), order_.data(),
+                                                nodes_kept_.data(), order_kept_.data()});
+    std::swap(nodes_, nodes_kept_);
+    std::swap(order_, order_kept_);
+    return count;
+  }
   /// Rows of what was found, without values.
   RowsOn<B> room_for_slaves() {
     if (slaves_ == 0) return {};
-    auto const [edges, sides, masters, too_many, entries] = counts_.template first<5>();
-    if (too_many != 0)
+    auto const counts = counts_.template first<6>();
+    auto const masters = counts[of_masters], entries = counts[of_sum];
+    if (counts[of_masters + 1] != 0)
       throw Error("hanging nodes: one has more than ", detail::MasterList::most,
                   " masters; keep neighbours of finer elements within one level");
     return {slaves_,
@@ -211,7 +255,12 @@ class HangingNodesOn {
              rows.other.data(), rows.weight.data()}};
   }
   [[nodiscard]] detail::HungOn<Dim> hung_on(TreeOn<B> const& tree) const {
-    return {{tree.view()}, edges_.data(), sides_.data(), edge_count_};
+    return {{tree.view(), tree.mixes_degrees() ? linear_.data() : nullptr},
+            edges_.data(),
+            sides_.data(),
+            cells_.data(),
+            edge_count_,
+            side_count_};
   }
   [[nodiscard]] detail::FreeMasters<Dim> free_masters(TreeOn<B> const& tree) const {
     return {hung_on(tree), order_.data(), places_.data(), slave_at_.data()};
@@ -224,22 +273,25 @@ class HangingNodesOn {
   /// How many nodes hang on edges and sides, and before each of these.
   Index count_on(detail::HungOn<Dim> const& hung, Index places) {
     need(start_, places + 1);
-    detail::in_turn(
-        backend_, detail::ScanStep{places, hung, start_.data()},
-        detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places, counts_.data() + 4}});
+    detail::in_turn(backend_, detail::ScanStep{places, hung, start_.data()},
+                    detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places,
+                                                                 counts_.data() + of_sum}});
     backend_.synchronize();
-    return counts_.template first<5>()[4];
+    return counts_.template first<6>()[of_sum];
   }
 
   B backend_;
   bool sides_have_nodes_, knows_all_ = false;
-  Array<Index> edges_, sides_;  // on which nodes hang, in no order
+  Array<Index> edges_, sides_, cells_;    // where nodes hang, in no order
+  detail::LinearEdgesOn<Dim, B> linear_;  // of a tree that mixes degrees
   Index edge_count_ = 0, side_count_ = 0;
   Array<Index> edges_before_, sides_before_;
   detail::Stamps<B> edge_stamps_, side_stamps_, node_stamps_;
   Array<Index> start_, order_, first_, counters_;
-  ReadBack<B, Index> counts_;                  // edges, sides; masters, too many of them, entries
+  ReadBack<B, Index> counts_;
   Array<std::uint64_t> nodes_, nodes_before_;  // slaves, and those before
+  Array<std::uint64_t> nodes_kept_;            // of those found at several places
+  Array<Index> order_kept_;
   Array<detail::HangingPlace> places_;
   Array<Index> slave_at_;  // by node: its number among slaves, one more; or zero
   Index slaves_ = 0;       // how many are numbered there

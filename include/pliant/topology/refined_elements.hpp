@@ -11,7 +11,7 @@
 namespace pliant::detail {
 
 /// Cells of a tree that are refined, and their children, as elements of one type, for loops of a backend: ChangedFamilies of
-/// which one goes; cells of other kinds have no elements.
+/// which one goes; cells of other types have no elements.
 template <Element E>
 struct RefinedElements {
   using element = E;
@@ -22,7 +22,7 @@ struct RefinedElements {
   CellSplit const* cells;
   LeafParts const* parts;
   Index count;           // of these
-  bool has_others;       // whether cells may be of another kind
+  bool has_others;       // whether cells may be of another type
   Index const* of_node;  // rows, by the user's number
   ElementsByRows<E> elements;
 
@@ -47,13 +47,12 @@ struct RefinedElements {
 
  private:
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_one(Index r) const {
-    return !has_others ||
-           tree.cells[static_cast<std::size_t>(cells[r].cell)].kind == kind_of<typename E::cell>;
+    return cells_of_type<E>(has_others)(tree.cells[static_cast<std::size_t>(cells[r].cell)]);
   }
 };
 
 /// Those of a refinement. `of_node`, `points`: in the backend's memory, with the nodes that it made. `has_others`: whether the tree
-/// has cells of several kinds.
+/// has cells of several types.
 template <Element E, Backend B>
 RefinedElements<E> refined_elements(TreeOn<B> const& tree,
                                     typename TreeOn<B>::Refined const& refined,

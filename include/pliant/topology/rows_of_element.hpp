@@ -8,6 +8,20 @@
 
 namespace pliant::detail {
 
+/// Tells the cells of a tree whose leaves are elements of one type; all are, unless there are others.
+struct CellsOfType {
+  CellKind kind = CellKind::triangle;
+  CellNodes has = CellNodes::corners;
+  bool has_others = false;
+  PLIANT_HOST_DEVICE bool operator()(TreeCell const& cell) const {
+    return !has_others || (cell.kind == kind && cell.has == has);
+  }
+};
+template <Element E>
+PLIANT_HOST_DEVICE constexpr CellsOfType cells_of_type(bool has_others) {
+  return {kind_of<typename E::cell>, nodes_on_cell<E>, has_others};
+}
+
 /// The rows of fields that the nodes of an element have, in the element's order.
 template <Element E>
 using RowsOfElement = std::array<Index, static_cast<std::size_t>(E::nodes)>;

@@ -95,22 +95,16 @@ class TreeFacets {
       facet.parts.push_back(facet_of(part));
     return facet;
   }
-  /// With the nodes of the leaves beside it, of the highest degree.
   Facet<Dim> facet_of(Index s) const {
     Facet<Dim> facet;
     auto const& edges = tree_.edges();
+    auto const has = tree_.lists().view().template nodes_of_facet<Dim>(s);
     if constexpr (Dim == 2) {
       auto const& edge = edges[at(s)];
       for (Index node : edge.nodes) facet.push_back(node);
-      bool quadratic = edge.cells.raised() > 0;
-      for (Index half = edge.first_half; half >= 0 && half < edge.first_half + 2; ++half)
-        quadratic = quadratic || edges[at(half)].cells.raised() > 0;
-      if (quadratic) facet.push_back(edge.middle);
+      if (has != CellNodes::corners) facet.push_back(edge.middle);
     } else {
       auto const& side = tree_.sides()[at(s)];
-      auto has = CellNodes::corners;
-      for (Index const c : side.cells)
-        if (c >= 0) has = std::max(has, tree_[c].has);
       for (std::size_t k = 0; k < side.corners(); ++k) facet.push_back(tree_.corner_of(side, k));
       if (has == CellNodes::corners) return facet;
       for (std::size_t k = 0; k < side.corners(); ++k)

@@ -104,6 +104,17 @@ struct TreeLists {
     (has == CellNodes::corners ? linear_leaves : quadratic_leaves) += by;
   }
 
+  /// Counts all leaves, and lists the cells of the initial mesh that have not what they had there.
+  void find_degrees() {
+    linear_leaves = quadratic_leaves = 0;
+    converted.clear();
+    for (Index c = 0; c < static_cast<Index>(cells.size()); ++c) {
+      auto const& cell = cells[at(c)];
+      if (is_leaf(c)) count_leaves(cell.has, 1);
+      if (c < initial.cells && cell.has != cell.had) converted.push_back(c);
+    }
+  }
+
   template <class Visit, class... R>
   static void for_each_member(Visit const& visit, R&... r) {
     visit("cells", r.cells...);

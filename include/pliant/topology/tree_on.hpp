@@ -76,7 +76,7 @@ class TreeOn {
   [[nodiscard]] std::vector<TreeSide> sides() { return lists_.sides.download(backend_); }
   [[nodiscard]] std::vector<RowEntry> rows() { return lists_.rows.download(backend_); }
 
-  /// The tree on the host, where it has no leaves of different degrees. `like`: what it was when it was made or began to note
+  /// The tree on the host. `like`: what it was when it was made or began to note
   /// changes, or has been since; what has not changed is shared with that. `leaves`: of it, by the kind.
   [[nodiscard]] TreeLists lists(TreeLists const& like, std::vector<CellSet> const& leaves) {
     TreeLists lists{.cells = lists_.cells.download(backend_, like.cells),
@@ -87,6 +87,7 @@ class TreeOn {
                     .initial = initial_,
                     .nodes = now_.nodes};
     (has_quadratic_ ? lists.quadratic_leaves : lists.linear_leaves) = now_.leaves;
+    if (mixes_degrees_) lists.find_degrees();
     for (Index c = 0; c < sizes().cells; ++c)
       if (std::ranges::none_of(leaves, [&](CellSet const& own) { return own.contains(c); }))
         lists.divided.push_back(c);

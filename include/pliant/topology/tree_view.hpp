@@ -78,6 +78,21 @@ struct TreeView {
     return nodes;
   }
 
+  /// The nodes that facets have at a side, of an edge in the plane: those of the leaves beside it, of the highest degree.
+  template <int Dim>
+  [[nodiscard]] PLIANT_HOST_DEVICE CellNodes nodes_of_facet(Index side) const {
+    auto has = CellNodes::corners;
+    if constexpr (Dim == 2) {
+      visit_edge(side, [&](Index e) {
+        if (edges[at(e)].cells.raised() > 0) has = CellNodes::edges;
+      });
+    } else {
+      for (Index const c : sides[at(side)].cells)
+        if (c >= 0 && cells[at(c)].has > has) has = cells[at(c)].has;
+    }
+    return has;
+  }
+
   /// An edge, and its halves.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_edge(Index e, Visit const& visit) const {
