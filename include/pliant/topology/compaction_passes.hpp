@@ -22,7 +22,7 @@ struct ListDividedSince {
     if (p >= 0 && p < first && tree.cells[static_cast<std::size_t>(p)].first_child == c) list(p);
   }
 };
-/// Those that became leaves.
+/// Those that became leaves, or lost nodes.
 struct ListMerged {
   Index const* parents;
   Index end;

@@ -145,10 +145,8 @@ class Hierarchy {
   AddedNodes raise(std::vector<CellConversion> const& conversions,
                    RefinementLimits const& limits = {}) {
     auto const nodes = points_.size() + TreeQueries(tree_).count_new_nodes(conversions);
-    if (nodes > std::min(limits.nodes, most_))
-      throw Error("raise: to raise the degree of ", conversions.size(), " cells takes ", nodes,
-                  " nodes in all, and the limit is ", std::min(limits.nodes, most_),
-                  "; mark fewer cells or raise the limit");
+    if (auto const limit = std::min(limits.nodes, most_); nodes > limit)
+      detail::refuse_raising(conversions.size(), nodes, limit);
     std::vector<PlacedNode> made;
     tree_.raise(conversions, made);
     return {add_points(made)};

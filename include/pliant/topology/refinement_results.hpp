@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -49,11 +50,50 @@ struct Coarsened {
   Index const* sides = nullptr;  ///< and sides
 };
 
+/// Which nodes elements on cells of each kind get; corners only on kinds that are not named.
+struct NodesOfKinds {
+  std::array<CellNodes, 6> by_kind{};
+  bool raises = true;  ///< leaves that have corners only; else those that have others
+
+  PLIANT_HOST_DEVICE CellNodes of_kind(CellKind kind) const {
+    return by_kind[static_cast<std::size_t>(kind)];
+  }
+  /// Whether a leaf gets others than it has.
+  PLIANT_HOST_DEVICE bool converts(TreeCell const& cell) const {
+    if (raises) return cell.has == CellNodes::corners && of_kind(cell.kind) != CellNodes::corners;
+    return cell.has != CellNodes::corners;
+  }
+};
+/// What a call of TreeOn::raise did: lists in the backend's memory, until the tree changes again.
+struct Raised {
+  Index raised = 0;                   ///< how many cells got nodes between their corners
+  Index const* cells = nullptr;       ///< (raised): these, ascending
+  Index new_nodes = 0;                ///< nodes that nobody had
+  PlacedNode const* nodes = nullptr;  ///< (new_nodes), in the order of their numbers
+};
+/// What a call of TreeOn::lower did: nodes between corners went that no other leaf has. All cells, edges and sides keep their
+/// numbers.
+struct Lowered : Coarsened {
+  Index lowered = 0;                     ///< how many cells have corners only now
+  Index const* lowered_cells = nullptr;  ///< (lowered): these, ascending
+};
+
 namespace detail {
 inline void check_max_level(char const* where, int max_level) {
   if (max_level < 0 || max_level > most_levels)
     throw Error(where, ": a max_level of ", max_level, "; give at least 0 and at most ",
                 most_levels);
+}
+/// Of so many cells that take too much.
+[[noreturn]] inline void refuse_refinement(Index cells, char const* what, std::size_t in_all,
+                                           std::size_t limit) {
+  throw Error("refine: to refine ", cells, " cells, coarser neighbours included, takes ", in_all,
+              " ", what, " in all, and the limit is ", limit,
+              "; mark fewer cells or raise the limit");
+}
+[[noreturn]] inline void refuse_raising(std::size_t cells, std::size_t nodes, std::size_t limit) {
+  throw Error("raise: to raise the degree of ", cells, " cells takes ", nodes,
+              " nodes in all, and the limit is ", limit, "; mark fewer cells or raise the limit");
 }
 }  // namespace detail
 

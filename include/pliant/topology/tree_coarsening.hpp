@@ -39,7 +39,7 @@ class TreeCoarsening {
         has == Degrees::one && !divisions_.empty() &&
         std::int64_t{sizes.cells} - initial.cells - 8 * std::int64_t{count} > few;
     find_families(backend, tree.view(), done, stamps, marked, count);
-    if (!finds_first) list_knowing(backend, tree.view(), done, 0, has == Degrees::several);
+    if (!finds_first) list_knowing(backend, tree.view(), done, nullptr, 0, has == Degrees::several);
     auto const found = counted(backend);
     Index const merged = found[1];
     if (merged == 0) return done;
@@ -68,10 +68,24 @@ class TreeCoarsening {
     done.merged = merged;
     done.parents = parents_.data();
     done.first_children = first_children_.data();
-    done.nodes = numbers_[0].data();
-    done.cells = numbers_[1].data();
-    done.edges = numbers_[2].data();
-    done.sides = numbers_[3].data();
+    tell_numbers(done);
+    return done;
+  }
+
+  /// Takes the nodes away that nobody has any more behind cells that have corners only now, ascending. See TreeOn::lower.
+  Lowered lower(B const& backend, PagedTree<B>& tree, TreeSizes const& initial,
+                TreeSizes const& sizes, Index const* cells, Index count) {
+    Lowered done{{.staying = initial, .before = sizes, .now = sizes}, count, cells};
+    counters_ = zeros<Index>(backend, counters);
+    if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
+    list_knowing(backend, tree.view(), done, cells, count, true);
+    auto const knowing = listed(done, counted(backend)[2]);
+    tree.own(backend, [&](PageMarks const& marks) {
+      backend.for_each(knowing.count, MarkKnowing{knowing, nullptr, marks});
+    });
+    auto const view = number(backend, tree, done, knowing.count);
+    move_up(backend, tree, done, view, knowing, knowing.count);
+    tell_numbers(done);
     return done;
   }
 
@@ -88,6 +102,12 @@ class TreeCoarsening {
   static constexpr std::size_t counters = 3;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  void tell_numbers(Coarsened& done) const {
+    done.nodes = numbers_[0].data();
+    done.cells = numbers_[1].data();
+    done.edges = numbers_[2].data();
+    done.sides = numbers_[3].data();
+  }
   /// Numbers that loops counted, which this waits for.
   std::array<Index, 4> counted(B const& backend) {
     backend.synchronize();
@@ -117,21 +137,21 @@ class TreeCoarsening {
             LoopStep{2, CopyValue<Index>{counts, counts_.data()}});
   }
 
-  /// Lists cells among those that stay that know of newer entries, `merged` cells that became leaves among them. Gives how many
-  /// there are at most.
-  Index list_knowing(B const& backend, TreeView const& tree, Coarsened const& of, Index merged,
-                     bool are_converted) {
+  /// Lists cells among those that stay that know of newer entries, `count` cells that became leaves, or lost nodes, among them.
+  /// Gives how many there are at most.
+  Index list_knowing(B const& backend, TreeView const& tree, Coarsened const& of,
+                     Index const* cells, Index count, bool are_converted) {
     Index const end = of.staying.cells, newer = of.before.cells - end,
                 converted = are_converted ? of.staying.cells : 0;
-    Index const most = std::min(end, merged + newer / 2 + 1 + converted);
+    Index const most = std::min(end, count + newer / 2 + 1 + converted);
     knowing_stamps_.begin(backend, at(end));
     grow(backend, knowing_, at(most));
-    auto* const count = counters_.data() + 2;
-    ListOnce const list{knowing_stamps_.data(), knowing_stamps_.now(), knowing_.data(), count};
-    in_turn(backend, LoopStep{merged, ListMerged{parents_.data(), end, list}},
+    auto* const found = counters_.data() + 2;
+    ListOnce const list{knowing_stamps_.data(), knowing_stamps_.now(), knowing_.data(), found};
+    in_turn(backend, LoopStep{count, ListMerged{cells, end, list}},
             LoopStep{newer, ListDividedSince{tree, end, list}},
             LoopStep{converted, ListConverted{tree, list}},
-            LoopStep{1, CopyValue<Index>{count, counts_.data() + 2}});
+            LoopStep{1, CopyValue<Index>{found, counts_.data() + 2}});
     return most;
   }
   /// The first cell that goes; waits. What goes with it, and with those behind it, came with their divisions, or with others
@@ -145,7 +165,7 @@ class TreeCoarsening {
   KnowingCells own_knowing(B const& backend, PagedTree<B>& tree, Coarsened const& of,
                            Index merged) {
     tree.own(backend, [&](PageMarks const& marks) {
-      Index const most = list_knowing(backend, tree.view(), of, merged, false);
+      Index const most = list_knowing(backend, tree.view(), of, parents_.data(), merged, false);
       in_turn(
           backend, LoopStep{most, MarkKnowing{listed(of, most), counters_.data() + 2, marks}},
           LoopStep{of.before.cells - of.staying.cells, MarkKnowing{listed(of, 0), nullptr, marks}});

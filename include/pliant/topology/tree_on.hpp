@@ -14,11 +14,13 @@
 #include <pliant/backend/read_back.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/cell_set.hpp>
+#include <pliant/topology/element_nodes_on.hpp>
 #include <pliant/topology/paged_tree.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/stamps.hpp>
 #include <pliant/topology/tree_closure.hpp>
 #include <pliant/topology/tree_coarsening.hpp>
+#include <pliant/topology/tree_conversion.hpp>
 #include <pliant/topology/tree_lists.hpp>
 #include <pliant/topology/tree_passes.hpp>
 
@@ -49,10 +51,12 @@ class TreeOn {
       : backend_(backend),
         lists_(backend, lists),
         initial_(lists.initial),
-        now_{.nodes = lists.nodes, .leaves = lists.linear_leaves + lists.quadratic_leaves},
+        now_{.nodes = lists.nodes,
+             .leaves = lists.linear_leaves + lists.quadratic_leaves,
+             .has_quadratic = lists.quadratic_leaves > 0,
+             .mixes_degrees = (lists.quadratic_leaves > 0 && lists.linear_leaves > 0) ||
+                              !lists.converted.empty()},
         kept_(now_),
-        has_quadratic_(lists.quadratic_leaves > 0),
-        mixes_degrees_((has_quadratic_ && lists.linear_leaves > 0) || !lists.converted.empty()),
         closure_(backend, at_edges),
         counts_(backend, 4) {}
 
@@ -63,11 +67,10 @@ class TreeOn {
   /// Of the initial mesh, of which coarsening takes nothing away.
   [[nodiscard]] TreeSizes const& initial() const { return initial_; }
   [[nodiscard]] Index leaves() const { return now_.leaves; }
-  /// Whether the tree that it was made of had leaves with corners only beside others, or cells of another degree than in the
-  /// initial mesh.
-  [[nodiscard]] bool mixes_degrees() const { return mixes_degrees_; }
-  /// Whether all of its leaves have corners only.
-  [[nodiscard]] bool is_linear() const { return !has_quadratic_; }
+  /// Whether some leaves may have corners only beside others, or cells another degree than in the initial mesh.
+  [[nodiscard]] bool mixes_degrees() const { return now_.mixes_degrees; }
+  /// Whether all of its leaves are known to have corners only.
+  [[nodiscard]] bool is_linear() const { return !now_.has_quadratic; }
   /// How many bytes its lists take.
   [[nodiscard]] std::size_t bytes() const { return lists_.bytes(); }
   /// Copies of the lists on the host.
@@ -86,8 +89,8 @@ class TreeOn {
                     .layout = lists_.layout,
                     .initial = initial_,
                     .nodes = now_.nodes};
-    (has_quadratic_ ? lists.quadratic_leaves : lists.linear_leaves) = now_.leaves;
-    if (mixes_degrees_) lists.find_degrees();
+    (now_.has_quadratic ? lists.quadratic_leaves : lists.linear_leaves) = now_.leaves;
+    if (now_.mixes_degrees) lists.find_degrees();
     for (Index c = 0; c < sizes().cells; ++c)
       if (std::ranges::none_of(leaves, [&](CellSet const& own) { return own.contains(c); }))
         lists.divided.push_back(c);
@@ -141,7 +144,7 @@ class TreeOn {
                     for_each_part(n, detail::MakeChildren{dividing}));
     now_.nodes += totals[0];
     now_.leaves += totals[3] - n;
-    if (has_quadratic_) make_quadratic(n, limits);
+    if (now_.has_quadratic) make_quadratic(n, limits);
     return {n, now_.nodes - first_new_node_, leaves_.data(), made_.data(), parts_.data()};
   }
 
@@ -155,6 +158,38 @@ class TreeOn {
         coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_, marked, count);
     now_.nodes = done.now.nodes;
     now_.leaves += done.merged - (done.before.cells - done.now.cells);
+    return done;
+  }
+
+  /// Gives marked leaves that have corners only the nodes of their kind. `marked`: as for `refine`; negative ones are none. Throws
+  /// Error where there would be too many nodes; the tree is then what it was when it was kept.
+  Raised raise(Index const* marked, Index count, NodesOfKinds const& to,
+               RefinementLimits const& limits = {}) {
+    Index const n =
+        conversion_.convert(backend_, lists_, size(lists_.cells), stamps_, to, marked, count);
+    if (n == 0) return {};
+    Index const more = element_nodes_.find(backend_, view(), conversion_.cells(), n);
+    if (auto const in_all = at(now_.nodes) + at(more), limit = std::min(limits.nodes, most);
+        in_all > limit) {
+      take_back();
+      detail::refuse_raising(at(n), in_all, limit);
+    }
+    need(made_, more);
+    element_nodes_.make(backend_, now_.nodes, made_.data());
+    now_.mixes_degrees = now_.has_quadratic = true;
+    now_.nodes += more;
+    return {n, conversion_.cells(), more, made_.data()};
+  }
+  /// Takes marked leaves the nodes between their corners. Those that no other leaf has go, but for those of the initial mesh, and
+  /// the others keep their order and move up. `marked`: as for `raise`. Throws Error as coarsen.
+  Lowered lower(Index const* marked, Index count) {
+    Index const n = conversion_.convert(backend_, lists_, size(lists_.cells), stamps_,
+                                        {.raises = false}, marked, count);
+    if (n == 0) return {{.staying = initial_, .before = sizes(), .now = sizes()}};
+    now_.mixes_degrees = true;
+    auto const done =
+        coarsening_.lower(backend_, lists_, initial_, sizes(), conversion_.cells(), n);
+    now_.nodes = done.now.nodes;
     return done;
   }
 
@@ -174,15 +209,17 @@ class TreeOn {
  private:
   struct Counts {
     Index nodes = 0, leaves = 0;
+    bool has_quadratic = false, mixes_degrees = false;
   };
 
+  static constexpr std::size_t most = std::numeric_limits<Index>::max();
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
 
   [[nodiscard]] detail::Degrees degrees() const {
     using detail::Degrees;
-    return mixes_degrees_ ? Degrees::several : has_quadratic_ ? Degrees::two : Degrees::one;
+    return now_.mixes_degrees ? Degrees::several : now_.has_quadratic ? Degrees::two : Degrees::one;
   }
   /// The leaves that are divided, as loops see them now.
   [[nodiscard]] detail::DivisionView division() {
@@ -193,18 +230,6 @@ class TreeOn {
   static detail::LoopStep<Make> for_each_part(Index n, Make const& make) {
     return {n * Make::each, make};
   }
-  /// Numbers that loops counted, which this waits for.
-  template <std::size_t N>
-  std::array<Index, N> counted() {
-    backend_.synchronize();
-    return counts_.template first<N>();
-  }
-  /// An entry of an array of numbers.
-  Index entry(Array<Index> const& numbers, Index i) {
-    backend_.for_each(1, detail::CopyValue<Index>{numbers.data() + i, counts_.data()});
-    return counted<1>()[0];
-  }
-
   /// Finds and numbers what leaves make; returns how many nodes, edges, sides and cells that are.
   std::array<Index, 4> number_parts(Index n) {
     using detail::LeafParts, detail::CountOf, detail::ScanStep;
@@ -225,19 +250,17 @@ class TreeOn {
         detail::LoopStep{
             n + 1, detail::NumberParts{
                        parts, {nodes, edges, sides_before, cells}, sizes(), n, counts_.data()}});
-    return counted<4>();
+    backend_.synchronize();
+    return counts_.template first<4>();
   }
   /// Throws Error, with the tree as it was, where there would be more than a limit.
   void check(Index n, std::array<Index, 4> const& more, RefinementLimits const& limits) {
     auto const check_one = [&](char const* what, Index now, Index of_these, std::size_t limit) {
-      auto const in_all = at(now) + at(of_these);
-      if (in_all <= std::min(limit, at(std::numeric_limits<Index>::max()))) return;
-      take_back();
-      throw Error("refine: to refine ", n, " cells, coarser neighbours included, takes ", in_all,
-                  " ", what, " in all, and the limit is ", limit,
-                  "; mark fewer cells or raise the limit");
+      if (auto const in_all = at(now) + at(of_these); in_all > std::min(limit, most)) {
+        take_back();
+        detail::refuse_refinement(n, what, in_all, limit);
+      }
     };
-    constexpr auto most = static_cast<std::size_t>(std::numeric_limits<Index>::max());
     check_one("nodes", now_.nodes, more[0], limits.nodes);
     check_one("leaves", now_.leaves - n, more[3], limits.leaves);
     check_one("cells", size(lists_.cells), more[3], most);
@@ -247,24 +270,11 @@ class TreeOn {
   }
   /// Makes the nodes that children's elements have between their corners.
   void make_quadratic(Index n, RefinementLimits const& limits) {
-    detail::CountQuadratic const quadratic{division()};
-    backend_.scan(n, quadratic, before_[0].data());
-    need(children_, n * static_cast<Index>(RefinementPattern::most_children));
-    backend_.for_each(n, detail::ListQuadratic{quadratic, before_[0].data(), children_.data()});
-    Index const count = entry(before_[0], n);
-    need(children_made_, count);
-    need(before_[1], count + 1);
-    detail::ElementNodesView nodes{view(), children_.data(), children_made_.data(),
-                                   true,   now_.nodes,       nullptr};
-    backend_.for_each(count, detail::ClaimNodes{nodes});
-    backend_.for_each(count, detail::FindNodes{nodes});
-    backend_.scan(count, detail::CountNodes{children_made_.data()}, before_[1].data());
-    Index const more = entry(before_[1], count);
+    Index const more = element_nodes_.find(backend_, division(), n);
     check(n, {more, 0, 0, 0}, limits);
     Index const known = now_.nodes - first_new_node_;
     detail::grow_keeping(backend_, made_, at(known), at(known + more));
-    nodes.made = made_.data() + known;
-    backend_.for_each(count, detail::MakeNodes{nodes, before_[1].data()});
+    element_nodes_.make(backend_, now_.nodes, made_.data() + known);
     now_.nodes += more;
   }
 
@@ -272,7 +282,6 @@ class TreeOn {
   detail::PagedTree<B> lists_;
   TreeSizes initial_;
   Counts now_, kept_;
-  bool has_quadratic_, mixes_degrees_;
   // Of a change.
   detail::Stamps<B> stamps_;  // by cell
   Index first_new_node_ = 0;
@@ -283,9 +292,9 @@ class TreeOn {
   Array<detail::LeafParts> parts_;
   std::array<Array<Index>, 4> before_;
   Array<PlacedNode> made_;
-  Array<Index> children_;
-  Array<detail::CellNodesMade> children_made_;
+  detail::ElementNodesOn<B> element_nodes_;
   detail::TreeCoarsening<B> coarsening_;
+  detail::TreeConversion<B> conversion_;
 };
 
 }  // namespace pliant
