@@ -107,8 +107,8 @@ TEST_CASE("listeners are told at once of what rules refine and coarsen", "[adapt
       REQUIRE(plan->counts.coarsened > 0);
       commit(both.host.parts(), *plan);
       tell_listeners(both.host.parts(), *plan);
-      auto const done =
-          detail::change_on_backend(both.body.parts(), marked.refine, marked.coarsen, 3);
+      auto const done = detail::change_on_backend(
+          both.body.parts(), {.refine = marked.refine, .coarsen = marked.coarsen}, 3);
       REQUIRE(done);
       REQUIRE(done->to_tell.plan);
       tell_listeners(both.body.parts(), done->to_tell);
@@ -213,11 +213,11 @@ void check_carried_there(B const& backend, Index cells, std::size_t one_in) {
     REQUIRE(plan);
     commit(both.host.parts(), *plan);
     tell_listeners(both.host.parts(), *plan);
-    auto const done =
-        detail::change_on_backend(both.body.parts(), marked.refine, marked.coarsen, 3);
+    auto const done = detail::change_on_backend(
+        both.body.parts(), {.refine = marked.refine, .coarsen = marked.coarsen}, 3);
     REQUIRE(done);
-    REQUIRE(done->merged > 0);
-    REQUIRE(done->refined > 0);
+    REQUIRE(done->counts.coarsened > 0);
+    REQUIRE(done->counts.refined > 0);
     tell_listeners(both.body.parts(), done->to_tell);
     check(++calls);
   }

@@ -161,12 +161,12 @@ TEST_CASE("rules refine and coarsen a body at once in its backend's memory as on
       auto const plan = plan_change(both.host.parts(), marked, 3);
       REQUIRE(plan);
       commit(both.host.parts(), *plan);
-      auto const done =
-          detail::change_on_backend(both.body.parts(), marked.refine, marked.coarsen, 3);
+      auto const done = detail::change_on_backend(
+          both.body.parts(), {.refine = marked.refine, .coarsen = marked.coarsen}, 3);
       REQUIRE(done);
-      CHECK(done->refined == plan->counts.refined);
-      CHECK(done->merged == plan->counts.coarsened);
-      merged += done->merged;
+      CHECK(done->counts.refined == plan->counts.refined);
+      CHECK(done->counts.coarsened == plan->counts.coarsened);
+      merged += done->counts.coarsened;
       both.check_place();
       both.check_all();
     }
@@ -231,11 +231,11 @@ TEST_CASE("where a condition holds a part of what would be merged, the rest is m
       REQUIRE(plan);
       REQUIRE(plan->counts.refined > 0);
       commit(both.host.parts(), *plan);
-      auto const done =
-          detail::change_on_backend(both.body.parts(), marked.refine, marked.coarsen, 3);
+      auto const done = detail::change_on_backend(
+          both.body.parts(), {.refine = marked.refine, .coarsen = marked.coarsen}, 3);
       REQUIRE(done);
-      CHECK(done->refined == plan->counts.refined);
-      CHECK(done->merged == plan->counts.coarsened);
+      CHECK(done->counts.refined == plan->counts.refined);
+      CHECK(done->counts.coarsened == plan->counts.coarsened);
       CHECK(!done->to_tell.plan);
       CHECK(!done->to_tell.there);
       both.check_place();

@@ -121,9 +121,9 @@ class Storm {
         changed = refine(body, marked.refine, 3).refined;
       } else if (marked.refine[0].empty()) {
         changed = coarsen(body, marked.coarsen).merged;
-      } else if (auto const done =
-                     detail::change_on_backend(body.parts(), marked.refine, marked.coarsen, 3)) {
-        changed = done->refined + done->merged;
+      } else if (auto const done = detail::change_on_backend(
+                     body.parts(), {.refine = marked.refine, .coarsen = marked.coarsen}, 3)) {
+        changed = done->counts.refined + done->counts.coarsened;
         tell_listeners(body.parts(), done->to_tell);
       } else if (auto const plan = plan_change(body.parts(), marked, 3)) {
         changed = plan->counts.refined + plan->counts.coarsened;

@@ -238,7 +238,7 @@ void check_masses(MergedNodes<E, B>& nodes) {
 
 /// Nodes that went lay where the host says, and hand on the loads that they had.
 template <class B, Element E>
-void check_loads(MergedNodes<E, B>& nodes, GoneNodesOn<Mesh<E>, B>& gone_nodes, Random& random) {
+void check_loads(MergedNodes<E, B>& nodes, GoneNodesOn<B>& gone_nodes, Random& random) {
   using T = typename B::scalar;
   auto const& transfer = nodes.plan.transfer;
   REQUIRE(nodes.gone.size() == transfer.gone().size());
@@ -385,7 +385,7 @@ TEST_CASE("nodes of coarsened meshes have the masses that the host gives them", 
 TEST_CASE("nodes that go in a backend's memory lay where the host says, and hand on their loads",
           "[body]") {
   on_meshes([]<Element E, class B>(MergedNodes<E, B>& nodes, Random& random) {
-    GoneNodesOn<Mesh<E>, B> gone_nodes(nodes.backend);
+    GoneNodesOn<B> gone_nodes(nodes.backend);
     check_loads(nodes, gone_nodes, random);
     check_loads(nodes, gone_nodes, random);
   });

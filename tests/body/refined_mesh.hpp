@@ -54,7 +54,7 @@ struct RefinedMesh {
     refined = tree.refine(list.data(), static_cast<Index>(marked.size()));
     host->refine(marked);
     order.refine(tree, refined);
-    rows.refine(tree, order, refined);
+    rows.extend(tree, order, refined);
     tree.keep();
   }
   /// Merges families of marked leaves; returns how many.

@@ -119,7 +119,7 @@ struct RefinedNodes {
     auto const rows_before = at(rows.count());
     auto const refined = tree.refine(marked.data(), static_cast<Index>(cells.size()));
     order.refine(tree, refined);
-    rows.refine(tree, order, refined);
+    rows.extend(tree, order, refined);
     tree.keep();
     auto const now = at(rows.count());
     detail::grow_keeping(backend, points, node_stride * rows_before, node_stride * now);

@@ -36,13 +36,12 @@ KeptParts<Parts::dim> kept_parts(Parts const& parts) {
 }
 
 /// What a change does, in words.
-template <class M>
-std::string actions_of(TopologyPlan<M> const& plan) {
+template <class Counts>
+std::string actions_of(Counts const& counts) {
   std::string words;
   auto const add = [&](std::size_t count, char const* word) {
     if (count > 0) words += (words.empty() ? "" : " and ") + std::string(word);
   };
-  auto const& counts = plan.counts;
   add(counts.refined, "refine");
   add(counts.coarsened, "coarsen");
   add(counts.raised, "raise");
@@ -131,7 +130,7 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
     return detail::give_momentum_back(plan, touched, parts.material.density, layout, held,
                                       std::move(v_before), v);
   };
-  detail::commit_change(parts, detail::actions_of(plan), detail::count_actions(plan), [&] {
+  detail::commit_change(parts, detail::actions_of(plan.counts), detail::count_actions(plan), [&] {
     return change_topology(parts, plan.after, plan.transfer, give_back);
   });
   parts.mesh_is_on_host = true;

@@ -9,15 +9,16 @@
 
 namespace pliant::detail {
 
-/// Elements to refine, and to coarsen, where nothing else is marked, in a backend's memory: for each type the user's numbers. Lists
-/// of no types mark none.
+/// Elements to refine, to coarsen, to raise and to lower, where nothing else is marked, in a backend's memory: for each type the user's
+/// numbers. Lists of no types mark none.
 template <Backend B>
 struct MarkedThere {
   struct List {
     typename B::template Array<Index> numbers{};  // (count), and room
     Index count = 0;
   };
-  std::vector<List> refine{}, coarsen{};
+  std::vector<List> refine{}, coarsen{}, raise{}, lower{};
+  int raised_rings = 0;
 
   static std::vector<List> of(B const& backend, std::vector<std::vector<Index>> const& lists) {
     std::vector<List> there;
@@ -29,7 +30,10 @@ struct MarkedThere {
   static bool none_in(std::vector<List> const& lists) {
     return std::ranges::all_of(lists, [](List const& list) { return list.count == 0; });
   }
-  /// On the host.
+  /// Whether some are to get another degree.
+  [[nodiscard]] bool converts() const { return !none_in(raise) || !none_in(lower); }
+  [[nodiscard]] bool none() const { return none_in(refine) && none_in(coarsen) && !converts(); }
+  /// Those to refine and to coarsen, on the host.
   [[nodiscard]] MarkedElements lists() const {
     auto const download_all = [](std::vector<List> const& from) {
       std::vector<std::vector<Index>> to;

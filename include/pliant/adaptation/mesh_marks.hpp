@@ -46,14 +46,10 @@ struct MeshMarks {
   std::vector<MarkBits> of_types{};
   int raised_rings = 0, max_level = 0;
 
-  [[nodiscard]] bool only_refine_and_coarsen() const {
-    constexpr auto refine = static_cast<std::size_t>(MeshList::refine),
-                   coarsen = static_cast<std::size_t>(MeshList::coarsen);
-    return std::ranges::all_of(of_types, [](MarkBits const& bits) {
-      std::uint32_t others = 0;
-      for (std::size_t l = 0; l < mesh_lists; ++l)
-        if (l != refine && l != coarsen) others |= bits.of[l];
-      return others == 0;
+  /// Whether none are split, and none merged that were.
+  [[nodiscard]] bool keep_shapes() const {
+    return std::ranges::all_of(of_types, [](MarkBits bits) {
+      return (bits[MeshList::split] | bits[MeshList::split_in_two] | bits[MeshList::merge]) == 0;
     });
   }
   /// Adds those of a type whose elements rules mark each by the bit of its number.
@@ -113,13 +109,14 @@ struct IsOnList {
   }
 };
 
-/// Those to refine and to coarsen, in the backend's memory.
+/// Those that are not for other shapes, in the backend's memory.
 template <class Parts>
 auto marked_there(Parts const& parts, MeshMarks const& marks) {
   using B = typename Parts::backend_type;
   auto const& backend = parts.backend;
   MarkedThere<B> marked;
-  auto counts = zeros<Index>(backend, 2 * marks.of_types.size());
+  marked.raised_rings = marks.raised_rings;
+  auto counts = zeros<Index>(backend, 4 * marks.of_types.size());
   Index* count = counts.data();
   std::size_t type = 0;
   auto const select = [&](auto const& table, MeshList which, auto& lists) {
@@ -137,13 +134,16 @@ auto marked_there(Parts const& parts, MeshMarks const& marks) {
   parts.for_each_type([&](auto const& table, auto const&) {
     select(table, MeshList::refine, marked.refine);
     select(table, MeshList::coarsen, marked.coarsen);
+    select(table, MeshList::raise, marked.raise);
+    select(table, MeshList::lower, marked.lower);
     ++type;
   });
   auto const found = download<Index>(counts);
   auto next = found.begin();
   type = 0;
   parts.for_each_type([&](auto const& table, auto const&) {
-    for (auto* list : {&marked.refine[type], &marked.coarsen[type]}) {
+    for (auto* list :
+         {&marked.refine[type], &marked.coarsen[type], &marked.raise[type], &marked.lower[type]}) {
       list->count = *next++;
       if (list->count == 0 || put_numbers(parts, table, list->numbers, list->count)) continue;
       std::vector<Index> numbers(static_cast<std::size_t>(list->count));

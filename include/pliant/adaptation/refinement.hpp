@@ -62,9 +62,9 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), marked, {}, max_level)) {
+  if (auto const done = detail::change_on_backend(body.parts(), {.refine = marked}, max_level)) {
     tell_listeners(body.parts(), done->to_tell);
-    return {done->refined, done->new_nodes};
+    return {done->counts.refined, done->new_nodes};
   }
   auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
   if (!plan) return {};
@@ -85,9 +85,9 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {}, marked, most_levels)) {
+  if (auto const done = detail::change_on_backend(body.parts(), {.coarsen = marked}, most_levels)) {
     tell_listeners(body.parts(), done->to_tell);
-    return {done->merged, done->gone_nodes};
+    return {done->counts.coarsened, done->gone_nodes};
   }
   auto const plan = plan_change(body.parts(), {.coarsen = marked});
   if (!plan) return {};
@@ -113,7 +113,10 @@ RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked
   detail::check_lists<typename TheBody::mesh_type>("raise", marked);
   if (options.ring < 0)
     throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
-  auto const plan = plan_change(body.parts(), {.raise = marked, .raised_rings = options.ring});
+  MarkedElements const wanted{.raise = marked, .raised_rings = options.ring};
+  if (auto const done = detail::change_on_backend(body.parts(), wanted, most_levels))
+    return {done->counts.raised, done->new_nodes};
+  auto const plan = plan_change(body.parts(), wanted);
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
@@ -129,6 +132,8 @@ LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marke
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("lower", marked);
+  if (auto const done = detail::change_on_backend(body.parts(), {.lower = marked}, most_levels))
+    return {done->counts.lowered, done->gone_nodes};
   auto const plan = plan_change(body.parts(), {.lower = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);

@@ -10,9 +10,10 @@
 // a loop has changed is there when it has ended.
 namespace pliant::detail {
 
-PLIANT_HOST_DEVICE Index atomic_load(Index& number) {
+template <class U>
+PLIANT_HOST_DEVICE U atomic_load(U& number) {
 #ifdef __CUDA_ARCH__
-  return *static_cast<Index volatile*>(&number);
+  return *static_cast<U volatile*>(&number);
 #else
   return std::atomic_ref(number).load(std::memory_order_relaxed);
 #endif

@@ -118,6 +118,7 @@ struct CarryPoints {
   Index const* sources;  // of children; null: none were made
 
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (leaves.comes_from_others(i)) return;
     Index const place = leaves.from(i), cell = leaves.leaves[i];
     auto const& own = groups[before.tag(place)];
     if (!leaves.is_new(i)) {

@@ -1,17 +1,20 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <thread>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/body/brought_over.hpp>
 #include <pliant/body/change_topology.hpp>
+#include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/topology_on.hpp>
 #include <pliant/topology/plan.hpp>
 #include <pliant/topology/refinable.hpp>
@@ -40,6 +43,45 @@ inline constexpr bool are_divided_alike<Mesh<Es...>> =
 template <class Parts>
 inline constexpr bool changes_on_backend =
     keeps_trees<typename Parts::backend_type> && are_divided_alike<typename Parts::mesh_type>;
+/// Whether types of elements that differ in degree alone come in pairs.
+template <class M>
+inline constexpr bool degrees_are_paired = false;
+template <Element... Es>
+inline constexpr bool degrees_are_paired<Mesh<Es...>> = []<Element... Others>(Mesh<Others...>*) {
+  // No more than two are on cells of one kind.
+  auto const on_its_cell = []<Element E>(E) {
+    return (0 + ... + (std::same_as<typename E::cell, typename Others::cell> ? 1 : 0));
+  };
+  return ((on_its_cell(Es{}) <= 2) && ...);
+}(static_cast<Mesh<Es...>*>(nullptr));
+/// Whether bodies of a kind may change the degree of elements in their backend's memory: where groups of both degrees have the same
+/// laws, so that points and elements take along what these keep and read.
+template <class Parts>
+inline constexpr bool converts_on_backend =
+    changes_on_backend<Parts> && degrees_are_paired<typename Parts::mesh_type> &&
+    []<class... Tables>(std::tuple<Tables...>*) {
+      auto const from = []<class From>(std::type_identity<From>) {
+        auto const to = []<class To>(std::type_identity<To>) {
+          if constexpr (differ_in_degree<typename From::element, typename To::element>)
+            return points_go_along<From, To> && values_go_along<From, To>;
+          else
+            return true;
+        };
+        return (to(std::type_identity<Tables>{}) && ...);
+      };
+      return (from(std::type_identity<Tables>{}) && ...);
+    }(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
+/// The nodes of elements that are raised, by the kind of cell.
+template <class M>
+NodesOfKinds nodes_when_raised() {
+  NodesOfKinds to;
+  for_each_type_of<M>([&]<Element E>(E, std::size_t) {
+    if constexpr (constexpr auto type = converted_type<E, M>; E::degree == 1 && type != no_type)
+      to.by_kind[static_cast<std::size_t>(kind_of<typename E::cell>)] =
+          nodes_on_cell<typename ElementOfType<M, type>::type>;
+  });
+  return to;
+}
 /// Whether nothing of a body has to be made from lists of the host when its mesh changes, and the host has not changed it: what it
 /// does then takes less time than to bring the mesh over again.
 template <class Parts>
@@ -67,14 +109,15 @@ std::vector<std::vector<Index>> numbers_by_type(Topology<M> const& of,
   }
   return numbers;
 }
-/// Of a topology, with some of its cells refined, or some merged. `numbers`: of those that are refined, or of which the children
-/// are merged.
+/// What was done to cells in a backend's memory; `merge`: their children were merged.
+enum class ChangeOfCells { refine, merge, raise, lower };
+/// Of a topology, with the same done to some of its cells.
 template <class M>
 TopologyPlan<M> plan_on_host(std::shared_ptr<Topology<M> const> const& before,
-                             std::vector<Index> numbers, bool merged,
+                             std::vector<Index> numbers, ChangeOfCells change,
                              ElementValues<M::dim> const& values) {
   HostThreads const threads(*before);
-  if (merged) {
+  if (change == ChangeOfCells::merge) {
     std::vector<Index> children;
     for (Index const c : numbers) {
       auto const& parent = before->tree->cell(c);
@@ -84,8 +127,8 @@ TopologyPlan<M> plan_on_host(std::shared_ptr<Topology<M> const> const& before,
     numbers = std::move(children);
   }
   MarkedElements marked;
-  auto& lists = merged ? marked.coarsen : marked.refine;
-  lists = numbers_by_type(*before, numbers);
+  std::array const lists{&marked.refine, &marked.coarsen, &marked.raise, &marked.lower};
+  *lists[static_cast<std::size_t>(change)] = numbers_by_type(*before, numbers);
   return *plan_change(before, marked, {}, {}, values);
 }
 /// What the host knows of a mesh behind a change that was planned there.
@@ -98,14 +141,14 @@ MeshOnHost<M> mesh_behind(TopologyPlan<M> const& plan, Prescribed<Dim> const& be
 /// backend.
 template <class Parts, class On, class Cells>
 auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
-                        std::shared_ptr<Cells> cells, bool merged) {
+                        std::shared_ptr<Cells> cells, ChangeOfCells change) {
   using M = typename Parts::mesh_type;
   constexpr bool has_values = []<class... Tables>(std::tuple<Tables...>*) {
     return ((Tables::Laws::value_count > 0) || ...);
   }(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
   return WhenAsked<MeshOnHost<M>>::by(
       [before = parts.state.topology, prescribed = parts.state.prescribed, cells = std::move(cells),
-       merged, values = element_values_of(parts), of = std::weak_ptr<On>(on),
+       change, values = element_values_of(parts), of = std::weak_ptr<On>(on),
        version = on->on_host.version + 1, thread = std::this_thread::get_id()]() {
         auto const own = std::this_thread::get_id() == thread ? of.lock() : nullptr;
         bool const is_now = own && !own->on_host.is_changing && own->on_host.version == version;
@@ -114,7 +157,7 @@ auto changed_when_asked(Parts const& parts, std::shared_ptr<On> const& on,
         if constexpr (!has_values)
           if (is_now && own->is_far_ahead()) mesh = brought_over(*own);
         if (!mesh)
-          mesh = mesh_behind(plan_on_host(before.shared(), download<Index>(*cells), merged, values),
+          mesh = mesh_behind(plan_on_host(before.shared(), download<Index>(*cells), change, values),
                              *prescribed);
         if (is_now) own->set_on_host(*mesh);
         return std::make_shared<MeshOnHost<M> const>(std::move(*mesh));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <tuple>
@@ -9,6 +11,7 @@
 #include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/elements_of_rows.hpp>
 #include <pliant/body/change_on_backend.hpp>
+#include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/element_rows_on.hpp>
 
 namespace pliant::detail {
@@ -43,6 +46,9 @@ class ChangedLayoutOn {
  public:
   ChangedLayoutOn(Parts const& parts, std::shared_ptr<On> on)
       : parts_(parts), on_(std::move(on)), backend_(parts.backend) {}
+
+  /// Whether the change gives elements another degree.
+  bool converts = false;
 
   /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
   /// of what was held before): holds what is held now, before patches are planned, beside which loops over all take longer.
@@ -106,14 +112,30 @@ class ChangedLayoutOn {
     if constexpr (Table<I>::groups > 1)
       tags =
           inherited_values<Tag>(backend_, leaves, std::get<I>(parts_.state.elements).tags.data());
+    if (converts && Table<I>::groups > 1)
+      from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, PlacesOfConverted const& places) {
+        backend_.for_each(leaves.count, ConvertTags<std::size_t{Table<J>::groups}>{
+                                            places, tags_of<J>(), tags.data(),
+                                            converted_groups<Table<J>, Table<I>>()});
+      });
     table.elements =
         elements_of_rows<Elements>(backend_, std::move(rows), Table<I>::groups, std::move(tags),
                                    rows_, node_order<E>, blocks, &before.elements);
     table.laws = before.laws;
     // Children have their parent's, so that those of a family are equal.
     constexpr Index values_of_each = Table<I>::Laws::value_count;
-    if constexpr (values_of_each > 0)
+    if constexpr (values_of_each > 0) {
       table.values = inherited_values<T>(backend_, leaves, before.values.data(), values_of_each);
+      if (converts)
+        from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, PlacesOfConverted const& places) {
+          std::array<int, std::size_t{values_of_each}> column{};
+          std::ranges::copy(places_of_values<Table<J>, Table<I>>(), column.begin());
+          backend_.for_each(leaves.count,
+                            ConvertValues<T, column.size()>{
+                                places, std::get<J>(parts_.layout.tables).values.data(),
+                                table.values.data(), column});
+        });
+    }
     table.straight = before.straight;
     table.numbers = WhenAsked<ElementNumbers>::by(
         [topology, order = parts_.layout.first_order, first = blocks.first] {
@@ -122,6 +144,22 @@ class ChangedLayoutOn {
                                                   topology->cells[I]);
         });
     layout.first_of_block[I] = std::move(blocks.first);
+  }
+
+  template <std::size_t J>
+  [[nodiscard]] Tag const* tags_of() const {
+    return Table<J>::groups > 1 ? std::get<J>(parts_.state.elements).tags.data() : nullptr;
+  }
+  /// visit(TypeNumber<J>{}, where elements of type I come from among those of type J) for those that differ in degree.
+  template <std::size_t I, class Visit>
+  void from_other_types(Visit const& visit) const {
+    on_types<On::types>([&]<std::size_t... J>(TypeNumber<J>...) {
+      auto const look_at = [&]<std::size_t Other>(TypeNumber<Other> other) {
+        if constexpr (differ_in_degree<typename Table<Other>::element, typename Table<I>::element>)
+          visit(other, places_of_converted(on_->leaves(I), on_->leaves(Other)));
+      };
+      (look_at(TypeNumber<J>{}), ...);
+    });
   }
 
   Parts const& parts_;

@@ -47,15 +47,13 @@ template <Element E, class U>
 struct CarryNewNodes {
   TreeView tree;
   PlacedNode const* nodes;
-  bool has_others;  // whether they may lie in cells of other kinds
+  bool has_others;  // whether they may lie in cells of other types
   std::ptrdiff_t components;
   U* values;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     PlacedNode const& placed = nodes[k];
-    if (has_others &&
-        tree.cells[static_cast<std::size_t>(placed.cell)].kind != kind_of<typename E::cell>)
-      return;
+    if (!cells_of_type<E>(has_others).made(tree, placed)) return;
     Vector<double, E::dim> xi;
     for (int d = 0; d < E::dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
     auto const weights = E::shape(xi);

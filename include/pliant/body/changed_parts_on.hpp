@@ -35,6 +35,7 @@ auto merged_elements(On const& on, Layout const& before, Layout const& now) {
 /// A body's parts behind a change of its mesh in the backend's memory. `On` has the tree after it, and follows.
 template <class Parts>
 class ChangedPartsOn {
+ protected:
   using B = typename Parts::backend_type;
   using M = typename Parts::mesh_type;
   using T = typename Parts::T;
@@ -70,10 +71,10 @@ class ChangedPartsOn {
     energies_.add_kinetic(Energies::before, parts_);
     auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
     backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
-    follow_on_host(std::move(cells), false);
+    follow_on_host(std::move(cells), ChangeOfCells::refine);
     on_->hanging.find_after(on_->tree, done);
     on_->order.refine(on_->tree, done);
-    on_->rows.refine(on_->tree, on_->order, done);
+    on_->rows.extend(on_->tree, on_->order, done);
     if (done.new_nodes == 0) backend_.synchronize();  // rows of new nodes were waited for
     on_->follow_order();
     rows_ = on_->rows.count();
@@ -131,7 +132,7 @@ class ChangedPartsOn {
     energies_.add_kinetic(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
-    follow_on_host(std::move(parents), true);
+    follow_on_host(std::move(parents), ChangeOfCells::merge);
     on_->hanging.find_after(on_->tree, done);
     on_->order.coarsen(on_->tree, done);
     on_->rows.coarsen(done);
@@ -167,7 +168,7 @@ class ChangedPartsOn {
     });
   }
 
- private:
+ protected:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] std::size_t values() const { return node_stride * at(rows_); }
   NodeField<double const, dim> at_rest() const { return {on_->points.data()}; }
@@ -180,9 +181,9 @@ class ChangedPartsOn {
   [[nodiscard]] Index come_in_all(typename TreeOn<B>::Refined const& done) const {
     return on_->order.count() - on_->order.count_before() + done.leaves;
   }
-  void follow_on_host(std::shared_ptr<Array<Index>> cells, bool merged) {
+  void follow_on_host(std::shared_ptr<Array<Index>> cells, ChangeOfCells change) {
     if (!topology_) {
-      auto const changed = changed_when_asked(parts_, on_, std::move(cells), merged);
+      auto const changed = changed_when_asked(parts_, on_, std::move(cells), change);
       topology_ = WhenAsked<Topology<M>>::by([changed] { return changed->topology; });
       prescribed_ = WhenAsked<Prescribed<dim>>::by([changed] { return changed->prescribed; });
     }

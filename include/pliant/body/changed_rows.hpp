@@ -48,7 +48,7 @@ struct MarkMembers {
 };
 /// Of a body before a change; empty where its step does not stand on bounds of rows. `rows`: how many fields have behind it;
 /// `merges`: whether elements are merged; families are told type by type.
-template <class Parts, FamiliesOfType... Families>
+template <class Parts, ChangedFamilies... Families>
 ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Index rows, bool merges,
                                                        Families const&... families) {
   if (!has_bounds_of_rows(parts)) return {};
@@ -58,7 +58,7 @@ ChangedRows<typename Parts::backend_type> changed_rows(Parts const& parts, Index
     MembersOf<Own, true> const members{own};
     parts.backend.for_each(members.places(),
                            MarkMembers<MembersOf<Own, true>>{members, marks.data()});
-    most += Own::element::nodes * members.places();
+    most += Own::come_element::nodes * members.places();
   };
   (mark(families), ...);
   return {std::move(marks), merges, merges, most};

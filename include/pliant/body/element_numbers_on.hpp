@@ -92,6 +92,20 @@ struct ChangeMergedLeaves : ChangeLeaves {
   Index const* parents;
   PLIANT_HOST_DEVICE void operator()(Index i) const { change(parents[i], true); }
 };
+/// Of leaves that got another degree: no others have them then.
+struct ChangeConvertedLeaves : ChangeLeaves {
+  Index const* cells;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    constexpr Index per_word = ElementNumbersView::per_word;
+    Index const cell = cells[i];
+    if (cell / per_word >= first_word) return;
+    auto& word = words[cell / per_word];
+    std::uint32_t const bit = std::uint32_t{1} << cell % per_word;
+    bool const was = (atomic_load(word) & bit) != 0,
+               is = is_one(tree.cells[static_cast<std::size_t>(cell)]);
+    if (was != is) atomic_add(word, is ? bit : 0 - bit);
+  }
+};
 struct CountLeaves {
   std::uint32_t const* words;
   PLIANT_HOST_DEVICE Index operator()(Index w) const { return std::popcount(words[w]); }
@@ -145,6 +159,15 @@ class ElementNumbersOn {
   void follow(B const& backend, TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
     follow(backend, tree, cells_ / per_word, refined.leaves,
            detail::ChangeRefinedLeaves{{}, refined.cells});
+  }
+  /// And after leaves got another degree.
+  void follow(B const& backend, TreeOn<B> const& tree, Raised const& raised) {
+    follow(backend, tree, cells_ / per_word, raised.raised,
+           detail::ChangeConvertedLeaves{{}, raised.cells});
+  }
+  void follow(B const& backend, TreeOn<B> const& tree, Lowered const& lowered) {
+    follow(backend, tree, cells_ / per_word, lowered.lowered,
+           detail::ChangeConvertedLeaves{{}, lowered.lowered_cells});
   }
   /// And after a coarsening.
   void follow(B const& backend, TreeOn<B> const& tree, Coarsened const& coarsened) {

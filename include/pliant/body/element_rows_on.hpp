@@ -81,7 +81,7 @@ struct PlacesOfDivided {
   }
 };
 
-/// Gives each leaf what was at its place before, in each of several columns.
+/// Gives each leaf what was at its place before, in each of several columns; but for those that were of another type.
 template <class U>
 struct InheritValues {
   LeavesView leaves;
@@ -89,6 +89,7 @@ struct InheritValues {
   U* to;
   Index columns;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
+    if (leaves.comes_from_others(i)) return;
     for (Index k = 0; k < columns; ++k)
       to[static_cast<std::ptrdiff_t>(leaves.count) * k + i] =
           from[static_cast<std::ptrdiff_t>(leaves.count_before) * k + leaves.from(i)];

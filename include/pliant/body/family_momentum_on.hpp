@@ -34,7 +34,7 @@ class FamilyMomentumOn {
 
   /// Looks up which nodes a change touches, and what these have of the masses of elements that stay; between
   /// NodalMassesOn::take_gone and add_come. `before`, `now`: of the slaves that there were, and are.
-  template <detail::FamiliesOfType... Families>
+  template <detail::ChangedFamilies... Families>
   void begin(MassWeightsOn<B> const& before, MassWeightsOn<B> const& now,
              NodalMassesOn<B> const& masses, Families const&... families) {
     auto const rows = at(masses.rows());
@@ -43,8 +43,8 @@ class FamilyMomentumOn {
     counter_ = zeros<Index>(backend_, 1);
     detail::TouchOnce const touch{place_.data(), list_.data(), counter_.data()};
     auto const touch_members = [&]<class Own>(Own const& own) {
-      // The many have the nodes of the few.
-      using Members = detail::MembersOf<Own, (Own::most_come > Own::most_gone)>;
+      // Those that are more, or have more nodes, have the nodes of the others.
+      using Members = detail::MembersOf<Own, (most_nodes<Own, true> > most_nodes<Own, false>)>;
       Members const members{own};
       return detail::LoopStep{members.places(), detail::TouchMembers<Members>{members, touch}};
     };
@@ -53,8 +53,8 @@ class FamilyMomentumOn {
     };
     auto const &slaves_before = before.interpolation(), &slaves_now = now.interpolation();
     std::size_t most = 0;
-    ((most += Families::element::nodes * std::max(Families::most_come, Families::most_gone) *
-              at(families.count)),
+    ((most +=
+      at(std::max(most_nodes<Families, true>, most_nodes<Families, false>)) * at(families.count)),
      ...);
     for (auto const* slaves : {&slaves_before, &slaves_now})
       most += at(slaves->slaves().count) + at(slaves->masters().count);
@@ -72,7 +72,7 @@ class FamilyMomentumOn {
   /// NodalMassesOn::read gives them. `held`: directions by row; null: none. `bound`: kg m/s, more than the sum of all impulses
   /// that nodes could be given, 8 times the body's mass at the largest speed, say. Where an impulse exceeds it or is no number,
   /// velocities stay, and `taken` says so.
-  template <detail::FamiliesOfType... Families>
+  template <detail::ChangedFamilies... Families>
   void give_back(MassWeightsOn<B> const& before, MassWeightsOn<B> const& now, double density,
                  double bound, double const* kilograms, DirectionMask const* held,
                  NodeField<T, dim> v, Families const&... families) {
@@ -92,9 +92,9 @@ class FamilyMomentumOn {
     before.template apply<dim>(v_before);
     now.template apply<dim>(v_now);
     auto const add_impulses = [&]<class Own>(Own const& own) {
-      return detail::LoopStep{own.count, detail::AddFamilyImpulse<typename Own::element, Own>{
-                                             own, density, v_before, v_now, unit, place_.data(),
-                                             sums_.data(), refused}};
+      return detail::LoopStep{own.count,
+                              detail::AddFamilyImpulse<Own>{own, density, v_before, v_now, unit,
+                                                            place_.data(), sums_.data(), refused}};
     };
     detail::in_turn(
         backend_, add_impulses(families)...,
@@ -125,6 +125,10 @@ class FamilyMomentumOn {
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  /// Of the elements of a family that come, or go.
+  template <class Families, bool Come>
+  static constexpr Index most_nodes =
+      detail::MembersOf<Families, Come>::element::nodes * detail::MembersOf<Families, Come>::most;
   /// A pass over what is listed.
   template <class Pass>
   auto of_listed(Pass const& pass) const {

@@ -93,9 +93,9 @@ struct TakeVelocities {
 };
 
 /// Adds what the nodes of a family must be given so that it keeps its momentum: see list_family_impulse.
-template <Element E, ChangedFamilies<E> Families>
+template <ChangedFamilies Families>
 struct AddFamilyImpulse {
-  static constexpr int dim = E::dim;
+  static constexpr int dim = Families::come_element::dim;
   Families families;
   double density;
   DoublesByPlace<dim> before, now;  // velocities, those of slaves as their mass moves
@@ -108,36 +108,50 @@ struct AddFamilyImpulse {
     Index const gone = families.gone(r), members = gone + families.come(r),
                 steps = members + families.come(r);
     double base[dim], lost[dim] = {}, volume = 0;
+    bool is_done = false;
     // First those that go, then those that come; then these again, which take their shares.
-    for (Index step = 0; step < steps; ++step) {
-      bool const goes = step < gone;
-      auto const rows = goes ? families.rows_gone(r, step)
-                             : families.rows_come(r, step < members ? step - gone : step - members);
-      auto const own = families.elements.volumes(rows);
-      if (step < members) {
-        for (int d = 0; d < dim && step == 0; ++d) base[d] = before(rows[0], d);
-        for (int a = 0; a < E::nodes; ++a) {
-          Index const row = rows[static_cast<std::size_t>(a)];
-          for (int d = 0; d < dim; ++d) {
-            double const momentum =
-                density * own[a] * ((goes ? before(row, d) : now(row, d)) - base[d]);
-            lost[d] += goes ? momentum : -momentum;
+    for (Index step = 0; step < steps && !is_done; ++step)
+      with_member(r, step, gone, members, [&](auto const& elements, auto const& rows, bool goes) {
+        auto const own = elements.volumes(rows);
+        constexpr int nodes =
+            static_cast<int>(std::tuple_size_v<std::remove_cvref_t<decltype(rows)>>);
+        if (step < members) {
+          for (int d = 0; d < dim && step == 0; ++d) base[d] = before(rows[0], d);
+          for (int a = 0; a < nodes; ++a) {
+            Index const row = rows[static_cast<std::size_t>(a)];
+            for (int d = 0; d < dim; ++d) {
+              double const momentum =
+                  density * own[a] * ((goes ? before(row, d) : now(row, d)) - base[d]);
+              lost[d] += goes ? momentum : -momentum;
+            }
+            if (!goes) volume += own[a];
           }
-          if (!goes) volume += own[a];
+          if (step < members - 1) return;
+          bool kept = true;
+          for (double const x : lost) kept = kept && x == 0;
+          is_done = kept;
+        } else {
+          for (int a = 0; a < nodes; ++a)
+            for (int d = 0; d < dim; ++d)
+              add(rows[static_cast<std::size_t>(a)], d, lost[d] * (own[a] / volume));
         }
-        if (step < members - 1) continue;
-        bool kept = true;
-        for (double const x : lost) kept = kept && x == 0;
-        if (kept) return;
-      } else {
-        for (int a = 0; a < E::nodes; ++a)
-          for (int d = 0; d < dim; ++d)
-            add(rows[static_cast<std::size_t>(a)], d, lost[d] * (own[a] / volume));
-      }
-    }
+      });
   }
 
  private:
+  /// visit(what its type has, its rows, whether it goes)
+  template <class Visit>
+  PLIANT_HOST_DEVICE void with_member(Index r, Index step, Index gone, Index members,
+                                      Visit const& visit) const {
+    bool const goes = step < gone;
+    Index const k = goes ? step : step < members ? step - gone : step - members;
+    if constexpr (std::same_as<typename Families::gone_element, typename Families::come_element>)
+      visit(families.elements, goes ? families.rows_gone(r, k) : families.rows_come(r, k), goes);
+    else if (goes)
+      visit(elements_of<false>(families), families.rows_gone(r, k), true);
+    else
+      visit(elements_of<true>(families), families.rows_come(r, k), false);
+  }
   PLIANT_HOST_DEVICE void add(Index row, int d, double x) const {
     if (unit.holds(abs(x)))
       sums[static_cast<std::ptrdiff_t>(dim) * (place[row] - 1) + d].add_from_threads(

@@ -29,7 +29,7 @@ struct FillNewNodes {
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     PlacedNode const& placed = nodes[k];
-    if (!cells_of_type<E>(has_others)(tree.cells[static_cast<std::size_t>(placed.cell)])) return;
+    if (!cells_of_type<E>(has_others).made(tree, placed)) return;
     Vector<double, dim> xi;
     for (int d = 0; d < dim; ++d) xi[d] = placed.place[static_cast<std::size_t>(d)];
     auto const weights = E::shape(xi);
@@ -82,15 +82,15 @@ struct FillNewNodes {
 
 }  // namespace detail
 
-/// A step (see in_turn) that gives the nodes that a refinement made the values of fields where they lie in the cells that were
-/// refined, of those that are elements of a type; all are, but for a tree that `has_others`. `of_node`: rows by the user's numbers, in the backend's memory, those
+/// A step (see in_turn) that gives the nodes that a change made, a TreeOn::Refined or Raised, the values of fields where they lie in
+/// the cells that were elements of a type; all were, but for a tree that `has_others`. `of_node`: rows by the user's numbers, in the backend's memory, those
 /// of new nodes with them.
-template <Element E, Backend B, class... T>
-auto filling_new_nodes(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
-                       bool has_others, Index const* of_node, NodeField<T, E::dim>... fields) {
+template <Element E, Backend B, class Made, class... T>
+auto filling_new_nodes(TreeOn<B> const& tree, Made const& made, bool has_others,
+                       Index const* of_node, NodeField<T, E::dim>... fields) {
   return detail::LoopStep{
-      refined.new_nodes,
-      detail::FillNewNodes<E, T...>{tree.view(), refined.nodes, has_others, of_node, {fields...}}};
+      made.new_nodes,
+      detail::FillNewNodes<E, T...>{tree.view(), made.nodes, has_others, of_node, {fields...}}};
 }
 
 }  // namespace pliant

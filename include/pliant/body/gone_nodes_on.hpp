@@ -7,20 +7,22 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
+#include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/merged_elements.hpp>
 #include <pliant/constraint/rows_on.hpp>
 #include <pliant/mesh/mesh.hpp>
 #include <pliant/topology/patterns.hpp>
 #include <pliant/topology/tree_claims.hpp>
 
-// Nodes that went as elements were merged, between nodes that stay, in a backend's memory.
+// Nodes that went as elements were merged, or lowered, between nodes that stay, in a backend's memory.
 namespace pliant {
 
 namespace detail {
 
-/// Where the nodes of children lie on their parent's element: (2: whether the parent is mirrored, children, nodes).
+/// Where the nodes of elements that go lie on the one that comes: those of children on their parent's element, (2: whether the parent
+/// is mirrored, children, nodes).
 template <Element E>
-std::vector<Vector<double, E::dim>> places_on_parent() {
+std::vector<Vector<double, E::dim>> places_of_gone(MergedElements<E> const&) {
   auto const& pattern = pattern_of(kind_of<typename E::cell>, Division::refined);
   std::vector<Vector<double, E::dim>> places;
   for (bool const mirrored : {false, true})
@@ -30,22 +32,32 @@ std::vector<Vector<double, E::dim>> places_on_parent() {
   return places;
 }
 
-/// Nodes that went as elements were merged; those of the parent are all there.
-template <Element E>
+/// Those of lowered elements: (nodes).
+template <Element From, Element To>
+std::vector<Vector<double, From::dim>> places_of_gone(ConvertedElements<From, To> const&) {
+  std::vector<Vector<double, From::dim>> places;
+  for (int a = 0; a < From::nodes; ++a) places.push_back(From::place(a));
+  return places;
+}
+
+/// Nodes that went with elements of families of which one came; those of that one are all there.
+template <ChangedFamilies Families>
 struct GoneBetween {
-  MergedElements<E> families;
-  Vector<double, E::dim> const* on_parent;  // see places_on_parent
+  using Gone = typename Families::gone_element;
+  using Come = typename Families::come_element;
+  Families families;
+  Vector<double, Come::dim> const* places;  // see places_of_gone
   Index const* place;  // by row: of a node that went among these, one more; else 0
   Index* claims;       // by node that went: see tree_claims.hpp
-  Index* from;     // where it lies on the parent of the family whose claim it is, of `on_parent`
-  Index* entries;  // how many weights are not zero
+  Index* from;         // where it lies on the parent of the family whose claim it is, of `places`
+  Index* entries;      // how many weights are not zero
 
   /// visit(k, from) for the nodes that went of a family, which k is among them. Some come again.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit(Index r, Visit const& visit_one) const {
     Index const children = families.gone(r);
     if (children == 0) return;
-    Index next = is_mirrored(r) ? MergedElements<E>::most_gone * E::nodes : 0;
+    Index next = is_mirrored(r) ? Families::most_gone * Gone::nodes : 0;
     for (Index child = 0; child < children; ++child)
       for (Index const row : families.rows_gone(r, child)) {
         if (Index const k = place[row] - 1; k >= 0) visit_one(k, next);
@@ -53,42 +65,42 @@ struct GoneBetween {
       }
   }
   /// The weights that the nodes of the parent have there: dyadic numbers, without rounding.
-  [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, E::nodes> weights(Index k) const {
-    return E::shape(on_parent[from[k]]);
+  [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, Come::nodes> weights(Index k) const {
+    return Come::shape(places[from[k]]);
   }
 
  private:
   /// Mirrored tetrahedra have their last two corners in the other order, and other children there.
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_mirrored(Index r) const {
-    if constexpr (SimplexCell<typename E::cell> && E::dim == 3)
+    if constexpr (Families::most_gone > 1 && SimplexCell<typename Come::cell> && Come::dim == 3)
       return families.rows_gone(r, 2)[2] != families.rows_come(r, 0)[2];
     return false;
   }
 };
-template <Element E>
+template <class Families>
 struct ClaimGone {
-  GoneBetween<E> gone;
+  GoneBetween<Families> gone;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     gone.visit(r, [&](Index k, Index) { claim(gone.claims[k], r, true); });
   }
 };
-template <Element E>
+template <class Families>
 struct FindOnParents {
-  GoneBetween<E> gone;
+  GoneBetween<Families> gone;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     gone.visit(r, [&](Index k, Index from) {
       if (!makes(r, gone.claims[k]) || gone.entries[k] != 0) return;
       gone.from[k] = from;
       auto const weights = gone.weights(k);
       Index count = 0;
-      for (int c = 0; c < E::nodes; ++c) count += weights[c] != 0 ? 1 : 0;
+      for (int c = 0; c < Families::come_element::nodes; ++c) count += weights[c] != 0 ? 1 : 0;
       gone.entries[k] = count;
     });
   }
 };
-template <Element E, class T>
+template <class Families, class T>
 struct PutWeights {
-  GoneBetween<E> gone;
+  GoneBetween<Families> gone;
   Index const* first;
   Index* other;
   T* weight;
@@ -98,7 +110,7 @@ struct PutWeights {
     auto const parent = gone.families.rows_come(family, 0);
     auto const weights = gone.weights(k);
     Index to = first[k];
-    for (int c = 0; c < E::nodes; ++c) {
+    for (int c = 0; c < Families::come_element::nodes; ++c) {
       if (weights[c] == 0) continue;
       other[to] = parent[static_cast<std::size_t>(c)];
       weight[to++] = static_cast<T>(weights[c]);
@@ -128,27 +140,22 @@ struct ForgetRows {
 
 }  // namespace detail
 
-/// Finds between which nodes those lay that went in a coarsening, as Transfer::gone has them: as an interpolation, InterpolationOn
-/// hands them what these had (see apply_transpose), as Transfer::carry_sums does. Several merged elements may have had one;
-/// their weights are the same. Has what passes take between them.
-template <class M, Backend B>
-class GoneNodesOn;
-
-template <Element... Es, Backend B>
-class GoneNodesOn<Mesh<Es...>, B> {
+/// Finds between which nodes those lay that went in a change, as Transfer::gone has them: as an interpolation, InterpolationOn
+/// hands them what these had (see apply_transpose), as Transfer::carry_sums does. Several elements may have had one; their weights
+/// are the same. Has what passes take between them.
+template <Backend B>
+class GoneNodesOn {
   using T = typename B::scalar;
   template <class U>
   using Array = typename B::template Array<U>;
 
  public:
-  explicit GoneNodesOn(B const& backend)
-      : backend_(backend),
-        on_parent_(Places<Es>{upload(backend, detail::places_on_parent<Es>())}...) {}
+  explicit GoneNodesOn(B const& backend) : backend_(backend) {}
 
   /// The nodes that went, by their rows in the order of the list `gone`, (count), in the backend's memory: these had all been
-  /// nodes of merged elements. `rows`: how many fields have.
-  RowsOn<B> rows(Index const* gone, Index count, Index rows,
-                 detail::MergedElements<Es> const&... merged) {
+  /// nodes of elements of the families. `rows`: how many fields have.
+  template <detail::ChangedFamilies... Families>
+  RowsOn<B> rows(Index const* gone, Index count, Index rows, Families const&... families) {
     RowsOn<B> weights;
     if (count == 0) return weights;
     auto const n = at(count);
@@ -161,37 +168,33 @@ class GoneNodesOn<Mesh<Es...>, B> {
     weights.first = unset<Index>(backend_, n + 1);
     detail::copy_values<B, Index>(backend_, gone, weights.node.data(), n);
     backend_.for_each(count, detail::NotePlaces{gone, place_.data(), claims_.data()});
-    auto const between = [&]<Element E>(detail::MergedElements<E> const& own) {
-      auto const& places = std::get<Places<E>>(on_parent_).places;
-      return detail::GoneBetween<E>{own,          places.data(), place_.data(), claims_.data(),
-                                    from_.data(), entries.data()};
-    };
-    (backend_.for_each(merged.count, detail::ClaimGone<Es>{between(merged)}), ...);
-    (backend_.for_each(merged.count, detail::FindOnParents<Es>{between(merged)}), ...);
-    backend_.scan(count, detail::CountAt{entries.data()}, weights.first.data());
-    auto total = zeros<Index>(backend_, 1);
-    backend_.for_each(1, detail::CopyValue<Index>{weights.first.data() + count, total.data()});
-    auto const in_all = at(download<Index>(total)[0]);
-    weights.other = unset<Index>(backend_, in_all);
-    weights.weight = unset<T>(backend_, in_all);
-    (backend_.for_each(count,
-                       detail::PutWeights<Es, T>{between(merged), weights.first.data(),
-                                                 weights.other.data(), weights.weight.data()}),
-     ...);
+    std::tuple const places{upload(backend_, detail::places_of_gone(families))...};
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      std::tuple const between{detail::GoneBetween<Families>{families, std::get<I>(places).data(),
+                                                             place_.data(), claims_.data(),
+                                                             from_.data(), entries.data()}...};
+      (backend_.for_each(families.count, detail::ClaimGone<Families>{std::get<I>(between)}), ...);
+      (backend_.for_each(families.count, detail::FindOnParents<Families>{std::get<I>(between)}),
+       ...);
+      backend_.scan(count, detail::CountAt{entries.data()}, weights.first.data());
+      auto total = zeros<Index>(backend_, 1);
+      backend_.for_each(1, detail::CopyValue<Index>{weights.first.data() + count, total.data()});
+      auto const in_all = at(download<Index>(total)[0]);
+      weights.other = unset<Index>(backend_, in_all);
+      weights.weight = unset<T>(backend_, in_all);
+      (backend_.for_each(
+           count, detail::PutWeights<Families, T>{std::get<I>(between), weights.first.data(),
+                                                  weights.other.data(), weights.weight.data()}),
+       ...);
+    }(std::index_sequence_for<Families...>());
     backend_.for_each(count, detail::ForgetRows{gone, place_.data()});
     return weights;
   }
 
  private:
-  /// See places_on_parent.
-  template <Element E>
-  struct Places {
-    Array<Vector<double, E::dim>> places;
-  };
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   B backend_;
-  std::tuple<Places<Es>...> on_parent_;
   Array<Index> place_;  // by row: in the list, one more; zero, as between two calls: not there
   Array<Index> claims_, from_;
 };

@@ -107,9 +107,7 @@ class HeldSidesOn {
               Index const* of_node, Index rows, DirectionMask* held) {
     Index const first_new = std::exchange(count_, count_in(tree.sizes()));
     detail::grow_keeping(backend, bits_, at(first_new), at(count_));
-    detail::grow_keeping(backend, held_, at(rows_), at(rows));
-    detail::grow_keeping(backend, named_, at(rows_), at(rows));
-    rows_ = rows;
+    extend(backend, rows);
     Sides const sides{tree.view()};
     auto const hold = [&](std::size_t k) {
       bool const is_there = k < in_turn_.size();
@@ -128,6 +126,12 @@ class HeldSidesOn {
     }(std::make_index_sequence<Dim>());
   }
 
+  /// Makes room for rows of new nodes, which no condition names.
+  void extend(B const& backend, Index rows) {
+    detail::grow_keeping(backend, held_, at(rows_), at(rows));
+    detail::grow_keeping(backend, named_, at(rows_), at(rows));
+    rows_ = rows;
+  }
   /// Follows a coarsening, and whether it may be: not where a node would go that a condition names, or a side be whole again of
   /// which conditions hold a part only. Then nothing has changed. `tree`: after it; `of_node`: before it.
   bool coarsen(B const& backend, TreeOn<B> const& tree, Coarsened const& done,

@@ -9,6 +9,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/read_back.hpp>
 #include <pliant/body/cell_order.hpp>
+#include <pliant/body/converted_leaf_passes.hpp>
 #include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/topology/tree_on.hpp>
 
@@ -20,7 +21,7 @@ namespace pliant {
 struct LeavesView {
   Index const* leaves = nullptr;  // by the place
   Index const* before =
-      nullptr;  // by the place before the change, by the numbers that they have now; −1: merged into others
+      nullptr;  // by the place before the change, by the numbers that they have now; −1: merged, or of others now
   Index const* from_all = nullptr;  // by the place: that before, counted from the first of all
   Index const* places = nullptr;    // by cell, counted from the first of all
   MergedFamily const* families = nullptr;  // those that the change merged, of all
@@ -31,6 +32,10 @@ struct LeavesView {
 
   /// The place before of the leaf at a place, of a child its parent's, of a merged parent its first child's.
   [[nodiscard]] PLIANT_HOST_DEVICE Index from(Index i) const { return from_all[i] - first_before; }
+  /// Whether it was none of these then: it has another degree now.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool comes_from_others(Index i) const {
+    return has_others && (from(i) < 0 || from(i) >= count_before);
+  }
   [[nodiscard]] PLIANT_HOST_DEVICE bool is_new(Index i) const {
     return before[from(i)] != leaves[i];
   }
@@ -132,6 +137,38 @@ class LeafOrderOn {
     merged_ = 0;
   }
 
+  /// Puts leaves that have another degree into other blocks: `other_block`, by block; no leaf goes away from these. `first`: places of
+  /// the initial mesh's cells. All arrays are in the backend's memory.
+  void convert(TreeView const& tree, Index const* cells, Index count, Index const* other_block,
+               Index const* first) {
+    using detail::LoopStep, detail::ScanStep, detail::SortStep;
+    auto goes = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(count_));
+    detail::grow(backend_, start_, static_cast<std::size_t>(count_) + 1);
+    detail::grow(backend_, others_, static_cast<std::size_t>(count_));
+    detail::grow(backend_, from_, static_cast<std::size_t>(count_));
+    detail::grow(backend_, keys_, static_cast<std::size_t>(count));
+    detail::grow(backend_, arriving_, static_cast<std::size_t>(count));
+    detail::LeafBlocks const blocks{first_.data(), blocks_};
+    detail::ArrivingLeaves const arriving{count, keys_.data(), arriving_.data()};
+    detail::PutConverted const put{{tree, first},  blocks,         arriving,
+                                   goes.data(),    start_.data(),  leaves_.data(),
+                                   others_.data(), places_.data(), from_.data()};
+    int const bits = detail::LeavePlaces::bits_of_place + detail::key_bits(blocks_);
+    detail::in_turn(
+        backend_,
+        LoopStep{count, detail::LeavePlaces{blocks, other_block, cells, places_.data(), goes.data(),
+                                            keys_.data(), arriving_.data()}},
+        SortStep{count, keys_.data(), arriving_.data(), bits},
+        ScanStep{count_, detail::StaysThere{goes.data()}, start_.data()},
+        LoopStep{count_, detail::PutStaying{put}}, LoopStep{count, detail::PutArriving{put}},
+        LoopStep{count, detail::ForgetLeaves{arriving, leaves_.data()}},
+        LoopStep{blocks_ + 1, detail::MoveBlocksOfConverted{arriving, start_.data(), first_.data(),
+                                                            told_.data()}});
+    std::swap(leaves_, others_);
+    count_before_ = count_;
+    merged_ = 0;
+  }
+
   /// Puts merged parents in the place where their children stood. `tree`: after that.
   void coarsen(TreeOn<B> const& tree, Coarsened const& done) {
     auto const before = static_cast<std::size_t>(count_);
@@ -168,6 +205,8 @@ class LeafOrderOn {
   Array<Index> places_, from_, start_, first_;
   ReadBack<B, Index> told_;  // first_
   Array<MergedFamily> families_;
+  Array<std::uint64_t> keys_;  // of leaves that go over to another type
+  Array<Index> arriving_;
   Index count_ = 0, count_before_ = 0, blocks_ = 0, merged_ = 0;
 };
 

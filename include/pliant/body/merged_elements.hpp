@@ -12,7 +12,8 @@ namespace pliant::detail {
 /// families of other types have no elements. Nodes that went have the rows that they had.
 template <Element E>
 struct MergedElements {
-  using element = E;
+  using gone_element = E;
+  using come_element = E;
   static constexpr Index most_gone = 1 << E::dim, most_come = 1;
 
   LeavesView leaves;  // of the type
@@ -26,17 +27,10 @@ struct MergedElements {
     return !leaves.has_others || leaves.children(r) > 0 ? 1 : 0;
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_gone(Index r, Index k) const {
-    return taken(before[leaves.first_child_before(r) + k]);
+    return taken_rows<E>(before[leaves.first_child_before(r) + k]);
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_come(Index r, Index) const {
-    return taken(now[leaves.merged_place(r)]);
-  }
-
- private:
-  static PLIANT_HOST_DEVICE RowsOfElement<E> taken(Index const* from) {
-    RowsOfElement<E> rows{};
-    for (std::size_t a = 0; a < rows.size(); ++a) rows[a] = from[a];
-    return rows;
+    return taken_rows<E>(now[leaves.merged_place(r)]);
   }
 };
 

@@ -20,7 +20,7 @@ namespace detail {
 
 /// Adds the shares that nodes have in the masses of some elements to the nodes' own; or takes them away. As share_mass and
 /// lumped_masses do.
-template <Element E, class Members>
+template <class Members>
 struct AddShares {
   Members members;
   bool takes;
@@ -32,8 +32,8 @@ struct AddShares {
   PLIANT_HOST_DEVICE void operator()(Index i) const {
     if (!members.is_one(i)) return;
     auto const rows = members.rows(i);
-    auto const shares = members.families.elements.masses(rows, density);
-    for (int a = 0; a < E::nodes; ++a) {
+    auto const shares = members.elements().masses(rows, density);
+    for (int a = 0; a < Members::element::nodes; ++a) {
       if (!unit.holds(shares[a])) {
         atomic_store(*refused, 1);
         continue;
@@ -106,26 +106,26 @@ class NodalMassesOn {
     rows_ = rows;
   }
   /// What nodes have of elements that go in a change goes: of nodes that go, all.
-  template <detail::FamiliesOfType... Families>
+  template <detail::ChangedFamilies... Families>
   void take_gone(Families const&... families) {
     detail::in_turn(backend_, taking_gone(families)...);
   }
   /// What they have of those that come comes.
-  template <detail::FamiliesOfType... Families>
+  template <detail::ChangedFamilies... Families>
   void add_come(Families const&... families) {
     detail::in_turn(backend_, adding_come(families)...);
   }
   /// Both of them as steps of loops (see in_turn).
-  template <detail::FamiliesOfType Families>
+  template <detail::ChangedFamilies Families>
   [[nodiscard]] auto taking_gone(Families const& families) {
     return shares<false>(families, true);
   }
-  template <detail::FamiliesOfType Families>
+  template <detail::ChangedFamilies Families>
   [[nodiscard]] auto adding_come(Families const& families) {
     return shares<true>(families, false);
   }
   /// Undoes both, to the bit.
-  template <detail::FamiliesOfType... Families>
+  template <detail::ChangedFamilies... Families>
   void take_back(Families const&... families) {
     detail::in_turn(backend_, shares<true>(families, true)..., shares<false>(families, false)...);
   }
@@ -163,9 +163,9 @@ class NodalMassesOn {
   auto shares(Families const& families, bool takes) {
     using Members = detail::MembersOf<Families, Come>;
     Members const members{families};
-    return detail::LoopStep{members.places(),
-                            detail::AddShares<typename Families::element, Members>{
-                                members, takes, density_, unit_, own_.data(), refused_.data()}};
+    return detail::LoopStep{
+        members.places(),
+        detail::AddShares<Members>{members, takes, density_, unit_, own_.data(), refused_.data()}};
   }
 
   B backend_;

@@ -76,10 +76,10 @@ class NodeRowsOn {
     return all.download_all();
   }
 
-  /// Gives rows to the nodes that a refinement made; `order`: of the leaves after it.
-  void refine(TreeOn<B> const& tree, LeafOrderOn<B> const& order,
-              typename TreeOn<B>::Refined const& refined) {
-    Index const n = refined.new_nodes;
+  /// Gives rows to the nodes that a change made, a TreeOn::Refined or Raised; `order`: of the leaves after it.
+  template <class Made>
+  void extend(TreeOn<B> const& tree, LeafOrderOn<B> const& order, Made const& made) {
+    Index const n = made.new_nodes;
     freed_count_ = 0;
     if (n == 0) return;
     need(keys_, n);
@@ -109,7 +109,7 @@ class NodeRowsOn {
     using detail::LoopStep, detail::ScanStep, detail::SortStep;
     detail::in_turn(
         backend_,
-        LoopStep{n, detail::KeysOfNodes{tree.view(), refined.nodes, order.places(), keys_.data(),
+        LoopStep{n, detail::KeysOfNodes{tree.view(), made.nodes, order.places(), keys_.data(),
                                         order_.data()}},
         SortStep{n, keys_.data(), order_.data(), detail::key_bits(tree.leaves())},
         LoopStep{partial, detail::KeysOfPages{region_.data(), partial_.data(), listed, regions,
@@ -133,7 +133,7 @@ class NodeRowsOn {
                                                      region_.data(), node_.data()}},
                     LoopStep{n, detail::FindRows{rows, node_.data(), partial_.data(), page_at,
                                                  before_.data(), found_.data()}},
-                    LoopStep{n, detail::TakeFoundRows{found_.data(), order_.data(), refined.nodes,
+                    LoopStep{n, detail::TakeFoundRows{found_.data(), order_.data(), made.nodes,
                                                       of_node_.data(), node_.data()}});
     pages_ = in_all;
     nodes_ += n;

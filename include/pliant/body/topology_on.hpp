@@ -50,6 +50,9 @@ struct TopologyOn<Mesh<Es...>, B> {
   static constexpr int dim = M::dim;
   static constexpr std::size_t types = sizeof...(Es);
   static constexpr bool has_several = types > 1;
+  /// The type that elements of each are of when they get another degree; the same where there is none.
+  static constexpr std::array<std::size_t, types> converted_types{
+      (converted_type<Es, M> == no_type ? detail::type_in<Es, M> : converted_type<Es, M>)...};
   /// After so many changes the host follows, or of so many cells for each element, so that what it has to keep has an end.
   static constexpr int most_changes = 512, most_cells = 64;
   /// Where the elements of each type begin among all, and behind the last one.
@@ -65,8 +68,11 @@ struct TopologyOn<Mesh<Es...>, B> {
   HangingNodesOn<dim, B> hanging;
   NodalMassesOn<B> masses;
   FamilyMomentumOn<dim, B> momentum;
-  GoneNodesOn<M, B> gone;
+  GoneNodesOn<B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
+  typename B::template Array<Index>
+      first_places{};  // of the initial mesh's cells, once some leaf got another degree
+  typename B::template Array<Index> other_block{};  // see LeafOrderOn::convert
   HeldSidesOn<dim, std::min({nodes_on_cell<Es>...}), std::max({nodes_on_cell<Es>...}), B> held;
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
@@ -98,6 +104,18 @@ struct TopologyOn<Mesh<Es...>, B> {
     first_before = first_place;
     for (std::size_t type = 0; type <= types; ++type)
       first_place[type] = first_of_blocks[static_cast<std::size_t>(first_block[type])];
+  }
+  /// Puts leaves that have another degree among those of their type. `first`: of the initial mesh.
+  void convert_order(B const& backend, Index const* cells, Index count, CellOrder const& first) {
+    if (first_places.size() == 0) {
+      first_places = upload(backend, first.places);
+      std::vector<Index> other;
+      for (std::size_t type = 0; type < types; ++type)
+        for (Index block = first_block[type]; block < first_block[type + 1]; ++block)
+          other.push_back(block - first_block[type] + first_block[converted_types[type]]);
+      other_block = upload(backend, other);
+    }
+    order.convert(tree.view(), cells, count, other_block.data(), first_places.data());
   }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
   /// Whether what is prescribed is what a body's conditions and pressures are now.

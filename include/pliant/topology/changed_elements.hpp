@@ -34,29 +34,39 @@ struct ElementsByRows {
   }
 };
 
-/// Families of elements of type E in a change of a mesh: gone(r) elements of family r go, and come(r) take their place, at
-/// most `most_gone` and `most_come`, in the same volume. rows_gone(r, k), rows_come(r, k): the rows of fields that their nodes
-/// have; nodes that stay have theirs before and after.
-template <class F, class E>
-concept ChangedFamilies = requires(F const& families, Index r, RowsOfElement<E> const& rows) {
+/// What the elements of families have that go, or come: `elements`, or of two types `gone_elements` and `come_elements`.
+template <bool Come, class Families>
+PLIANT_HOST_DEVICE auto const& elements_of(Families const& families) {
+  if constexpr (requires { families.elements; })
+    return families.elements;
+  else if constexpr (Come)
+    return families.come_elements;
+  else
+    return families.gone_elements;
+}
+
+/// Families of elements in a change of a mesh: gone(r) elements of family r go, of type gone_element, and come(r) take their place,
+/// of type come_element, at most `most_gone` and `most_come`, in the same volume. rows_gone(r, k), rows_come(r, k): the rows of
+/// fields that their nodes have; nodes that stay have theirs before and after.
+template <class F>
+concept ChangedFamilies = requires(F const& families, Index r) {
   { F::most_gone } -> std::convertible_to<Index>;
   { F::most_come } -> std::convertible_to<Index>;
   { families.count } -> std::convertible_to<Index>;
   { families.gone(r) } -> std::same_as<Index>;
   { families.come(r) } -> std::same_as<Index>;
-  { families.rows_gone(r, r) } -> std::same_as<RowsOfElement<E>>;
-  { families.rows_come(r, r) } -> std::same_as<RowsOfElement<E>>;
-  { families.elements } -> std::convertible_to<ElementsByRows<E>>;
+  { families.rows_gone(r, r) } -> std::same_as<RowsOfElement<typename F::gone_element>>;
+  { families.rows_come(r, r) } -> std::same_as<RowsOfElement<typename F::come_element>>;
+  { elements_of<false>(families) } -> std::convertible_to<ElementsByRows<typename F::gone_element>>;
+  { elements_of<true>(families) } -> std::convertible_to<ElementsByRows<typename F::come_element>>;
 };
-
-/// Such families, of the type that they name.
-template <class F>
-concept FamiliesOfType = ChangedFamilies<F, typename F::element>;
 
 /// The elements of all families that go, or those that come, in one row for loops: places beyond the last one of a family
 /// have none.
 template <class Families, bool Come>
 struct MembersOf {
+  using element =
+      std::conditional_t<Come, typename Families::come_element, typename Families::gone_element>;
   static constexpr Index most = Come ? Families::most_come : Families::most_gone;
   Families families;
 
@@ -69,6 +79,9 @@ struct MembersOf {
       return families.rows_come(i / most, i % most);
     else
       return families.rows_gone(i / most, i % most);
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE auto const& elements() const {
+    return elements_of<Come>(families);
   }
 };
 

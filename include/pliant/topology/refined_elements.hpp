@@ -14,7 +14,8 @@ namespace pliant::detail {
 /// which one goes; cells of other types have no elements.
 template <Element E>
 struct RefinedElements {
-  using element = E;
+  using gone_element = E;
+  using come_element = E;
   static constexpr Index most_children = 1 << E::dim;
   static constexpr Index most_gone = 1, most_come = most_children;
 

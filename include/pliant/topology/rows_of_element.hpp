@@ -16,6 +16,11 @@ struct CellsOfType {
   PLIANT_HOST_DEVICE bool operator()(TreeCell const& cell) const {
     return !has_others || (cell.kind == kind && cell.has == has);
   }
+  /// Whether a node was made on a cell that was one of them then.
+  PLIANT_HOST_DEVICE bool made(TreeView const& tree, PlacedNode const& node) const {
+    return !has_others ||
+           (node.had == has && tree.cells[static_cast<std::size_t>(node.cell)].kind == kind);
+  }
 };
 template <Element E>
 PLIANT_HOST_DEVICE constexpr CellsOfType cells_of_type(bool has_others) {
@@ -26,6 +31,13 @@ PLIANT_HOST_DEVICE constexpr CellsOfType cells_of_type(bool has_others) {
 template <Element E>
 using RowsOfElement = std::array<Index, static_cast<std::size_t>(E::nodes)>;
 
+/// A copy of such rows.
+template <Element E>
+PLIANT_HOST_DEVICE RowsOfElement<E> taken_rows(Index const* from) {
+  RowsOfElement<E> rows{};
+  for (std::size_t a = 0; a < rows.size(); ++a) rows[a] = from[a];
+  return rows;
+}
 /// Those of the element that a cell of a tree is. `of_node`: rows, by the user's numbers of nodes.
 template <Element E>
 PLIANT_HOST_DEVICE RowsOfElement<E> rows_of_element(TreeView const& tree, Index c,

@@ -58,7 +58,33 @@ class TreeClosure {
     }
     return n;
   }
-  /// What it listed.
+  /// Lists marked leaves, and rings of neighbours of these, in no order; returns how many. See TreeOn::with_neighbours.
+  Index neighbours(B const& backend, TreeView const& tree, Index cells, TreeSizes const& initial,
+                   Stamps<B>& stamps, Index const* marked, Index count, int rings) {
+    stamps.begin(backend, static_cast<std::size_t>(cells));
+    grow(backend, list_, static_cast<std::size_t>(cells));
+    grow(backend, counters_, 2);
+    Index *const all = counters_.data(), *const listed = all + 1;
+    ListOnce const once{stamps.data(), stamps.now(), list_.data(), all};
+    in_turn(backend, LoopStep{2, FillValue<Index>{all, 0}},
+            LoopStep{count, ListMarked{tree, marked, most_levels + 1, once}},
+            LoopStep{2, CopyValue<Index>{all, counts_.data()}});
+    CellsAtEdgesView const at_edges{tree, initial.edges, first_at_edge_.data(),
+                                    cells_at_edge_.data()};
+    Index const each = tree.layout.most_edges();
+    Index from = 0, n = told(backend)[0];
+    for (int ring = 0; ring < rings && from < n; ++ring) {
+      for (Index end = n, most = 0; from < end; from += most) {
+        most = std::min(end - from, std::numeric_limits<Index>::max() / each);
+        in_turn(backend,
+                LoopStep{most * each, ListNeighbours{at_edges, each, list_.data() + from, once}},
+                LoopStep{2, CopyValue<Index>{all, counts_.data()}});
+      }
+      n = told(backend)[0];
+    }
+    return n;
+  }
+  /// What was listed.
   [[nodiscard]] Index* list() { return list_.data(); }
 
  private:

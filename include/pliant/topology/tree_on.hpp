@@ -5,17 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
-#include <pliant/backend/read_back.hpp>
 #include <pliant/error.hpp>
 #include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/element_nodes_on.hpp>
 #include <pliant/topology/paged_tree.hpp>
+#include <pliant/topology/part_numbers.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/stamps.hpp>
 #include <pliant/topology/tree_closure.hpp>
@@ -58,7 +59,7 @@ class TreeOn {
                               !lists.converted.empty()},
         kept_(now_),
         closure_(backend, at_edges),
-        counts_(backend, 4) {}
+        number_parts_(backend) {}
 
   [[nodiscard]] TreeView view() const { return lists_.view(); }
   [[nodiscard]] TreeSizes sizes() const {
@@ -128,7 +129,7 @@ class TreeOn {
       Index const each = n <= TreeView::few ? detail::MarkDivided::parts : 1;
       backend_.for_each(n * each, detail::MarkDivided{leaves_.data(), marks, each});
     });
-    auto const totals = number_parts(n);
+    auto const totals = number_parts_(backend_, division(), parts_.data(), n, sizes());
     check(n, totals, limits);
     coarsening_.note_division(sizes());
     auto const edges = lists_.edges.extend(backend_, at(totals[1]));
@@ -161,6 +162,13 @@ class TreeOn {
     return done;
   }
 
+  /// Marked leaves and rings of leaves around them, each of which shares an edge, whole or in part, with one of the ring before: how
+  /// many, and these in the backend's memory, each once, until the next change or call. `marked`: as for `refine`.
+  std::pair<Index, Index const*> with_neighbours(Index const* marked, Index count, int rings) {
+    Index const n = closure_.neighbours(backend_, view(), size(lists_.cells), initial_, stamps_,
+                                        marked, count, rings);
+    return {n, closure_.list()};
+  }
   /// Gives marked leaves that have corners only the nodes of their kind. `marked`: as for `refine`; negative ones are none. Throws
   /// Error where there would be too many nodes; the tree is then what it was when it was kept.
   Raised raise(Index const* marked, Index count, NodesOfKinds const& to,
@@ -230,29 +238,6 @@ class TreeOn {
   static detail::LoopStep<Make> for_each_part(Index n, Make const& make) {
     return {n * Make::each, make};
   }
-  /// Finds and numbers what leaves make; returns how many nodes, edges, sides and cells that are.
-  std::array<Index, 4> number_parts(Index n) {
-    using detail::LeafParts, detail::CountOf, detail::ScanStep;
-    for (auto& before : before_) need(before, n + 1);
-    auto const planned = division();
-    auto* const parts = parts_.data();
-    auto* const nodes = before_[0].data();
-    auto* const edges = before_[1].data();
-    auto* const sides_before = before_[2].data();
-    auto* const cells = before_[3].data();
-    detail::in_turn(
-        backend_, detail::LoopStep{n, detail::ClaimShared{planned}},
-        detail::LoopStep{n, detail::FindParts{planned}},
-        ScanStep{n, CountOf<&LeafParts::nodes>{parts}, nodes},
-        ScanStep{n, CountOf<&LeafParts::edges>{parts}, edges},
-        ScanStep{n, CountOf<&LeafParts::sides>{parts}, sides_before},
-        ScanStep{n, CountOf<&LeafParts::cells>{parts}, cells},
-        detail::LoopStep{
-            n + 1, detail::NumberParts{
-                       parts, {nodes, edges, sides_before, cells}, sizes(), n, counts_.data()}});
-    backend_.synchronize();
-    return counts_.template first<4>();
-  }
   /// Throws Error, with the tree as it was, where there would be more than a limit.
   void check(Index n, std::array<Index, 4> const& more, RefinementLimits const& limits) {
     auto const check_one = [&](char const* what, Index now, Index of_these, std::size_t limit) {
@@ -286,11 +271,10 @@ class TreeOn {
   detail::Stamps<B> stamps_;  // by cell
   Index first_new_node_ = 0;
   detail::TreeClosure<B> closure_;
-  ReadBack<B, Index> counts_;
+  detail::PartNumbers<B> number_parts_;
   Array<std::uint64_t> keys_;
   Array<CellSplit> leaves_;
   Array<detail::LeafParts> parts_;
-  std::array<Array<Index>, 4> before_;
   Array<PlacedNode> made_;
   detail::ElementNodesOn<B> element_nodes_;
   detail::TreeCoarsening<B> coarsening_;

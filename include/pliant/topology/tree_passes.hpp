@@ -81,6 +81,31 @@ struct ListCoarser {
   }
 };
 
+/// Lists the leaves that share an edge, whole or in part, with listed ones. A call for each edge of a cell.
+struct ListNeighbours {
+  CellsAtEdgesView at_edges;
+  Index each;  // edges that a cell has at most
+  Index const* cells;
+  ListOnce list;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    TreeView const& tree = at_edges.tree;
+    auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+    Index const c = cells[k / each], e = k % each;
+    if (e >= tree.cells[at(c)].pattern().edges) return;
+    auto const list_at = [&](Index edge) {
+      at_edges(edge, [&](Index other) {
+        if (tree.is_leaf(other)) list(other);
+      });
+    };
+    Index const own = tree.row(c).edges[at(e)], whole = tree.edges[at(own)].parent(),
+                half = tree.edges[at(own)].first_half;
+    list_at(own);
+    if (whole >= 0 && tree.edges[at(whole)].cells.leaves() > 0) list_at(whole);
+    for (Index part = half; half >= 0 && part < half + 2; ++part) list_at(part);
+  }
+};
+
 /// Keys by which listed cells are sorted: coarser ones first, then ascending.
 struct LevelKeys {
   TreeView tree;
