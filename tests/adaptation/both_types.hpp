@@ -111,8 +111,9 @@ class ColoursOfTypes {
       colours_.push_back(upload(body.parts().backend, colours));
     });
     body.on_backend_change([this](BackendChange<Mesh<A, C>, B> const& change) {
-      colours_[0] = change.carry_elements(colours_[0]);
+      auto first = change.carry_elements(colours_, 0);
       colours_[1] = change.carry_elements(colours_, 1);
+      colours_[0] = std::move(first);
     });
   }
   [[nodiscard]] std::vector<std::vector<int>> all() const {

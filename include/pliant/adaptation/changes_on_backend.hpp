@@ -119,11 +119,13 @@ class ChangesOnBackend {
   /// told apart that is lowered and divided or merged at once, and nothing is made in part where a limit is met.
   [[nodiscard]] bool can_convert(Marked const& marked) const {
     if constexpr (!converts_on_backend<Parts>) return false;
-    if (!parts_.listeners.empty() || !parts_.backend_listeners.empty()) return false;
+    if (!parts_.listeners.empty()) return false;
     bool const divides = !Marked::none_in(marked.refine), merges = !Marked::none_in(marked.coarsen),
                raises = !Marked::none_in(marked.raise), lowers = !Marked::none_in(marked.lower);
     if (lowers && (divides || merges)) return false;
-    return divides + merges + raises + lowers == 1 || limits_.nodes == RefinementLimits{}.nodes;
+    bool const is_one = divides + merges + raises + lowers == 1;
+    return is_one ||
+           (parts_.backend_listeners.empty() && limits_.nodes == RefinementLimits{}.nodes);
   }
   /// Nothing where conditions forbid some of it; then nothing has changed. Merges these in place of those that are marked.
   std::optional<Done> make(Marked const& marked, Lists const& coarsen) {
@@ -232,16 +234,16 @@ class ChangesOnBackend {
         std::same_as<ChangeOfTree, Raised> || std::same_as<ChangeOfTree, Lowered>;
     using Changed = std::conditional_t<converts, ConvertedPartsOn<Parts>, ChangedPartsOn<Parts>>;
     auto const kept = std::exchange(parts_.topology_on, nullptr);  // gone where something throws
-    if constexpr (!converts) there_.begin(*kept);
+    there_.begin(*kept);
     commit_change(parts_, action, count, [&] {
       Changed parts(parts_, kept, is_planned ? planned_ : MeshOnHost<M>{});
       auto changed = make(parts);
       // Patches are there now, beside whose plans this takes longer.
       for (auto& numbers : kept->numbers) numbers.follow(backend(), kept->tree, done);
-      if constexpr (!converts) there_.follow(*kept, done, changed.parts);
+      there_.follow(*kept, done, changed.parts);
       return changed;
     });
-    if constexpr (!converts) there_.keep();
+    there_.keep();
     kept->tree.keep();
     ++kept->on_host.version;
     ++kept->on_host.changes;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -12,7 +13,7 @@
 namespace pliant::detail {
 
 /// What became of nodes and elements in changes of a body's mesh in its backend's memory, if somebody listens to these: elements are
-/// merged, or refined, or both, in this order.
+/// merged, or refined, or both, in this order; or they are raised, or lowered.
 template <class Parts>
 class ChangesThere {
   using B = typename Parts::backend_type;
@@ -38,12 +39,18 @@ class ChangesThere {
   template <class Done>
   void follow(On const& on, Done const& done, Parts const& next) {
     if (!pending_) return;
-    pending_->nodes = nodes_after(on, done);
-    on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
-      (pending_->elements[I].follow(parts_.backend, on.element_numbers(I),
-                                    merged_elements<I>(on, parts_.layout, next.layout)),
-       ...);
-    });
+    if constexpr (std::derived_from<Done, Coarsened>)
+      pending_->nodes = nodes_behind(done);
+    else
+      pending_->nodes = nodes_after(on, done);
+    if constexpr (std::same_as<Done, Raised> || std::same_as<Done, Lowered>)
+      return follow_conversion(on);
+    else
+      on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
+        (pending_->elements[I].follow(parts_.backend, on.element_numbers(I),
+                                      merged_elements<I>(on, parts_.layout, next.layout)),
+         ...);
+      });
   }
   /// When it is in force.
   void keep() {
@@ -61,18 +68,36 @@ class ChangesThere {
   }
 
  private:
+  void follow_conversion(On const& on) {
+    auto& elements = pending_->elements;
+    on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
+      auto const follow = [&](std::size_t type) {
+        std::size_t const other = On::converted_types[type];
+        elements[type].follow_conversion(parts_.backend, on.element_numbers(type),
+                                         places_of_converted(on.leaves(type), on.leaves(other)),
+                                         other, elements[other]);
+      };
+      (follow(I), ...);
+    });
+    for (auto& own : elements) own.forget_before();
+  }
   /// The numbers are a copy, since the tree is gone where what is refined behind it fails.
-  ChangedNodesOn<B> nodes_after(On const&, Coarsened const& merged) const {
+  ChangedNodesOn<B> nodes_behind(Coarsened const& merged) const {
     auto const moved = static_cast<std::size_t>(merged.before.nodes - merged.staying.nodes);
     auto numbers =
         std::make_shared<typename B::template Array<Index>>(unset<Index>(parts_.backend, moved));
     copy_values<B, Index>(parts_.backend, merged.nodes, numbers->data(), moved);
     return {merged.before.nodes, merged.now.nodes, merged.staying.nodes, std::move(numbers)};
   }
-  ChangedNodesOn<B> nodes_after(On const& on, typename TreeOn<B>::Refined const& refined) const {
+  /// A TreeOn::Refined or Raised.
+  template <class Made>
+  ChangedNodesOn<B> nodes_after(On const& on, Made const& made) const {
     Index const now = on.tree.sizes().nodes;
-    return {
-        .before = now - refined.new_nodes, .now = now, .tree = on.tree.view(), .refined = refined};
+    return {.before = now - made.new_nodes,
+            .now = now,
+            .tree = on.tree.view(),
+            .new_nodes = made.new_nodes,
+            .made = made.nodes};
   }
 
   Parts const& parts_;

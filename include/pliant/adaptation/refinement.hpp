@@ -114,8 +114,10 @@ RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked
   if (options.ring < 0)
     throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
   MarkedElements const wanted{.raise = marked, .raised_rings = options.ring};
-  if (auto const done = detail::change_on_backend(body.parts(), wanted, most_levels))
+  if (auto const done = detail::change_on_backend(body.parts(), wanted, most_levels)) {
+    tell_listeners(body.parts(), done->to_tell);
     return {done->counts.raised, done->new_nodes};
+  }
   auto const plan = plan_change(body.parts(), wanted);
   if (!plan) return {};
   commit(body.parts(), *plan);
@@ -132,8 +134,10 @@ LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marke
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("lower", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.lower = marked}, most_levels))
+  if (auto const done = detail::change_on_backend(body.parts(), {.lower = marked}, most_levels)) {
+    tell_listeners(body.parts(), done->to_tell);
     return {done->counts.lowered, done->gone_nodes};
+  }
   auto const plan = plan_change(body.parts(), {.lower = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);

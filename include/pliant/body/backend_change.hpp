@@ -117,10 +117,10 @@ class BackendChange {
   }
   template <Element... Es, class U>
   void fill_new_nodes(Mesh<Es...>*, U* values, int components) const {
-    auto const& refined = there_->nodes.refined;
-    (backend_.for_each(refined.new_nodes,
-                       detail::CarryNewNodes<Es, U>{there_->nodes.tree, refined.nodes,
-                                                    sizeof...(Es) > 1, components, values}),
+    auto const& nodes = there_->nodes;
+    (backend_.for_each(nodes.new_nodes,
+                       detail::CarryNewNodes<Es, U>{nodes.tree, nodes.made, sizeof...(Es) > 1,
+                                                    components, values}),
      ...);
   }
   /// `before`(type): the values of the elements of a type before the change.
@@ -136,7 +136,12 @@ class BackendChange {
                     "; give the array from before it");
       return values;
     };
-    if (there_ != nullptr) return there_->elements.at(type).carry(backend_, checked(type), width);
+    if (there_ != nullptr) {
+      auto const& own = there_->elements.at(type);
+      auto const& values = checked(type);
+      return own.carry(backend_, values, width,
+                       own.come_from_others() ? checked(own.other_type).data() : nullptr);
+    }
     std::deque<std::vector<U>> lists;
     return upload(backend_, transfer_->carry_elements_from(
                                 [&](std::size_t old_type) -> std::vector<U> const& {

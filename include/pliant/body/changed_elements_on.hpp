@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/element_numbers_on.hpp>
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/body/merged_elements.hpp>
@@ -57,6 +58,19 @@ struct ListMergedFamilies {
         members[most * r + k] = -1;
   }
 };
+/// The same of elements of which some were of another type: their numbers there; −1: they were not.
+struct FindConvertedOrigins {
+  ElementNumbersView now;
+  PlacesOfConverted places;
+  Index const *number_before, *number_before_of_others;  // by the place before
+  Index *from, *from_others;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const e = now.number(i);
+    bool const is_other = places.now.comes_from_others(i);
+    from[e] = is_other ? -1 : number_before[places.now.from(i)];
+    from_others[e] = is_other ? number_before_of_others[places(i)] : -1;
+  }
+};
 /// Where elements come from in two changes, one behind the other, of which the second divides nothing that the first merged.
 struct ComposeOrigins {
   Index const* first;
@@ -73,10 +87,15 @@ struct CarryElementValues {
   std::ptrdiff_t width;
   U const* before;
   U* now;
+  Index const* from_others;  // null: none were of another type
+  U const* others;           // before, of that type
 
   PLIANT_HOST_DEVICE void operator()(Index e) const {
+    Index const other = from_others != nullptr ? from_others[e] : -1;
     for (std::ptrdiff_t c = 0; c < width; ++c)
-      now[width * e + c] = from[e] >= 0 ? of(from[e], c) : merged(-1 - from[e], c);
+      now[width * e + c] = other >= 0     ? others[width * other + c]
+                           : from[e] >= 0 ? of(from[e], c)
+                                          : merged(-1 - from[e], c);
   }
 
  private:
@@ -144,6 +163,22 @@ class ElementOriginsOn {
     }
     number_before_ = {};
   }
+  /// Behind one that gave elements another degree, so that some were of type `other` before.
+  void follow_conversion(B const& backend, ElementNumbersView const& numbers,
+                         PlacesOfConverted const& places, std::size_t other,
+                         ElementOriginsOn const& others) {
+    now = places.now.count;
+    other_type = other;
+    from_ = unset<Index>(backend, at(now));
+    from_others_ = unset<Index>(backend, at(now));
+    backend.for_each(
+        now, FindConvertedOrigins{numbers, places, number_before_.data(),
+                                  others.number_before_.data(), from_.data(), from_others_.data()});
+  }
+  void forget_before() { number_before_ = {}; }
+  /// Whether some were of another type, `other_type`: then there are more than before.
+  [[nodiscard]] bool come_from_others() const { return from_others_.size() > 0 && now > before; }
+  std::size_t other_type = 0;
   /// Becomes that of two changes: `first`, and behind it this one, which merged nothing.
   void follow_on(B const& backend, ElementOriginsOn&& first) {
     backend.for_each(now, ComposeOrigins{first.from_.data(), from_.data()});
@@ -152,12 +187,15 @@ class ElementOriginsOn {
     shares_ = std::move(first.shares_);
   }
 
-  /// Values of elements: (now, width), of those (before, width).
+  /// Values of elements: (now, width), of those (before, width), and of those of the other type, or null.
   template <class U>
-  [[nodiscard]] Array<U> carry(B const& backend, Array<U> const& values, int width) const {
+  [[nodiscard]] Array<U> carry(B const& backend, Array<U> const& values, int width,
+                               U const* others = nullptr) const {
     auto carried = unset<U>(backend, at(now) * at(width));
-    backend.for_each(now, CarryElementValues<U>{from_.data(), members_.data(), shares_.data(),
-                                                most_, width, values.data(), carried.data()});
+    backend.for_each(
+        now, CarryElementValues<U>{from_.data(), members_.data(), shares_.data(), most_, width,
+                                   values.data(), carried.data(),
+                                   others != nullptr ? from_others_.data() : nullptr, others});
     return carried;
   }
 
@@ -166,6 +204,7 @@ class ElementOriginsOn {
 
   Array<Index> number_before_;  // by the place, until the change is made
   Array<Index> from_;           // (now): see FindElementOrigins
+  Array<Index> from_others_;    // (now): see FindConvertedOrigins
   Array<Index> members_;        // (families, most_): see ListMergedFamilies
   Array<double> shares_;
   Index most_ = 1;

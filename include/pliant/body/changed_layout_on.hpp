@@ -131,7 +131,7 @@ class ChangedLayoutOn {
           std::array<int, std::size_t{values_of_each}> column{};
           std::ranges::copy(places_of_values<Table<J>, Table<I>>(), column.begin());
           backend_.for_each(leaves.count,
-                            ConvertValues<T, column.size()>{
+                            ConvertValues<T, std::size_t{values_of_each}>{
                                 places, std::get<J>(parts_.layout.tables).values.data(),
                                 table.values.data(), column});
         });

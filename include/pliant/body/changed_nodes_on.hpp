@@ -13,7 +13,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Nodes of a mesh that was changed in a backend's memory: those that stay, and behind them those that a refinement made.
+/// Nodes of a mesh that was changed in a backend's memory: those that stay, and behind them those that a refinement made, or raising.
 template <Backend B>
 struct ChangedNodesOn {
   Index before = 0, now = 0;  // how many there were, and are
@@ -21,7 +21,8 @@ struct ChangedNodesOn {
   std::shared_ptr<typename B::template Array<Index>>
       numbers{};    // from that one on; null: all keep theirs
   TreeView tree{};  // with the new nodes
-  typename TreeOn<B>::Refined refined{};
+  Index new_nodes = 0;
+  PlacedNode const* made = nullptr;  // (new_nodes)
 
   [[nodiscard]] NewNumbers new_numbers() const {
     return {numbers ? first_moved : before, numbers ? numbers->data() : nullptr};
