@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdlib>
 #include <sstream>
+#include <string>
 
 #include "adaptation/both_types.hpp"
 
@@ -168,6 +170,198 @@ TEST_CASE("what points keep and laws read goes along where a body's backend rais
     };
     check(mesh::with_types<Quad4, Quad9>(distorted_mesh<Quad4>(5)));
     check(mesh::with_types<Tet4, Tet10>(distorted_mesh<Tet4>(2)));
+  });
+}
+
+/// Marks of all sorts, of which each element has one at most; so many in 16 are to be merged.
+template <class TheBody>
+MarkedElements marks_of_all_sorts(TheBody const& body, std::size_t merged, Random& random) {
+  MarkedElements marked{
+      .refine = {{}, {}}, .coarsen = {{}, {}}, .raise = {{}, {}}, .lower = {{}, {}}};
+  std::size_t type = 0;
+  body.parts().for_each_type([&](auto const& table, auto const&) {
+    auto& converted = type == 0 ? marked.raise : marked.lower;
+    for (Index e = 0; e < table.count(); ++e) {
+      auto const which = random.below(16);
+      if (which == 0)
+        marked.refine[type].push_back(e);
+      else if (which <= merged)
+        marked.coarsen[type].push_back(e);
+      else if (which < 14)
+        converted[type].push_back(e);
+    }
+    ++type;
+  });
+  return marked;
+}
+
+TEST_CASE("a body's backend makes changes of all sorts at once as the host does", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    auto const check = [&]<Element A, Element C>(Mesh<A, C> const& mesh) {
+      BothTypes<A, C, B> both(backend, mesh);
+      int kept = 0;  // cells that would have been lowered, had they not been divided beside others
+      std::size_t merged = 0;
+      for (int round = 0; round < 12; ++round) {
+        auto const marked = marks_of_all_sorts(both.host, round % 3 == 2 ? 12 : 3, both.random);
+        auto const plan = plan_change(std::as_const(both.host.parts()), marked, 2);
+        auto const done = detail::change_on_backend(both.body.parts(), marked, 2);
+        REQUIRE(plan.has_value());
+        REQUIRE(done.has_value());
+        commit(both.host.parts(), *plan);
+        auto const &counts = done->counts, &wanted = plan->counts;
+        CHECK(counts.refined == wanted.refined);
+        CHECK(counts.coarsened == wanted.coarsened);
+        CHECK(counts.raised == wanted.raised);
+        CHECK(counts.lowered == wanted.lowered);
+        kept += counts.lowered < marked.lower[1].size();
+        merged += counts.coarsened;
+        both.check_place();
+        CHECK(both.body.mesh().nodes == both.host.mesh().nodes);
+        CHECK(both.body.mesh().tables == both.host.mesh().tables);
+        CHECK(both.body.mesh().boundaries == both.host.mesh().boundaries);
+        CHECK(both.body.parts().layout.own_masses() == both.host.parts().layout.own_masses());
+        auto const entry = ledger(both.body).back(), other = ledger(both.host).back();
+        CHECK(entry.action == other.action);
+        CHECK(entry.elements == other.elements);
+        both.go_on_alike();
+      }
+      CHECK(kept > 0);
+      CHECK(merged > 0);
+    };
+    check(mesh::with_types<Tri3, Tri6>(distorted_mesh<Tri3>(4)));
+    check(mesh::with_types<Tet4, Tet10>(distorted_mesh<Tet4>(2)));
+  });
+}
+
+/// The place of an element's middle along x, where a body is at rest.
+struct MiddleAlongX {
+  template <class State>
+  PLIANT_HOST_DEVICE auto operator()(State const& e) const {
+    constexpr int nodes = State::formulation::nodes;
+    auto sum = e.rest(0, 0);
+    for (int a = 1; a < nodes; ++a) sum = sum + e.rest(a, 0);
+    return builtin_scalar<decltype(sum)>(1.0 / nodes) * sum;
+  }
+};
+
+TEST_CASE("rules raise rings and lower in a backend's memory as by the host", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    auto const check = [&]<Element A, Element C>(Mesh<A, C> const& mesh) {
+      BothTypes<A, C, B> both(backend, mesh);
+      std::size_t most = 0;
+      for (double const edge : {-0.3, 0.0, 0.3}) {
+        auto const count = [&](auto& body) { return body.template groups_of<C>().size(); };
+        auto const adapt = [&](auto& body) {
+          Adaptation{when<Soft<A>>(MiddleAlongX{}).above(edge).raise({.ring = 1}),
+                     when<Soft<C>>(MiddleAlongX{}).below(edge - 0.2).lower(),
+                     when<Soft<A>>(MiddleAlongX{}).below(-0.4).refine({.max_level = 1})}
+              .now(body);
+        };
+        adapt(both.body);
+        adapt(both.host);
+        both.check_place();
+        both.check_all();
+        most = std::max(most, count(both.host));
+      }
+      CHECK(most > 5);
+      CHECK(both.body.template groups_of<C>().size() != most);
+    };
+    check(mesh::with_types<Quad4, Quad9>(distorted_mesh<Quad4>(6)));
+    check(mesh::with_types<Tet4, Tet10>(distorted_mesh<Tet4>(2)));
+  });
+}
+
+/// How many actions: PLIANT_CHANGES in the environment, or so many.
+inline int actions(int usual) {
+  auto const* const asked = std::getenv("PLIANT_CHANGES");
+  return asked != nullptr ? std::atoi(asked) : usual;
+}
+
+template <Element A, Element C, class B>
+void check_storm(B const& backend, Mesh<A, C> const& mesh) {
+  BothTypes<A, C, B> both(backend, mesh);
+  auto const first = both.body.mesh();
+  auto const masses = both.body.parts().layout.own_masses();
+  Random random(11);
+  auto const some = [&](bool raises) {
+    auto marked = random_marks(both.host, random, 2 + random.below(8));
+    marked[raises ? 1 : 0].clear();
+    return marked;
+  };
+  int there = 0;
+  for (int k = 0; k < actions(40); ++k) {
+    auto const action = random.below(8);
+    INFO("action " << action);
+    if (action < 2) {
+      auto const marked = some(true);
+      int const ring = static_cast<int>(random.below(2));
+      CHECK(raise(both.body, marked, {.ring = ring}).raised ==
+            raise(both.host, marked, {.ring = ring}).raised);
+    } else if (action < 4) {
+      auto const marked = some(false);
+      CHECK(lower(both.body, marked).gone_nodes == lower(both.host, marked).gone_nodes);
+    } else if (action == 4) {
+      auto const marked = random_marks(both.host, random, 2 + random.below(8));
+      CHECK(refine(both.body, marked, 2).new_nodes == refine(both.host, marked, 2).new_nodes);
+    } else if (action == 5) {
+      auto marked = random_marks(both.host, random, 1);
+      for (auto& list : marked) std::erase_if(list, [&](Index) { return random.below(9) == 0; });
+      CHECK(coarsen(both.body, marked).merged == coarsen(both.host, marked).merged);
+    } else if (action == 6) {
+      std::stringstream saved(std::ios::in | std::ios::out | std::ios::binary);
+      both.body.save(saved);
+      std::stringstream again(saved.str(), std::ios::in | std::ios::binary);
+      both.body.load(saved);
+      both.host.load(again);
+      change_on_host(both.host);
+    } else {
+      auto const marked = some(true);
+      auto const nodes = static_cast<std::size_t>(both.host.nodes()) + 1;
+      auto const words = [&](auto& body) -> std::string {
+        set_mesh_limits(body, {.nodes = nodes});
+        try {
+          return std::to_string(raise(body, marked).raised);
+        } catch (Error const& error) {
+          return error.what();
+        }
+      };
+      CHECK(words(both.body) == words(both.host));
+      for (auto* one : {&both.body, &both.host}) set_mesh_limits(*one, {});
+    }
+    there += is_on_backend(both.body);
+    if (k % 4 == 3) {
+      both.check_all();
+      both.go_on_alike();
+    }
+  }
+  CHECK(there > actions(40) / 2);
+  auto const all = [](auto const& body) {
+    Marks marks;
+    body.parts().for_each_type([&](auto const& table, auto const&) {
+      auto& list = marks.emplace_back();
+      for (Index e = 0; e < table.count(); ++e) list.push_back(e);
+    });
+    return marks;
+  };
+  auto quadratic = all(both.body);
+  quadratic[0].clear();
+  lower(both.body, quadratic);
+  while (coarsen(both.body, all(both.body)).merged > 0) {
+  }
+  REQUIRE(is_on_backend(both.body));
+  CHECK(both.body.mesh().nodes == first.nodes);
+  CHECK(both.body.mesh().tables == first.tables);
+  CHECK(both.body.mesh().boundaries == first.boundaries);
+  CHECK(both.body.parts().layout.own_masses() == masses);
+}
+
+TEST_CASE("a storm of changes of degree and mesh in a backend's memory leads back",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_storm(backend, mesh::with_types<Tri3, Tri6>(distorted_mesh<Tri3>(4)));
+    check_storm(backend, mesh::with_types<Quad4, Quad8>(distorted_mesh<Quad4>(4)));
+    check_storm(backend, mesh::with_types<Tet4, Tet10>(distorted_mesh<Tet4>(2)));
+    check_storm(backend, mesh::with_types<Hex8, Hex27>(distorted_mesh<Hex8>(2)));
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <memory>
@@ -8,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/adaptation/cells_to_change.hpp>
 #include <pliant/adaptation/changes_there.hpp>
 #include <pliant/adaptation/commit.hpp>
 #include <pliant/adaptation/mesh_marks.hpp>
-#include <pliant/adaptation/refined_again.hpp>
 #include <pliant/backend/host_threads.hpp>
 #include <pliant/body/changed_parts_on.hpp>
 #include <pliant/body/converted_parts_on.hpp>
@@ -115,17 +116,19 @@ class ChangesOnBackend {
     return merged;
   }
 
-  /// Whether the change is one that the backend makes where elements get another degree: nobody is told of it, nothing has to be
-  /// told apart that is lowered and divided or merged at once, and nothing is made in part where a limit is met.
+  /// Whether the backend makes the change where elements get another degree: a listener gets it from the host, or by itself; and no
+  /// node may have to stay behind a change that was made.
   [[nodiscard]] bool can_convert(Marked const& marked) const {
     if constexpr (!converts_on_backend<Parts>) return false;
     if (!parts_.listeners.empty()) return false;
-    bool const divides = !Marked::none_in(marked.refine), merges = !Marked::none_in(marked.coarsen),
-               raises = !Marked::none_in(marked.raise), lowers = !Marked::none_in(marked.lower);
-    if (lowers && (divides || merges)) return false;
-    bool const is_one = divides + merges + raises + lowers == 1;
-    return is_one ||
-           (parts_.backend_listeners.empty() && limits_.nodes == RefinementLimits{}.nodes);
+    bool const lowers = !Marked::none_in(marked.lower);
+    bool const is_one = lowers + !Marked::none_in(marked.refine) +
+                            !Marked::none_in(marked.coarsen) + !Marked::none_in(marked.raise) ==
+                        1;
+    if (is_one) return true;
+    auto const names_nodes = [](auto const& condition) { return condition.facets.empty(); };
+    return parts_.backend_listeners.empty() &&
+           !(lowers && std::ranges::any_of(parts_.state.prescribed->conditions, names_nodes));
   }
   /// Nothing where conditions forbid some of it; then nothing has changed. Merges these in place of those that are marked.
   std::optional<Done> make(Marked const& marked, Lists const& coarsen) {
@@ -141,18 +144,18 @@ class ChangesOnBackend {
   std::optional<Done> change(Marked const& marked, Lists const& coarsen) {
     Done done;
     auto& counts = done.counts;
-    auto to_refine = cells_of(marked.refine), to_merge = cells_of(coarsen),
-         to_raise = cells_of(marked.raise);
-    if (marked.raised_rings > 0 && to_raise.size() > 0) {
-      auto const [n, cells] =
-          on().tree.with_neighbours(to_raise.data(), size(to_raise), marked.raised_rings);
-      to_raise = unset<Index>(backend(), static_cast<std::size_t>(n));
-      copy_values<B, Index>(backend(), cells, to_raise.data(), to_raise.size());
+    CellsToChange<B> cells{cells_of(marked.refine), cells_of(coarsen), cells_of(marked.lower),
+                           cells_of(marked.raise)};
+    if (marked.raised_rings > 0 && cells.raise.size() > 0) {
+      auto const [n, with_rings] =
+          on().tree.with_neighbours(cells.raise.data(), size(cells.raise), marked.raised_rings);
+      cells.raise = unset<Index>(backend(), static_cast<std::size_t>(n));
+      copy_values<B, Index>(backend(), with_rings, cells.raise.data(), cells.raise.size());
     }
-    if (!plan_ && to_refine.size() > 0 && to_merge.size() > 0)
-      leave_what_is_refined(backend(), on().tree, to_refine, to_merge, limits_);
-    if (to_merge.size() > 0) {
-      auto const merged = on().tree.coarsen(to_merge.data(), size(to_merge));
+    if (!plan_ && cells.need_trial(limits_))
+      cells.leave_what_is_refined(backend(), on().tree, nodes_when_raised<M>(), limits_);
+    if (cells.merge.size() > 0) {
+      auto const merged = on().tree.coarsen(cells.merge.data(), size(cells.merge));
       if (merged.merged > 0) {
         if (!on().held.coarsen(backend(), on().tree, merged, on().rows.of_node())) {
           on().tree.take_back();
@@ -160,8 +163,7 @@ class ChangesOnBackend {
         }
         counts.coarsened = static_cast<std::size_t>(merged.merged);
         done.gone_nodes = static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
-        renumber(backend(), to_refine, merged);
-        renumber(backend(), to_raise, merged);
+        cells.renumber(backend(), merged);
         bool const is_all = plan_ && plan_->counts.refined == 0;
         auto parents = plan_ && !is_all ? parents_of(merged) : std::vector<Index>{};
         commit("coarsen", counts.coarsened, merged, is_all,
@@ -170,10 +172,9 @@ class ChangesOnBackend {
       }
     }
     if constexpr (converts_on_backend<Parts>)
-      if (!Marked::none_in(marked.lower) && !lower(cells_of(marked.lower), done))
-        return std::nullopt;
-    if (to_refine.size() > 0) {
-      auto const refined = on().tree.refine(to_refine.data(), size(to_refine), limits_);
+      if (cells.lower.size() > 0 && !lower(cells.lower, done)) return std::nullopt;
+    if (cells.refine.size() > 0) {
+      auto const refined = on().tree.refine(cells.refine.data(), size(cells.refine), limits_);
       if (refined.leaves > 0) {
         counts.refined = static_cast<std::size_t>(refined.leaves);
         done.new_nodes = static_cast<std::size_t>(refined.new_nodes);
@@ -183,7 +184,7 @@ class ChangesOnBackend {
       }
     }
     if constexpr (converts_on_backend<Parts>)
-      if (to_raise.size() > 0) raise(to_raise, done);
+      if (cells.raise.size() > 0) raise(cells.raise, done);
     enter_as_one(counts);
     done.to_tell.there = there_.take();
     return done;

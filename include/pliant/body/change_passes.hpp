@@ -24,47 +24,57 @@ struct RenumberCells {
   Index* cells;
   PLIANT_HOST_DEVICE void operator()(Index k) const { cells[k] = numbers(cells[k]); }
 };
-/// The place of a merged cell among the parents, which ascend; negative: it is none. `number_of`(parent): by what it is told.
-template <class NumberOf>
-PLIANT_HOST_DEVICE Index place_among(Index const* parents, Index count, Index cell,
-                                     NumberOf const& number_of) {
+/// The place of a cell among some, which ascend; negative: it is none.
+PLIANT_HOST_DEVICE Index place_among(Index const* cells, Index count, Index cell) {
   Index low = 0, high = count;
   while (low < high) {
     Index const middle = low + (high - low) / 2;
-    if (number_of(parents[middle]) < cell)
+    if (cells[middle] < cell)
       low = middle + 1;
     else
       high = middle;
   }
-  return low < count && number_of(parents[low]) == cell ? low : -1;
+  return low < count && cells[low] == cell ? low : -1;
 }
-/// Notes which of the merged cells are refined again.
-struct FindMergedAgain {
-  CellSplit const* refined;
-  Index const* parents;  // old numbers
-  NewNumbers numbers;
+/// Cells in ascending order, and which of them a refinement divides.
+struct DividedCells {
+  Index const* cells;
   Index count;
-  Index* again;  // (count), and behind them whether there are any
+  Index* divided;  // (count), and behind them whether any is
+
+  /// Whether a cell is one of them and is divided.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool operator()(Index cell) const {
+    Index const place = place_among(cells, count, cell);
+    return place >= 0 && divided[place] != 0;
+  }
+};
+/// Notes which are divided; `now`: the numbers that they have then, which ascend too.
+struct FindDivided {
+  CellSplit const* refined;
+  Index const* now;
+  DividedCells of;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    Index const k = place_among(parents, count, refined[r].cell, numbers);
+    Index const k = place_among(now, of.count, refined[r].cell);
     if (k < 0) return;
-    atomic_store(again[k], 1);
-    atomic_store(again[count], 1);
+    atomic_store(of.divided[k], 1);
+    atomic_store(of.divided[of.count], 1);
   }
 };
 /// Whether a marked cell is of no family that would be divided again.
 struct IsMergedForGood {
   TreeView tree;
   Index const* cells;
-  Index const* parents;
-  Index count;
-  Index const* again;
+  DividedCells families;
   PLIANT_HOST_DEVICE bool operator()(Index k) const {
     Index const parent = tree.cells[static_cast<std::size_t>(cells[k])].parent;
-    auto const same = [](Index own) { return own; };
-    Index const place = parent < 0 ? -1 : place_among(parents, count, parent, same);
-    return place < 0 || again[place] == 0;
+    return parent < 0 || !families(parent);
   }
+};
+/// Whether a cell would not be divided.
+struct IsLoweredForGood {
+  Index const* cells;
+  DividedCells lowered;
+  PLIANT_HOST_DEVICE bool operator()(Index k) const { return !lowered(cells[k]); }
 };
 /// Where a new node is at rest.
 template <class T, int Dim>
@@ -109,5 +119,37 @@ Array extended(B const& backend, Array const& from, std::size_t count) {
   copies.make();
   return longer;
 }
+
+/// Cells of which a trial tells which are divided.
+template <Backend B>
+class Divided {
+ public:
+  /// Of those in a list, ascending, which may go with the next change; `numbers`: that they have by now.
+  Divided(B const& backend, Index const* cells, Index count, NewNumbers const& numbers)
+      : cells_(unset<Index>(backend, static_cast<std::size_t>(count))),
+        divided_(zeros<Index>(backend, static_cast<std::size_t>(count) + 1)) {
+    if (count == 0) return;
+    copy_values<B, Index>(backend, cells, cells_.data(), cells_.size());
+    now_ = extended(backend, cells_, cells_.size());
+    backend.for_each(count, RenumberCells{numbers, now_.data()});
+  }
+  /// Waits.
+  template <class Refined>
+  void find(B const& backend, Refined const& refined) {
+    if (cells_.size() == 0) return;
+    backend.for_each(refined.leaves, FindDivided{refined.cells, now_.data(), listed()});
+    auto any = zeros<Index>(backend, 1);
+    copy_values<B, Index>(backend, divided_.data() + cells_.size(), any.data(), 1);
+    any_ = download<Index>(any)[0] != 0;
+  }
+  [[nodiscard]] bool any() const { return any_; }
+  [[nodiscard]] DividedCells listed() {
+    return {cells_.data(), static_cast<Index>(cells_.size()), divided_.data()};
+  }
+
+ private:
+  typename B::template Array<Index> cells_, now_, divided_;
+  bool any_ = false;
+};
 
 }  // namespace pliant::detail

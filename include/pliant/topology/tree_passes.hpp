@@ -35,7 +35,7 @@ struct ListOnce {
   }
 };
 
-/// Lists marked leaves below a level.
+/// Lists marked leaves below a level; negative ones are none.
 struct ListMarked {
   TreeView tree;
   Index const* marked;
@@ -43,6 +43,7 @@ struct ListMarked {
   ListOnce list;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (marked[k] < 0) return;
     auto const& cell = tree.cells[static_cast<std::size_t>(marked[k])];
     if (cell.first_child < 0 && cell.level < max_level) list(marked[k]);
   }
