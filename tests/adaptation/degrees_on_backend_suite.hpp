@@ -10,6 +10,9 @@
 namespace pliant::test::degrees_on_backend_suite {
 using namespace two_bodies;
 
+static_assert(detail::degrees_are_paired<Mesh<Quad4, Tri3, Quad9, Tri6>>);
+static_assert(!detail::degrees_are_paired<Mesh<Quad4, Quad8, Quad9>>);
+
 /// Raises one in two elements of the first type, and gives the other body the same.
 template <Element A, Element C, class B>
 void raise_some(BothTypes<A, C, B>& both) {
@@ -268,6 +271,55 @@ TEST_CASE("rules raise rings and lower in a backend's memory as by the host", "[
     };
     check(mesh::with_types<Quad4, Quad9>(distorted_mesh<Quad4>(6)));
     check(mesh::with_types<Tet4, Tet10>(distorted_mesh<Tet4>(2)));
+  });
+}
+
+TEST_CASE("what a backend does not give another degree by itself, the host does", "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    auto const mesh = mesh::with_types<Quad4, Quad9>(distorted_mesh<Quad4>(4));
+    {  // a listener gets what the host knows
+      BothTypes<Quad4, Quad9, B> both(backend, mesh);
+      Index told = 0;
+      both.body.on_change([&](auto const& change) { told = change.transfer.nodes(); });
+      raise(both.body, {{1, 2}, {}});
+      raise(both.host, {{1, 2}, {}});
+      both.check_all();
+      CHECK(told == both.host.nodes());
+      lower(both.body, {{}, {0}});
+      lower(both.host, {{}, {0}});
+      both.check_all();
+      CHECK(told == both.host.nodes());
+    }
+    {  // a node that a condition names stays
+      BothTypes<Quad4, Quad9, B> both(backend, mesh);
+      for (auto* one : {&both.body, &both.host}) raise(*one, {{0, 1, 2, 3}, {}});
+      both.check_place();
+      both.check_all();
+      Index const middle = both.host.nodes() - 1;
+      for (auto* one : {&both.body, &both.host}) {
+        one->hold(std::vector<Index>{middle}, 1);
+        CHECK(lower(*one, {{}, {0, 1, 2, 3}}).lowered == 3);
+      }
+      both.check_all();
+    }
+    {  // what a law without its like keeps has to be brought to rest
+      auto const made = [&](bool on_host) {
+        Body body{backend, mesh, soft, Group<Soft<Quad4>>{},
+                  Group<Viscous<Quad9>>{
+                      typename Viscous<Quad9>::template law<double>{{3, 2}, {0.5}, {0.1}}}};
+        std::vector<Point<2>> u(mesh.nodes.size());
+        for (std::size_t k = 0; k < u.size(); ++k) u[k] = {0.1 * mesh.nodes[k][1], 0};
+        body.set_displacements(u);
+        if (on_host) change_on_host(body);
+        raise(body, {{0, 3, 4}, {}});
+        return body;
+      };
+      auto body = made(false), host = made(true);
+      check_same(body, host, std::numeric_limits<typename B::scalar>::epsilon());
+      auto const& table = std::get<1>(host.parts().layout.tables);
+      auto const kept = table.in_user_order(std::get<1>(host.state().elements).internal_variables);
+      CHECK(std::ranges::any_of(kept, [](double x) { return x != 0; }));
+    }
   });
 }
 
