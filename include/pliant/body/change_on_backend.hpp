@@ -76,7 +76,8 @@ template <class M>
 NodesOfKinds nodes_when_raised() {
   NodesOfKinds to;
   for_each_type_of<M>([&]<Element E>(E, std::size_t) {
-    if constexpr (constexpr auto type = converted_type<E, M>; E::degree == 1 && type != no_type)
+    constexpr std::size_t type = converted_type<E, M>;
+    if constexpr (E::degree == 1 && type != no_type)
       to.by_kind[static_cast<std::size_t>(kind_of<typename E::cell>)] =
           nodes_on_cell<typename ElementOfType<M, type>::type>;
   });

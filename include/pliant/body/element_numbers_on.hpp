@@ -12,6 +12,7 @@
 #include <pliant/body/leaf_order_on.hpp>
 #include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/refinement_results.hpp>
+#include <pliant/topology/rows_of_element.hpp>
 #include <pliant/topology/tree_on.hpp>
 
 namespace pliant {

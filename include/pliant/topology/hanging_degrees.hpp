@@ -6,6 +6,7 @@
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/hanging_view.hpp>
 

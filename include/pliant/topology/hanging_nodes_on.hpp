@@ -53,8 +53,8 @@ class HangingNodesOn {
     counts_.set_all(0);
     if (tree.mixes_degrees()) return find_of_degrees(tree);
     detail::HangingView<Dim> const view{tree.view()};
-    select(tree.sizes().edges, detail::IsHungOnEdge<Dim>{view}, edges_, of_edges);
-    select(sides_of(tree), detail::IsHungOnSide<Dim>{view}, sides_, of_sides);
+    select(tree.sizes().edges, detail::IsHungOnEdge<Dim>{view}, edges_, edges_at);
+    select(sides_of(tree), detail::IsHungOnSide<Dim>{view}, sides_, sides_at);
     knows_all_ = true;
   }
   /// The same after a refinement: looks at what hung before it, and at what was refined.
@@ -124,14 +124,14 @@ class HangingNodesOn {
   /// How many edges, sides and cells were found.
   [[nodiscard]] Index count_found() const {
     auto const found = counts_.template first<3>();
-    return found[of_edges] + found[of_sides] + found[of_cells];
+    return found[edges_at] + found[sides_at] + found[cells_at];
   }
   /// Numbers the slaves, and asks how many masters they have.
   void find_masters(TreeOn<B> const& tree) {
     Index const places = count_found(), nodes = tree.sizes().nodes;
     auto const found = counts_.template first<2>();
-    edge_count_ = found[of_edges];
-    side_count_ = found[of_sides];
+    edge_count_ = found[edges_at];
+    side_count_ = found[sides_at];
     auto const hung = hung_on(tree);
     std::swap(nodes_, nodes_before_);
     if (slave_at_.size() < at(nodes)) {
@@ -167,9 +167,9 @@ class HangingNodesOn {
                            detail::CountMasters<Dim>{free_masters(tree), node_stamps_.data(),
                                                      node_stamps_.now(), masters, too_many},
                            first_.data()},
-          detail::LoopStep{2, detail::CopyValue<Index>{masters, counts_.data() + of_masters}},
+          detail::LoopStep{2, detail::CopyValue<Index>{masters, counts_.data() + masters_at}},
           detail::LoopStep{1,
-                           detail::CopyValue<Index>{first_.data() + n, counts_.data() + of_sum}});
+                           detail::CopyValue<Index>{first_.data() + n, counts_.data() + sum_at}});
     };
     if (mixes)
       count_masters();
@@ -186,7 +186,7 @@ class HangingNodesOn {
 
  private:
   /// Where counts stand: of edges, sides and cells found; of masters, and behind that whether they are too many; a sum.
-  enum : std::size_t { of_edges, of_sides, of_cells, of_masters, of_sum = of_masters + 2 };
+  enum : std::size_t { edges_at, sides_at, cells_at, masters_at, sum_at = masters_at + 2 };
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   void need(auto& array, Index count) { detail::grow(backend_, array, at(count)); }
@@ -213,9 +213,9 @@ class HangingNodesOn {
     auto const sizes = tree.sizes();
     Index const sides = sides_of(tree);
     auto const hung = linear_.find(backend_, tree.view(), sizes.edges, sides);
-    select(sizes.edges, detail::IsHungOnAnyEdge<Dim>{hung}, edges_, of_edges);
-    select(sides, detail::IsHungOnAnySide<Dim>{hung}, sides_, of_sides);
-    select(sizes.cells, detail::IsHungInCell{tree.view()}, cells_, of_cells);
+    select(sizes.edges, detail::IsHungOnAnyEdge<Dim>{hung}, edges_, edges_at);
+    select(sides, detail::IsHungOnAnySide<Dim>{hung}, sides_, sides_at);
+    select(sizes.cells, detail::IsHungInCell{tree.view()}, cells_, cells_at);
   }
   /// Of sorted slaves, some of which were found at several places, leaves the first place of each; gives how many are left. Waits.
   Index keep_first_of_each(Index n) {
@@ -223,9 +223,9 @@ class HangingNodesOn {
     need(nodes_kept_, n);
     need(order_kept_, n);
     backend_.select(n, detail::IsFirstOfEqual{nodes_.data()}, start_.data(),
-                    counts_.data() + of_sum);
+                    counts_.data() + sum_at);
     backend_.synchronize();
-    Index const count = counts_.template first<6>()[of_sum];
+    Index const count = counts_.template first<6>()[sum_at];
     backend_.for_each(count, detail::TakeSlaves{start_.data(), nodes_.data(), order_.data(),
                                                 nodes_kept_.data(), order_kept_.data()});
     std::swap(nodes_, nodes_kept_);
@@ -236,8 +236,8 @@ class HangingNodesOn {
   RowsOn<B> room_for_slaves() {
     if (slaves_ == 0) return {};
     auto const counts = counts_.template first<6>();
-    auto const masters = counts[of_masters], entries = counts[of_sum];
-    if (counts[of_masters + 1] != 0)
+    auto const masters = counts[masters_at], entries = counts[sum_at];
+    if (counts[masters_at + 1] != 0)
       throw Error("hanging nodes: one has more than ", detail::MasterList::most,
                   " masters; keep neighbours of finer elements within one level");
     return {slaves_,
@@ -275,9 +275,9 @@ class HangingNodesOn {
     need(start_, places + 1);
     detail::in_turn(backend_, detail::ScanStep{places, hung, start_.data()},
                     detail::LoopStep{1, detail::CopyValue<Index>{start_.data() + places,
-                                                                 counts_.data() + of_sum}});
+                                                                 counts_.data() + sum_at}});
     backend_.synchronize();
-    return counts_.template first<6>()[of_sum];
+    return counts_.template first<6>()[sum_at];
   }
 
   B backend_;

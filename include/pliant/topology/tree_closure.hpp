@@ -64,7 +64,7 @@ class TreeClosure {
     stamps.begin(backend, static_cast<std::size_t>(cells));
     grow(backend, list_, static_cast<std::size_t>(cells));
     grow(backend, counters_, 2);
-    Index *const all = counters_.data(), *const listed = all + 1;
+    Index* const all = counters_.data();
     ListOnce const once{stamps.data(), stamps.now(), list_.data(), all};
     in_turn(backend, LoopStep{2, FillValue<Index>{all, 0}},
             LoopStep{count, ListMarked{tree, marked, most_levels + 1, once}},
