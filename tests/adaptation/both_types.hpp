@@ -99,6 +99,17 @@ struct BothTypes {
   }
 };
 
+/// All elements of a body, by the type.
+template <class TheBody>
+Marks all_elements(TheBody const& body) {
+  Marks marks;
+  body.parts().for_each_type([&](auto const& table, auto const&) {
+    auto& list = marks.emplace_back();
+    for (Index e = 0; e < table.count(); ++e) list.push_back(e);
+  });
+  return marks;
+}
+
 /// A number of each element of a body, by the type, in its backend's memory.
 template <Element A, Element C, class B>
 class ColoursOfTypes {
@@ -154,15 +165,7 @@ void check_both_types(B const& backend, Mesh<A, C> const& mesh, std::size_t one_
   CHECK(merged > 4);
   CHECK(values.size() == at(both.body.nodes()));
   CHECK(download<double>(values) == download<double>(by_host));
-  auto const all = [](auto const& body) {
-    Marks marks;
-    body.parts().for_each_type([&](auto const& table, auto const&) {
-      auto& list = marks.emplace_back();
-      for (Index e = 0; e < table.count(); ++e) list.push_back(e);
-    });
-    return marks;
-  };
-  while (coarsen(both.body, all(both.body)).merged > 0) {
+  while (coarsen(both.body, all_elements(both.body)).merged > 0) {
   }
   CHECK(both.body.mesh().nodes == first.nodes);
   CHECK(both.body.mesh().tables == first.tables);

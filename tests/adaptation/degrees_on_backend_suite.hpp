@@ -387,18 +387,10 @@ void check_storm(B const& backend, Mesh<A, C> const& mesh) {
     }
   }
   CHECK(there > actions(40) / 2);
-  auto const all = [](auto const& body) {
-    Marks marks;
-    body.parts().for_each_type([&](auto const& table, auto const&) {
-      auto& list = marks.emplace_back();
-      for (Index e = 0; e < table.count(); ++e) list.push_back(e);
-    });
-    return marks;
-  };
-  auto quadratic = all(both.body);
+  auto quadratic = all_elements(both.body);
   quadratic[0].clear();
   lower(both.body, quadratic);
-  while (coarsen(both.body, all(both.body)).merged > 0) {
+  while (coarsen(both.body, all_elements(both.body)).merged > 0) {
   }
   REQUIRE(is_on_backend(both.body));
   CHECK(both.body.mesh().nodes == first.nodes);

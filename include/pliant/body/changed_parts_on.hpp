@@ -150,15 +150,7 @@ class ChangedPartsOn {
     return on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
       std::tuple const families{merged_elements<I>(*on_, parts_.layout, layout)...};
       exchange_masses(weights, layout, speed, v, std::get<I>(families)...);
-      auto const clear = [&](Array<T>& field) {
-        return LoopStep{on_->rows.freed_count(),
-                        ClearListed<T, dim>{on_->rows.freed(), node_field<dim>(field)}};
-      };
-      in_turn(backend_, clear(u), clear(v), clear(layout.rest));
-      if (load.size() > 0)
-        InterpolationOn<B>(backend_, on_->gone.rows(on_->rows.freed(), on_->rows.freed_count(),
-                                                    rows_, std::get<I>(families)...))
-            .apply_transpose(backend_, node_field<dim>(load));
+      clear_gone(layout, u, v, load, std::get<I>(families)...);
       auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
       changed.changed_rows = changed_rows(parts_, rows_, true, std::get<I>(families)...);
       energies_.add_strain_of_merged(parts_, changed.parts, {on_->leaves(I)...});
@@ -216,6 +208,20 @@ class ChangedPartsOn {
     on_->momentum.give_back(weights_before, weights, parts_.material.density, bound,
                             layout_.kilograms(), layout.held.data(), node_field<dim>(v),
                             families...);
+  }
+  /// Takes nodes that went what they had; their loads go to those that they lay between.
+  template <class... Families>
+  void clear_gone(Layout& layout, Array<T>& u, Array<T>& v, Array<T>& load,
+                  Families const&... families) {
+    auto const clear = [&](Array<T>& field) {
+      return LoopStep{on_->rows.freed_count(),
+                      ClearListed<T, dim>{on_->rows.freed(), node_field<dim>(field)}};
+    };
+    in_turn(backend_, clear(u), clear(v), clear(layout.rest));
+    if (load.size() == 0) return;
+    InterpolationOn<B>(
+        backend_, on_->gone.rows(on_->rows.freed(), on_->rows.freed_count(), rows_, families...))
+        .apply_transpose(backend_, node_field<dim>(load));
   }
   ChangedTopology<Parts> parts_with(Layout layout, Array<T> u, Array<T> v, Array<T> load) {
     ChangedTopology<Parts> changed{parts_on(parts_, std::move(layout), topology_, prescribed_), {}};

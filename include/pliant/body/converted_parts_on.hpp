@@ -50,18 +50,7 @@ class ConvertedPartsOn : ChangedPartsOn<Parts> {
   ChangedTopology<Parts> changed(Lowered const& done) {
     return converted(
         done.lowered_cells, done.lowered, ChangeOfCells::lower, [&] { on_->rows.coarsen(done); },
-        [](auto const&...) {},
-        [&](Layout& layout, Array<T>& u, Array<T>& v, Array<T>& load, auto const&... families) {
-          auto const clear = [&](Array<T>& field) {
-            return LoopStep{on_->rows.freed_count(),
-                            ClearListed<T, dim>{on_->rows.freed(), node_field<dim>(field)}};
-          };
-          in_turn(backend_, clear(u), clear(v), clear(layout.rest));
-          if (load.size() > 0)
-            InterpolationOn<B>(backend_, on_->gone.rows(on_->rows.freed(), on_->rows.freed_count(),
-                                                        rows_, families...))
-                .apply_transpose(backend_, node_field<dim>(load));
-        });
+        [](auto const&...) {}, [&](auto&... what) { this->clear_gone(what...); });
   }
 
  private:
@@ -106,7 +95,7 @@ class ConvertedPartsOn : ChangedPartsOn<Parts> {
   }
 
   /// add_rows(): gives new nodes rows, or frees those of others; fill(layout, u, v): gives the former values; clear(layout, u, v,
-  /// load, families...): takes the latter theirs.
+  /// load, families...): see clear_gone.
   template <class AddRows, class Fill, class Clear>
   ChangedTopology<Parts> converted(Index const* cells, Index count, ChangeOfCells change,
                                    AddRows const& add_rows, Fill const& fill, Clear const& clear) {
