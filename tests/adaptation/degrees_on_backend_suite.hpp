@@ -274,6 +274,48 @@ TEST_CASE("rules raise rings and lower in a backend's memory as by the host", "[
   });
 }
 
+TEST_CASE(
+    "a mesh that holds an error by size and degree is changed in a backend's memory as by the host",
+    "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    auto const check = [&]<Element A, Element C>(Mesh<A, C> const& mesh) {
+      BothTypes<A, C, B> both(backend, mesh);
+      constexpr std::size_t dim = A::dim;
+      auto const bump = [&](double place) {
+        auto u = both.host.mesh().nodes;
+        for (auto& p : u) {
+          double apart = 0;
+          for (std::size_t k = 0; k < dim; ++k) apart += square(p[k] - (k == 0 ? place : 0.4));
+          p = {};
+          p[1] = 0.05 * std::exp(-apart / square(0.3));
+        }
+        for (auto* one : {&both.body, &both.host}) one->set_displacements(u);
+      };
+      bump(0.2);
+      double const error = estimate(both.host, RecoveredStress{});
+      auto const rule =
+          within<Soft<A>, Soft<C>>(RecoveredStress{}, {.error = error / 8, .max_level = 2});
+      Adaptation held{rule}, other{rule};
+      std::size_t raised = 0, refined = 0;
+      for (double const place : {0.2, 0.2, 0.6, 0.9, 0.2}) {
+        bump(place);
+        held.now(both.body);
+        other.now(both.host);
+        both.check_place();
+        REQUIRE(both.body.mesh().tables == both.host.mesh().tables);
+        CHECK(both.body.mesh().nodes == both.host.mesh().nodes);
+        raised = std::max(raised, both.host.template groups_of<C>().size());
+        refined = std::max(refined, both.host.template groups_of<A>().size() +
+                                        both.host.template groups_of<C>().size());
+      }
+      CHECK(raised > 0);
+      CHECK(refined > mesh.template elements<A>().size());
+    };
+    check(mesh::with_types<Tri3, Tri6>(distorted_mesh<Tri3>(5)));
+    check(mesh::with_types<Tet4, Tet10>(distorted_mesh<Tet4>(2)));
+  });
+}
+
 TEST_CASE("what a backend does not give another degree by itself, the host does", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     auto const mesh = mesh::with_types<Quad4, Quad9>(distorted_mesh<Quad4>(4));
