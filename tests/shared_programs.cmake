@@ -105,7 +105,8 @@ join(shared/changed_meshes
      topology/changed_meshes topology/degree topology/host_threads topology/refined_cells
      topology/restored_trees body/set_up)
 join(shared/switching
-     adaptation/points_on_backend body/rows_on topology/tree_on topology/tree_on_coarsening)
+     adaptation/points_on_backend body/rows_on topology/tree_on topology/tree_on_coarsening
+     topology/tree_on_conversion)
 join(shared/groups
      shared/state adaptation/sleep_of_viscous_bodies body/values_by_place
      solver/local_steps_of_viscous_bodies)
