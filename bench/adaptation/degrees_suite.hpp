@@ -76,8 +76,7 @@ void time_degrees(benchmark::State& state, B const& backend, int cells, Index fi
 
 inline void add_degrees() {
   on_each_backend<double>([](auto const& backend, std::string const& name, Role role) {
-    using B = std::remove_cvref_t<decltype(backend)>;
-    using T = typename B::scalar;
+    using T = typename std::remove_cvref_t<decltype(backend)>::scalar;
     if (role != Role::main) return;
     auto const one = [&]<class E, class F>(E, F, double elements) {
       int const cells = cells_for<E>(elements);
