@@ -61,6 +61,30 @@ TEST_CASE("the host makes few changes of a mesh of several types again", "[adapt
   });
 }
 
+TEST_CASE("a backend takes a mesh up again some changes behind the last that the host had to make",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    BothTypes<Tri3, Quad4, B> both(backend, mixed_mesh(6));
+    auto const refine_both = [&](bool is_there) {
+      auto const marked = random_marks(both.host, both.random, 12);
+      CHECK(refine(both.body, marked, 3).refined == refine(both.host, marked, 3).refined);
+      CHECK(is_on_backend(both.body) == is_there);
+      both.check_all();
+    };
+    refine_both(true);
+    for (int turn = 0; turn < 2; ++turn) {
+      std::size_t split_in_all = 0;
+      for (auto* one : {&both.body, &both.host}) split_in_all += split(*one, {{}, {0}}).split;
+      CHECK(split_in_all == 2);
+      CHECK(!is_on_backend(both.body));
+      for (int k = 0; k < HostChanges::some; ++k) refine_both(false);
+      refine_both(true);
+      refine_both(true);
+    }
+    CHECK(!is_on_backend(both.host));
+  });
+}
+
 TEST_CASE("elements that others were split into are refined and merged on a backend",
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {

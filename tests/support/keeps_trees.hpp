@@ -16,7 +16,7 @@ struct KeepsTrees : B {
 /// Lets the host change a body's mesh, beside which others are compared.
 template <class TheBody>
 void change_on_host(TheBody& body) {
-  body.parts().mesh_is_on_host = true;
+  body.parts().host_changes.take_all();
 }
 
 #if defined(__CUDACC__)

@@ -16,7 +16,7 @@ auto change_on_backend_by(Parts& parts, int max_level, FindMarked const& find_ma
     -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
   using Done = ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>;
   if constexpr (changes_on_backend<Parts>) {
-    if (!can_change_on_backend(parts)) return std::nullopt;
+    if (!can_change_on_backend(parts) || parts.host_changes.take_next()) return std::nullopt;
     auto const marked = find_marked();
     if (marked.none()) return Done{};
     return ChangesOnBackend<Parts>(parts, max_level)(marked);

@@ -133,7 +133,7 @@ void commit(Parts& parts, TopologyPlan<typename Parts::mesh_type> const& plan) {
   detail::commit_change(parts, detail::actions_of(plan.counts), detail::count_actions(plan), [&] {
     return change_topology(parts, plan.after, plan.transfer, give_back);
   });
-  parts.mesh_is_on_host = true;
+  parts.host_changes.made();
 }
 
 /// What listeners are still to be told of a change that was made.

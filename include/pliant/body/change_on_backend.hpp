@@ -83,11 +83,9 @@ NodesOfKinds nodes_when_raised() {
   });
   return to;
 }
-/// Whether nothing of a body has to be made from lists of the host when its mesh changes, and the host has not changed it: what it
-/// does then takes less time than to bring the mesh over again.
+/// Whether nothing of a body has to be made from lists of the host when its mesh changes.
 template <class Parts>
 bool can_change_on_backend(Parts const& parts) {
-  if (parts.mesh_is_on_host) return false;
   return parts.first->interpolation.empty() && !sets_values_by_place(parts);
 }
 

@@ -8,6 +8,7 @@
 
 #include <pliant/backend/patch_list.hpp>
 #include <pliant/body/awake_set.hpp>
+#include <pliant/body/host_changes.hpp>
 #include <pliant/body/layout.hpp>
 #include <pliant/body/looker.hpp>
 #include <pliant/body/solver_arrays.hpp>
@@ -80,7 +81,7 @@ struct Parts {
   layout_type layout;
   /// While the mesh is changed in the backend's memory.
   std::shared_ptr<TopologyOn<M, B>> topology_on{};
-  bool mesh_is_on_host = false;  // since the host changed it
+  HostChanges host_changes{};  // of the mesh
 
   Terms pressures{};  // of state.prescribed
   /// Makes them; set once there is a pressure, so that other bodies do not compile it.
