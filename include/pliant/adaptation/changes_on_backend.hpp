@@ -28,8 +28,9 @@ struct ChangeOn {
   ToTell<M, B> to_tell{};  // listeners, who do not know yet
 };
 
-/// Changes of a body's mesh in its backend's memory. What goes wrong leaves the body as it was, but for elements that were merged
-/// where memory runs out as others are refined; what was kept of the mesh there is made anew then when it is needed.
+/// Changes of a body's mesh in its backend's memory: elements are merged, lowered, refined and raised, in this order. What goes wrong
+/// leaves the body as it was, but for what was done before where memory runs out; what was kept of the mesh there is made anew then
+/// when it is needed.
 template <class Parts>
 class ChangesOnBackend {
   using B = typename Parts::backend_type;
