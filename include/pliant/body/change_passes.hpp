@@ -90,16 +90,18 @@ struct PlaceAtRest {
       rest(row, d) = static_cast<T>(points(row, d) - middle[static_cast<std::size_t>(d)]);
   }
 };
-/// Notes which of listed rows have other displacements than before a change.
+/// Notes which of listed rows have other displacements than before a change, of those that there were.
 template <class T, int Dim>
 struct MarkDisplaced {
   Index const* rows;
+  Index count_before;  // rows
   NodeField<T const, Dim> before, now;
   std::uint8_t* displaced;  // by the row
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     Index const row = rows[k];
     bool stays = true;
-    for (int d = 0; d < Dim; ++d) stays = stays && before(row, d) == now(row, d);
+    for (int d = 0; d < Dim && row < count_before; ++d)
+      stays = stays && before(row, d) == now(row, d);
     displaced[row] = stays ? 0 : 1;
   }
 };

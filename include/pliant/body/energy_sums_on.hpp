@@ -48,9 +48,10 @@ class EnergySumsOn {
     using Values = NodeField<T const, dim>;
     auto displaced = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(now.layout.rows));
     auto const& slaves = now.layout.interpolation.slaves();
-    backend_.for_each(slaves.count,
-                      MarkDisplaced<T, dim>{slaves.node.data(), Values{parts.state.u.data()},
-                                            Values{now.state.u.data()}, displaced.data()});
+    backend_.for_each(
+        slaves.count,
+        MarkDisplaced<T, dim>{slaves.node.data(), parts.layout.rows, Values{parts.state.u.data()},
+                              Values{now.state.u.data()}, displaced.data()});
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       (add_strain_of_others<I>(before, parts, IsMergedLeaf{leaves[I]}, displaced.data()), ...);
       (add_strain_of_others<I>(after, now, IsNewLeaf{leaves[I]}, displaced.data()), ...);
