@@ -93,25 +93,33 @@ template <class B, class M>
 void check_conversions(B const& backend, M const& mesh, CellNodes has, int rounds) {
   Hierarchy<M::dim> host(mesh);
   TreeBeside<B> on(backend, host);
-  HangingNodesOn<M::dim, B> hanging(backend);
+  HangingNodesOn<M::dim, B> hanging(backend), followed(backend);
   auto const first = host;
   auto kept = host;
   Random random(6);
   Index raised = 0, lowered = 0, merged = 0, taken_back = 0;
   for (int round = 0; round < rounds; ++round) {
+    auto const check = [&](auto const& find) { check_hanging(backend, host, find); };
+    auto const check_after = [&](auto const& done) {
+      check([&](Index const* rows) { return followed.rows_after(on.tree, done, rows); });
+    };
     auto const next = round < 2 ? round : static_cast<int>(random.below(5));
-    if (next == 0 || next == 4)
+    if (next == 0) {
+      check_after(refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random)));
+    } else if (next == 1 || next == 4) {
       raised += raise_both(on, host, has, random);
-    else if (next == 1)
-      refine_both(on, host, some_leaves(host, host.leaf_count() / 6 + 1, random));
-    else if (next == 2)
+    } else if (next == 2) {
       lowered += lower_both(on, host, 3, random);
-    else
-      merged += coarsen_both(on, host, host.leaves(), random).merged;
-    check_hanging(backend, host, [&](Index const* rows) { return hanging.rows(on.tree, rows); });
+    } else {
+      auto const done = coarsen_both(on, host, host.leaves(), random);
+      check_after(done);
+      merged += done.merged;
+    }
+    check([&](Index const* rows) { return hanging.rows(on.tree, rows); });
     if (round % 4 == 3) {
       on.tree.take_back();
       host = kept;
+      followed = HangingNodesOn<M::dim, B>(backend);
       check_same(on.tree, host);
       ++taken_back;
     } else if (random.below(3) > 0) {

@@ -51,15 +51,15 @@ class HangingNodesOn {
   /// Asks for the edges and sides on which nodes hang, and the cells in which they do.
   void find(TreeOn<B> const& tree) {
     counts_.set_all(0);
-    if (tree.mixes_degrees()) return find_of_degrees(tree);
+    knows_all_ = !tree.mixes_degrees();
+    if (!knows_all_) return find_of_degrees(tree);
     detail::HangingView<Dim> const view{tree.view()};
     select(tree.sizes().edges, detail::IsHungOnEdge<Dim>{view}, edges_, edges_at);
     select(sides_of(tree), detail::IsHungOnSide<Dim>{view}, sides_, sides_at);
-    knows_all_ = true;
   }
   /// The same after a refinement: looks at what hung before it, and at what was refined.
   void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
-    if (!knows_all_) return find(tree);
+    if (!knows_all_ || tree.mixes_degrees()) return find(tree);
     using detail::LoopStep, detail::CopyValue, detail::FillValue, detail::IsHungOnEdge,
         detail::IsHungOnSide, detail::ListStillHung;
     using NewEdges = detail::ListNewlyHungEdges<Dim>;
@@ -88,7 +88,7 @@ class HangingNodesOn {
   /// The same after a coarsening. Only leaves that were made of families come to have finer neighbours: what else hangs did so
   /// before.
   void find_after(TreeOn<B> const& tree, Coarsened const& coarsened) {
-    if (!knows_all_) return find(tree);
+    if (!knows_all_ || tree.mixes_degrees()) return find(tree);
     if (coarsened.merged == 0) return;
     using detail::LoopStep, detail::CopyValue, detail::FillValue, detail::IsHungOnEdge,
         detail::IsHungOnSide, detail::ListStaying, detail::NewNumbers;
