@@ -171,6 +171,10 @@ TEST_CASE("a tree whose cells would get too many nodes is as it was", "[topology
     NodesOfKinds others;
     others.by_kind[static_cast<std::size_t>(CellKind::hexahedron)] = CellNodes::all;
     CHECK(on.tree.raise(upload(backend, std::vector<Index>{1, 2}).data(), 2, others).raised == 0);
+    CHECK(on.tree.mixes_degrees());
+    on.tree.take_back();
+    check_same(on.tree, host);
+    CHECK(!on.tree.mixes_degrees());
   });
 }
 
