@@ -197,7 +197,7 @@ struct Tables {
                                  node_order<E>, blocks, changed ? &on : nullptr);
     settle(backend, next);
     on = std::move(next);
-    if (!changed) numbers = {backend, mesh.tree, kind_of<typename E::cell>, false};
+    if (!changed) numbers = {backend, mesh.tree, detail::cells_of_type<E>(false)};
     check_rows(node_rows, changed);
     check_results(node_rows);
   }
