@@ -1,7 +1,7 @@
 #pragma once
 
-#include <numeric>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 

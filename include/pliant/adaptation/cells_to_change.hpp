@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 
 #include <pliant/backend/array_copies.hpp>
 #include <pliant/body/change_passes.hpp>
