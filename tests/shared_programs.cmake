@@ -106,7 +106,7 @@ join(shared/changed_meshes
      topology/restored_trees body/set_up)
 join(shared/switching
      adaptation/points_on_backend body/rows_on topology/tree_on topology/tree_on_coarsening
-     topology/tree_on_conversion)
+     topology/tree_on_conversion topology/tree_on_splitting)
 join(shared/groups
      shared/state adaptation/sleep_of_viscous_bodies body/values_by_place
      solver/local_steps_of_viscous_bodies)

@@ -13,23 +13,24 @@
 // Passes over cells of a tree that is coarsened, for loops of a backend.
 namespace pliant::detail {
 
-/// Stamps marked leaves that may go, and lists the refined cells of which they are children.
+/// Stamps marked leaves that may go, and lists the cells of which they are children: refined ones, or split ones.
 struct ListFamilies {
   TreeView tree;
   Index const* marked;
+  bool of_split;
   ListOnce list;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto const& cell = tree.cells[static_cast<std::size_t>(marked[k])];
     if (cell.first_child >= 0 || cell.parent < 0) return;
-    if (tree.cells[static_cast<std::size_t>(cell.parent)].is_split()) return;
-    if (!may_go(tree, marked[k])) return;
+    if (tree.cells[static_cast<std::size_t>(cell.parent)].is_split() != of_split) return;
+    if (!of_split && !may_go(tree, marked[k])) return;
     atomic_store(list.stamps[marked[k]], list.now);
     list(cell.parent);
   }
 };
-/// Lists those of them of which all children are stamped and alike, with their numbers for keys. A call for each that there may
-/// be.
+/// Lists those of them of which all children are stamped and alike, with their numbers for keys; of two split pyramids that share a
+/// base both or none. A call for each that there may be.
 struct ListMergeable {
   TreeView tree;
   Index const* families;
@@ -43,10 +44,18 @@ struct ListMergeable {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     if (k >= *listed) return;
     Index const c = families[k];
-    if (!are_alike(tree, c, [&](Index child) { return stamps[child] == now; })) return;
+    if (!are_stamped(c)) return;
+    auto const& cell = tree.cells[static_cast<std::size_t>(c)];
+    if (cell.is_split() && cell.kind == CellKind::pyramid && !are_stamped(tree.across_base(c)))
+      return;
     Index const place = atomic_add(*count, 1);
     list[place] = c;
     keys[place] = static_cast<std::uint64_t>(c);
+  }
+
+ private:
+  [[nodiscard]] PLIANT_HOST_DEVICE bool are_stamped(Index c) const {
+    return are_alike(tree, c, [&](Index child) { return stamps[child] == now; });
   }
 };
 /// Marks the pages of what becomes leaves, and of their children. So many calls for each of the former.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include <pliant/topology/cell_changes.hpp>
 #include <pliant/topology/element_types.hpp>
+#include <pliant/topology/shorter_diagonal.hpp>
 #include <pliant/topology/topology.hpp>
 #include <pliant/topology/tree_queries.hpp>
 
@@ -143,18 +143,12 @@ std::vector<CellConversion> raised_cells(RefinementTree<M> const& old,
   return raised;
 }
 
-/// Of four corners that run round, the one from 0 or 1 at which the shorter diagonal begins; of equal ones 0.
+/// Of four nodes that run round: see shorter_diagonal.hpp.
 template <int Dim>
-std::size_t shorter_diagonal(Hierarchy<Dim> const& tree, std::span<Index const, 4> corners) {
-  auto const length = [&](std::size_t a) {
-    auto const &from = tree.points()[static_cast<std::size_t>(corners[a])],
-               &to = tree.points()[static_cast<std::size_t>(corners[a + 2])];
-    double square = 0;
-    for (std::size_t k = 0; k < Dim; ++k) square += (to[k] - from[k]) * (to[k] - from[k]);
-    return std::sqrt(square);
-  };
-  // What rounding tells apart is as long.
-  return length(1) < (1 - 1e-12) * length(0) ? 1 : 0;
+int shorter_diagonal(Hierarchy<Dim> const& tree, Index const* corners) {
+  return shorter_diagonal<Dim>([&](int corner, int k) {
+    return tree.points()[static_cast<std::size_t>(corners[corner])][static_cast<std::size_t>(k)];
+  });
 }
 
 /// Of two pyramids that share a base, along a diagonal of that; nothing where there is no other one.
@@ -165,7 +159,7 @@ void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit
   auto const& base =
       tree.tree().sides()[static_cast<std::size_t>(tree.tree().row(pyramid).sides[0])];
   auto const corners = tree.tree().lists().view().corners_of(base);
-  Index const first = corners[shorter_diagonal(tree, corners)];
+  Index const first = corners[static_cast<std::size_t>(shorter_diagonal(tree, corners.data()))];
   for (Index const c : {pyramid, other}) {
     auto const* const nodes = tree.tree().row(c).nodes;
     splits.push_back(
@@ -188,26 +182,23 @@ void check_splits(std::vector<std::vector<Index>> const& marked) {
   });
 }
 
-/// The cells of elements to split, each once, and how; of those that are marked for both, in two.
-template <class M>
-std::vector<CellSplit> split_cells(RefinementTree<M> const& old, MarkedElements const& marked) {
-  check_splits<M>(marked.split);
-  check_splits<M>(marked.split_in_two);
-  auto const in_two = each_once(cells_of(old, "split", marked.split_in_two));
-  auto cells = cells_of(old, "split", marked.split);
+/// How marked cells are split, ascending; of those that are marked for both, in two.
+template <int Dim>
+std::vector<CellSplit> splits_of(Hierarchy<Dim> const& tree, std::vector<Index> cells,
+                                 std::vector<Index> in_two) {
+  in_two = each_once(std::move(in_two));
   cells.insert(cells.end(), in_two.begin(), in_two.end());
   std::vector<CellSplit> splits;
   for (Index const c : each_once(std::move(cells))) {
-    auto const& cell = old.tree->cell(c);
+    auto const& cell = tree.cell(c);
     if (cell.kind == CellKind::pyramid)
-      split_pair(*old.tree, c, splits);
+      split_pair(tree, c, splits);
     else if (cell.kind == CellKind::hexahedron)
       splits.push_back({c, Division::six_pyramids});
     else if (!std::ranges::binary_search(in_two, c))
       splits.push_back({c, Division::four_triangles});
     else
-      splits.push_back({c, shorter_diagonal(*old.tree, std::span<Index const, 4>(
-                                                           old.tree->tree().row(c).nodes, 4)) == 0
+      splits.push_back({c, shorter_diagonal(tree, tree.tree().row(c).nodes) == 0
                                ? Division::diagonal_0
                                : Division::diagonal_1});
   }
@@ -219,23 +210,34 @@ std::vector<CellSplit> split_cells(RefinementTree<M> const& old, MarkedElements 
   splits.erase(std::unique(splits.begin(), splits.end(), same), splits.end());
   return splits;
 }
+/// The same of marked elements.
+template <class M>
+std::vector<CellSplit> split_cells(RefinementTree<M> const& old, MarkedElements const& marked) {
+  check_splits<M>(marked.split);
+  check_splits<M>(marked.split_in_two);
+  return splits_of(*old.tree, cells_of(old, "split", marked.split),
+                   cells_of(old, "split", marked.split_in_two));
+}
 
 /// The cells that were split into marked ones, all of which are; of two pyramids that share a base both or none.
+template <int Dim>
+std::vector<Index> merged_splits(Hierarchy<Dim> const& tree, std::vector<Index> const& marked) {
+  auto merged = tree.split_cells(marked);
+  auto const all = merged;
+  std::erase_if(merged, [&](Index c) {
+    return tree.cell(c).kind == CellKind::pyramid &&
+           !std::ranges::binary_search(all, TreeQueries(tree.tree()).across_base(c));
+  });
+  return merged;
+}
+/// Throws Error where elements are marked that nothing is split into.
 template <class M>
-std::vector<Index> merged_cells(RefinementTree<M> const& old,
-                                std::vector<std::vector<Index>> const& marked) {
+void check_merges(std::vector<std::vector<Index>> const& marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (!is_part<E> && !marked.empty() && !marked[type].empty())
       throw Error("merge: no element is split into ", E::name(),
                   " elements; mark Tri3, Pyramid5 or Tet4 elements");
   });
-  auto merged = old.tree->split_cells(cells_of(old, "merge", marked));
-  auto const all = merged;
-  std::erase_if(merged, [&](Index c) {
-    return old.tree->cell(c).kind == CellKind::pyramid &&
-           !std::ranges::binary_search(all, TreeQueries(old.tree->tree()).across_base(c));
-  });
-  return merged;
 }
 
 /// What is to become of the cells of a topology by marks on its elements. A family that is merged is not lowered.
@@ -246,7 +248,9 @@ CellChanges changes_of(RefinementTree<M> const& old, MarkedElements const& marke
                       .lower = lowered_cells(old, marked.lower),
                       .raise = raised_cells(old, marked.raise, marked.raised_rings),
                       .split = split_cells(old, marked)};
-  std::ranges::move(merged_cells(old, marked.merge), std::back_inserter(changes.families));
+  check_merges<M>(marked.merge);
+  std::ranges::move(merged_splits(*old.tree, cells_of(old, "merge", marked.merge)),
+                    std::back_inserter(changes.families));
   std::ranges::sort(changes.families);
   std::erase_if(changes.lower, [&](Index c) {
     return std::ranges::binary_search(changes.families, old.tree->cell(c).parent);

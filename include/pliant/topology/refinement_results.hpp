@@ -77,6 +77,8 @@ struct Lowered : Coarsened {
   Index lowered = 0;                     ///< how many cells have corners only now
   Index const* lowered_cells = nullptr;  ///< (lowered): these, ascending
 };
+/// What a call of TreeOn::merge did: as of TreeOn::coarsen, of cells that were split.
+struct Merged : Coarsened {};
 
 namespace detail {
 inline void check_max_level(char const* where, int max_level) {
@@ -85,10 +87,10 @@ inline void check_max_level(char const* where, int max_level) {
                 most_levels);
 }
 /// Of so many cells that take too much.
-[[noreturn]] inline void refuse_refinement(Index cells, char const* what, std::size_t in_all,
-                                           std::size_t limit) {
-  throw Error("refine: to refine ", cells, " cells, coarser neighbours included, takes ", in_all,
-              " ", what, " in all, and the limit is ", limit,
+[[noreturn]] inline void refuse_division(char const* verb, Index cells, char const* what,
+                                         std::size_t in_all, std::size_t limit) {
+  throw Error(verb, ": to ", verb, " ", cells, " cells, coarser neighbours included, takes ",
+              in_all, " ", what, " in all, and the limit is ", limit,
               "; mark fewer cells or raise the limit");
 }
 [[noreturn]] inline void refuse_raising(std::size_t cells, std::size_t nodes, std::size_t limit) {

@@ -30,15 +30,15 @@ enum class Degrees { one, two, several };
 template <Backend B>
 class TreeCoarsening {
  public:
-  /// See TreeOn::coarsen. `sizes`: of the tree; `initial`: of the initial mesh; stamps: by cell.
+  /// See TreeOn::coarsen, or with `of_split` TreeOn::merge. `sizes`: of the tree; `initial`: of the initial mesh; stamps: by cell.
   Coarsened operator()(B const& backend, PagedTree<B>& tree, TreeSizes const& initial,
                        TreeSizes const& sizes, Degrees has, Index few, Stamps<B>& stamps,
-                       Index const* marked, Index count) {
+                       Index const* marked, Index count, bool of_split = false) {
     Coarsened done{.staying = initial, .before = sizes, .now = sizes};
     bool const finds_first =
         has == Degrees::one && !divisions_.empty() &&
         std::int64_t{sizes.cells} - initial.cells - 8 * std::int64_t{count} > few;
-    find_families(backend, tree.view(), done, stamps, marked, count);
+    find_families(backend, tree.view(), done, stamps, marked, count, of_split);
     if (!finds_first) list_knowing(backend, tree.view(), done, nullptr, 0, has == Degrees::several);
     auto const found = counted(backend);
     Index const merged = found[1];
@@ -119,7 +119,7 @@ class TreeCoarsening {
 
   /// Lists the parents of families that are merged. Counts them behind the families of which any child is marked.
   void find_families(B const& backend, TreeView const& tree, Coarsened const& of, Stamps<B>& stamps,
-                     Index const* marked, Index count) {
+                     Index const* marked, Index count, bool of_split) {
     Index const most = std::min(count, of.before.cells);
     stamps.begin(backend, at(of.before.cells));
     counters_ = zeros<Index>(backend, counters);
@@ -129,9 +129,10 @@ class TreeCoarsening {
     grow(backend, parents_, at(most));
     grow(backend, keys_, at(most));
     in_turn(backend,
-            LoopStep{count,
-                     ListFamilies{
-                         tree, marked, {stamps.data(), stamps.now(), families_.data(), counts}}},
+            LoopStep{count, ListFamilies{tree,
+                                         marked,
+                                         of_split,
+                                         {stamps.data(), stamps.now(), families_.data(), counts}}},
             LoopStep{most, ListMergeable{tree, families_.data(), counts, stamps.data(),
                                          stamps.now(), parents_.data(), counts + 1, keys_.data()}},
             LoopStep{2, CopyValue<Index>{counts, counts_.data()}});

@@ -16,14 +16,15 @@
 #include <pliant/topology/cell_set.hpp>
 #include <pliant/topology/element_nodes_on.hpp>
 #include <pliant/topology/paged_tree.hpp>
-#include <pliant/topology/part_numbers.hpp>
 #include <pliant/topology/refinement_results.hpp>
 #include <pliant/topology/stamps.hpp>
 #include <pliant/topology/tree_closure.hpp>
 #include <pliant/topology/tree_coarsening.hpp>
 #include <pliant/topology/tree_conversion.hpp>
+#include <pliant/topology/tree_division.hpp>
 #include <pliant/topology/tree_lists.hpp>
 #include <pliant/topology/tree_passes.hpp>
+#include <pliant/topology/tree_splitting.hpp>
 
 namespace pliant {
 
@@ -44,6 +45,9 @@ class TreeOn {
     detail::LeafParts const* parts = nullptr;  ///< (leaves): what each made
   };
 
+  /// The same of leaves that were split, ascending.
+  struct Split : Refined {};
+
   /// Where there are up to so many cells behind the initial mesh's, beside eight for each that is marked, coarsening moves all that
   /// came later, which takes less than to find out what may stay where it is.
   Index few = TreeView::few;
@@ -59,7 +63,7 @@ class TreeOn {
                               !lists.converted.empty()},
         kept_(now_),
         closure_(backend, at_edges),
-        number_parts_(backend) {}
+        division_(backend) {}
 
   [[nodiscard]] TreeView view() const { return lists_.view(); }
   [[nodiscard]] TreeSizes sizes() const {
@@ -113,10 +117,8 @@ class TreeOn {
     Index const n = closure_(backend_, view(), size(lists_.cells), initial_, stamps_, marked, count,
                              limits.max_level);
     if (n == 0) return {};
-    first_new_node_ = now_.nodes;
-    need(leaves_, n);
-    need(parts_, n);
     need(keys_, n);
+    CellSplit* const leaves = division_.begin(n);
     Index* const list = closure_.list();
     lists_.own(backend_, [&](detail::PageMarks const& marks) {
       int const bits_of_cell = detail::key_bits(size(lists_.cells));
@@ -124,29 +126,31 @@ class TreeOn {
           backend_,
           detail::LoopStep{n, detail::LevelKeys{view(), list, keys_.data(), bits_of_cell}},
           detail::SortStep{n, keys_.data(), list, bits_of_cell + detail::key_bits(most_levels + 1)},
-          detail::LoopStep{n, detail::ListLeaves{list, leaves_.data()}});
-      // Few leaves leave threads to share them.
-      Index const each = n <= TreeView::few ? detail::MarkDivided::parts : 1;
-      backend_.for_each(n * each, detail::MarkDivided{leaves_.data(), marks, each});
+          detail::LoopStep{n, detail::ListLeaves{list, leaves}});
+      division_.mark_pages(marks);
     });
-    auto const totals = number_parts_(backend_, division(), parts_.data(), n, sizes());
-    check(n, totals, limits);
-    coarsening_.note_division(sizes());
-    auto const edges = lists_.edges.extend(backend_, at(totals[1]));
-    auto const sides = lists_.sides.extend(backend_, at(totals[2]));
-    auto const cells = lists_.cells.extend(backend_, at(totals[3]));
-    auto const rows = lists_.rows.extend(backend_, lists_.layout.entry(at(totals[3])));
-    need(made_, totals[0]);
-    auto const dividing = division();
-    detail::in_turn(backend_, edges, sides, cells, rows,
-                    for_each_part(n, detail::MakeOnEdges{dividing}),
-                    for_each_part(n, detail::MakeOnSides{dividing}),
-                    detail::LoopStep{n, detail::MakeInside{dividing}},
-                    for_each_part(n, detail::MakeChildren{dividing}));
-    now_.nodes += totals[0];
-    now_.leaves += totals[3] - n;
-    if (now_.has_quadratic) make_quadratic(n, limits);
-    return {n, now_.nodes - first_new_node_, leaves_.data(), made_.data(), parts_.data()};
+    Index const first_new_node = now_.nodes;
+    divide("refine", limits);
+    if (now_.has_quadratic) make_element_nodes(first_new_node, limits);
+    return {n, now_.nodes - first_new_node, division_.leaves(), division_.made(),
+            division_.parts()};
+  }
+
+  /// Puts cells of another shape in the place of marked leaves that have corners only, between their corners; a pyramid is split
+  /// with the one on the other side of its base, or not at all. They are neither coarser nor finer. Throws Error as refine.
+  template <int Dim>
+  Split split(MarkedToSplit const& marked, NodesAtRest<Dim> const& nodes,
+              RefinementLimits const& limits = {}) {
+    Index const cells = size(lists_.cells),
+                n = splitting_(backend_, view(), cells, stamps_, marked);
+    if (n == 0) return {};
+    CellSplit* const leaves = division_.begin(n);
+    lists_.own(backend_, [&](detail::PageMarks const& marks) {
+      splitting_.choose(backend_, view(), cells, n, nodes, leaves);
+      division_.mark_pages(marks);
+    });
+    divide("split", limits);
+    return {{n, division_.new_nodes(), division_.leaves(), division_.made(), division_.parts()}};
   }
 
   /// Merges the children of refined cells, all of which are marked, as Hierarchy::coarsen does: a family stays where one of its
@@ -155,11 +159,15 @@ class TreeOn {
   /// go, but for those of the initial mesh, and the others keep their order and move up. `marked`: as for `refine`. Throws
   /// Error where memory runs out; what was kept is there then after take_back.
   Coarsened coarsen(Index const* marked, Index count) {
-    auto const done =
-        coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_, marked, count);
-    now_.nodes = done.now.nodes;
-    now_.leaves += done.merged - (done.before.cells - done.now.cells);
-    return done;
+    return counted(
+        coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_, marked, count));
+  }
+
+  /// The same of cells that were split into leaves with corners only, all of which are marked; of two pyramids that share a base both
+  /// or none.
+  Merged merge(Index const* marked, Index count) {
+    return {counted(coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_,
+                                marked, count, true))};
   }
 
   /// Marked leaves and rings of leaves around them, each of which shares an edge, whole or in part, with one of the ring before: how
@@ -229,21 +237,13 @@ class TreeOn {
     using detail::Degrees;
     return now_.mixes_degrees ? Degrees::several : now_.has_quadratic ? Degrees::two : Degrees::one;
   }
-  /// The leaves that are divided, as loops see them now.
-  [[nodiscard]] detail::DivisionView division() {
-    return {view(), leaves_.data(), parts_.data(), first_new_node_, made_.data()};
-  }
-  /// For all edges, sides or children that n leaves may have.
-  template <class Make>
-  static detail::LoopStep<Make> for_each_part(Index n, Make const& make) {
-    return {n * Make::each, make};
-  }
   /// Throws Error, with the tree as it was, where there would be more than a limit.
-  void check(Index n, std::array<Index, 4> const& more, RefinementLimits const& limits) {
+  void check(char const* verb, Index n, std::array<Index, 4> const& more,
+             RefinementLimits const& limits) {
     auto const check_one = [&](char const* what, Index now, Index of_these, std::size_t limit) {
       if (auto const in_all = at(now) + at(of_these); in_all > std::min(limit, most)) {
         take_back();
-        detail::refuse_refinement(n, what, in_all, limit);
+        detail::refuse_division(verb, n, what, in_all, limit);
       }
     };
     check_one("nodes", now_.nodes, more[0], limits.nodes);
@@ -253,13 +253,27 @@ class TreeOn {
     check_one("sides", size(lists_.sides), more[2], most);
     check_one("edges of cells", 0, n, most / detail::MakeOnEdges::each);
   }
-  /// Makes the nodes that children's elements have between their corners.
-  void make_quadratic(Index n, RefinementLimits const& limits) {
-    Index const more = element_nodes_.find(backend_, division(), n);
-    check(n, {more, 0, 0, 0}, limits);
-    Index const known = now_.nodes - first_new_node_;
-    detail::grow_keeping(backend_, made_, at(known), at(known + more));
-    element_nodes_.make(backend_, now_.nodes, made_.data() + known);
+  /// Notes how many nodes and leaves are left.
+  Coarsened counted(Coarsened const& done) {
+    now_.nodes = done.now.nodes;
+    now_.leaves += done.merged - (done.before.cells - done.now.cells);
+    return done;
+  }
+  /// Divides the leaves that were listed.
+  void divide(char const* verb, RefinementLimits const& limits) {
+    Index const n = division_.count();
+    division_.number(view(), sizes(),
+                     [&](std::array<Index, 4> const& more) { check(verb, n, more, limits); });
+    coarsening_.note_division(sizes());
+    division_.make(lists_);
+    now_.nodes += division_.new_nodes();
+    now_.leaves += division_.new_cells() - n;
+  }
+  /// Makes the nodes that children's elements have between their corners, behind those of the division.
+  void make_element_nodes(Index first_new_node, RefinementLimits const& limits) {
+    Index const more = division_.find_element_nodes(view());
+    check("refine", division_.count(), {more, 0, 0, 0}, limits);
+    division_.make_element_nodes(now_.nodes - first_new_node, more);
     now_.nodes += more;
   }
 
@@ -269,13 +283,11 @@ class TreeOn {
   Counts now_, kept_;
   // Of a change.
   detail::Stamps<B> stamps_;  // by cell
-  Index first_new_node_ = 0;
   detail::TreeClosure<B> closure_;
-  detail::PartNumbers<B> number_parts_;
+  detail::TreeSplitting<B> splitting_;
+  detail::TreeDivision<B> division_;
   Array<std::uint64_t> keys_;
-  Array<CellSplit> leaves_;
-  Array<detail::LeafParts> parts_;
-  Array<PlacedNode> made_;
+  Array<PlacedNode> made_;  // of elements that are raised
   detail::ElementNodesOn<B> element_nodes_;
   detail::TreeCoarsening<B> coarsening_;
   detail::TreeConversion<B> conversion_;

@@ -131,8 +131,7 @@ class TreeQueries {
 
   /// The cell on the other side of a pyramid's base; −1 where there is none.
   [[nodiscard]] Index across_base(Index pyramid) const {
-    auto const& cells = sides_[at(tree_.row(pyramid).sides[0])].cells;
-    return cells[0] == pyramid ? cells[1] : cells[0];
+    return tree_.lists().view().across_base(pyramid);
   }
 
  private:

@@ -93,6 +93,17 @@ struct TreeView {
     return has;
   }
 
+  /// Into how many a side is divided: four, or two triangles between pyramids that are split; none: it is whole.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index parts_of(TreeSide const& side) const {
+    if (side.first_child < 0) return 0;
+    return sides[at(side.first_child)].level == side.level ? 2 : 4;
+  }
+  /// The cell on the other side of a pyramid's base; −1 where there is none.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index across_base(Index pyramid) const {
+    auto const& own = sides[at(row(pyramid).sides[0])].cells;
+    return own[0] == pyramid ? own[1] : own[0];
+  }
+
   /// An edge, and its halves.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_edge(Index e, Visit const& visit) const {
@@ -104,7 +115,7 @@ struct TreeView {
   PLIANT_HOST_DEVICE void visit_side(Index s, Edge const& visit_edge,
                                      Side const& visit_side) const {
     auto const& side = sides[at(s)];
-    bool const is_halved = side.first_child >= 0 && sides[at(side.first_child)].level == side.level;
+    bool const is_halved = parts_of(side) == 2;
     visit_side(s);
     visit_some(visit_side, side.first_child, is_halved ? 2 : 4);
     visit_some(visit_edge, side.first_inner_edge, is_halved ? 1 : side.corners());
