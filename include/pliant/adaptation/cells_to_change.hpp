@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include <pliant/backend/array_copies.hpp>
@@ -10,60 +11,102 @@
 // Cells of a tree in a backend's memory that are to change, and which of them have to stay as they are.
 namespace pliant::detail {
 
-/// Cells to divide, to merge with those of their families, and to give a lower or higher degree; −1: gone.
+/// Whether listed cells, or with other numbers now, are pyramids: 1, or 0.
+template <class Cell>
+struct IsPyramid {
+  TreeView tree;
+  Cell const* cells;
+  NewNumbers numbers;
+  PLIANT_HOST_DEVICE double operator()(Index r) const {
+    Index const c = numbers(number(cells[r]));
+    return tree.cells[static_cast<std::size_t>(c)].kind == CellKind::pyramid ? 1 : 0;
+  }
+
+ private:
+  static PLIANT_HOST_DEVICE Index number(Index c) { return c; }
+  static PLIANT_HOST_DEVICE Index number(CellSplit const& split) { return split.cell; }
+};
+
+/// Cells to merge with those of their families, refined or split ones, to give a lower degree, to divide, to give a higher degree, and
+/// to split; −1: gone.
 template <Backend B>
 struct CellsToChange {
   using Cells = typename B::template Array<Index>;
-  Cells refine, merge, lower, raise;
+  Cells coarsen, merge, lower, refine, raise, split, split_in_two;
 
   static Index size(Cells const& list) { return static_cast<Index>(list.size()); }
 
   /// Gives those that are not merged their numbers behind a coarsening.
   void renumber(B const& backend, Coarsened const& merged) {
     if (merged.merged == 0) return;
-    for (auto* list : {&refine, &lower, &raise})
+    for (auto* list : all())
       backend.for_each(size(*list),
                        RenumberCells{{merged.staying.cells, merged.cells}, list->data()});
   }
-  [[nodiscard]] CellsToChange copy(B const& backend) const {
-    auto const copied = [&](Cells const& list) { return extended(backend, list, list.size()); };
-    return {copied(refine), copied(merge), copied(lower), copied(raise)};
+  [[nodiscard]] CellsToChange copy(B const& backend) {
+    CellsToChange copied;
+    auto to = copied.all().begin();
+    for (auto* list : all()) **to++ = extended(backend, *list, list->size());
+    return copied;
   }
 
   /// Whether a trial tells more than the changes themselves would, one after the other: where one of them limits another, or could
   /// exceed a limit behind another.
   [[nodiscard]] bool need_trial(RefinementLimits const& limits) const {
-    bool const others = size(merge) > 0 || size(lower) > 0;
-    return (size(refine) > 0 && others) || (size(raise) > 0 && (others || size(refine) > 0) &&
-                                            limits.nodes != RefinementLimits{}.nodes);
+    bool const others = size(coarsen) > 0 || size(merge) > 0 || size(lower) > 0;
+    if (size(refine) > 0 && others) return true;
+    bool const adds = size(raise) > 0 || splits();
+    int const adding = (size(refine) > 0) + (size(raise) > 0) + splits();
+    bool const has_limits =
+        limits.nodes != RefinementLimits{}.nodes || limits.leaves != RefinementLimits{}.leaves;
+    return has_limits && adds && (others || adding > 1);
+  }
+  [[nodiscard]] bool splits() const { return size(split) > 0 || size(split_in_two) > 0; }
+  [[nodiscard]] MarkedToSplit to_split() const {
+    return {split.data(), size(split), split_in_two.data(), size(split_in_two)};
   }
   /// Tries the changes on a tree, and leaves out what a refinement beside it divides: families that would be divided again, and cells
   /// that keep their degree. Throws Error where a limit would be exceeded.
+  template <int Dim>
   void leave_what_is_refined(B const& backend, TreeOn<B>& tree, NodesOfKinds const& raised,
-                             RefinementLimits const& limits) {
+                             NodesAtRest<Dim> const& nodes, RefinementLimits const& limits) {
     for (bool again = true; again;) {
       auto trial = copy(backend);
       Coarsened merged;
-      if (size(merge) > 0) merged = tree.coarsen(merge.data(), size(merge));
+      if (size(coarsen) > 0) merged = tree.coarsen(coarsen.data(), size(coarsen));
       trial.renumber(backend, merged);
       Divided<B> families(backend, merged.parents, merged.merged, new_cells(merged));
+      auto parents = unset<Index>(backend, merge.size()),
+           partners = unset<Index>(backend, merge.size());
+      backend.for_each(size(merge), FindWholes{tree.view(), trial.merge.data(), parents.data(),
+                                               partners.data()});
+      Merged whole;
+      if (size(merge) > 0) whole = tree.merge(trial.merge.data(), size(merge));
+      trial.renumber(backend, whole);
+      if (whole.merged > 0) families.renumber(backend, new_cells(whole));
+      Divided<B> wholes(backend, whole.parents, whole.merged, new_cells(whole));
       Lowered lowered;
       if (size(lower) > 0) lowered = tree.lower(trial.lower.data(), size(lower));
       Divided<B> cells(backend, lowered.lowered_cells, lowered.lowered,
                        {tree.sizes().cells, nullptr});
       auto const refined = tree.refine(trial.refine.data(), size(refine), limits);
-      families.find(backend, refined);
-      cells.find(backend, refined);
+      for (auto* list : {&families, &wholes, &cells}) list->find(backend, refined);
       if (size(raise) > 0) (void)tree.raise(trial.raise.data(), size(raise), raised, limits);
+      if (splits()) (void)tree.split(trial.to_split(), nodes, limits);
       tree.take_back();
-      again = families.any() || cells.any();
+      again = families.any() || wholes.any() || cells.any();
       if (families.any())
-        select(backend, merge, IsMergedForGood{tree.view(), merge.data(), families.listed()});
+        select(backend, coarsen, IsMergedForGood{tree.view(), coarsen.data(), families.listed()});
+      if (wholes.any())
+        select(backend, merge, IsWholeForGood{parents.data(), partners.data(), wholes.listed()});
       if (cells.any()) select(backend, lower, IsLoweredForGood{trial.lower.data(), cells.listed()});
     }
   }
 
  private:
+  std::array<Cells*, 7> all() {
+    return {&coarsen, &merge, &lower, &refine, &raise, &split, &split_in_two};
+  }
   static void select(B const& backend, Cells& list, auto const& stays) {
     auto left = zeros<Index>(backend, list.size());
     auto count = zeros<Index>(backend, 1);

@@ -18,42 +18,43 @@ auto change_on_backend_by(Parts& parts, int max_level, FindMarked const& find_ma
   if constexpr (changes_on_backend<Parts>) {
     if (!can_change_on_backend(parts) || parts.host_changes.take_next()) return std::nullopt;
     auto const marked = find_marked();
-    if (marked.none()) return Done{};
+    if (marked.kinds() == 0) return Done{};
     return ChangesOnBackend<Parts>(parts, max_level)(marked);
   } else {
     return std::nullopt;
   }
 }
-/// Of elements that are marked to be refined, merged, raised or lowered.
+/// Of marked elements.
 template <class Parts>
 auto change_on_backend(Parts& parts, MarkedElements const& marked, int max_level) {
   return change_on_backend_by(parts, max_level, [&] {
-    check_conversion<typename Parts::mesh_type>("raise", 1, marked.raise);
-    check_conversion<typename Parts::mesh_type>("lower", 2, marked.lower);
-    std::size_t type = 0;
-    parts.for_each_type([&](auto const& table, auto const&) {
-      using E = typename std::remove_cvref_t<decltype(table)>::element;
-      auto const check = [&](char const* verb, auto const& lists) {
+    using M = typename Parts::mesh_type;
+    check_conversion<M>("raise", 1, marked.raise);
+    check_conversion<M>("lower", 2, marked.lower);
+    check_splits<M>(marked.split);
+    check_splits<M>(marked.split_in_two);
+    check_merges<M>(marked.merge);
+    using Marked = MarkedThere<typename Parts::backend_type>;
+    auto const there = [&](char const* verb, auto const& lists) {
+      std::size_t type = 0;
+      parts.for_each_type([&](auto const& table, auto const&) {
+        using E = typename std::remove_cvref_t<decltype(table)>::element;
         if (type < lists.size())
           check_numbers<E>(verb, lists[type], static_cast<std::size_t>(table.count()));
-      };
-      check("refine", marked.refine);
-      check("coarsen", marked.coarsen);
-      check("raise", marked.raise);
-      check("lower", marked.lower);
-      ++type;
-    });
-    using Marked = MarkedThere<typename Parts::backend_type>;
-    auto const there = [&](auto const& lists) { return Marked::of(parts.backend, lists); };
-    return Marked{there(marked.refine), there(marked.coarsen), there(marked.raise),
-                  there(marked.lower), marked.raised_rings};
+        ++type;
+      });
+      return Marked::of(parts.backend, lists);
+    };
+    return Marked{there("refine", marked.refine), there("coarsen", marked.coarsen),
+                  there("raise", marked.raise),   there("lower", marked.lower),
+                  there("split", marked.split),   there("split", marked.split_in_two),
+                  there("merge", marked.merge),   marked.raised_rings};
   });
 }
-/// Of those that are marked, where that is all.
+/// Of those that rules mark.
 template <class Parts>
 auto change_on_backend(Parts& parts, MeshMarks const& marks)
     -> std::optional<ChangeOn<typename Parts::mesh_type, typename Parts::backend_type>> {
-  if (!marks.keep_shapes()) return std::nullopt;
   return change_on_backend_by(parts, marks.max_level,
                               [&] { return marked_there(std::as_const(parts), marks); });
 }

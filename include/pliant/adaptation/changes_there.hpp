@@ -69,13 +69,13 @@ class ChangesThere {
 
  private:
   void follow_conversion(On const& on) {
+    static constexpr auto other_types = On::types_by(Conversion::degree);
     auto& elements = pending_->elements;
     on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
       auto const follow = [&](std::size_t type) {
-        std::size_t const other = On::converted_types[type];
+        std::size_t const other = other_types[type];
         elements[type].follow_conversion(parts_.backend, on.element_numbers(type),
-                                         places_of_converted(on.leaves(type), on.leaves(other)),
-                                         other, elements[other]);
+                                         on.converted_places(other, type), other, elements[other]);
       };
       (follow(I), ...);
     });

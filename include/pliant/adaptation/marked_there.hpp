@@ -9,15 +9,14 @@
 
 namespace pliant::detail {
 
-/// Elements to refine, to coarsen, to raise and to lower, where nothing else is marked, in a backend's memory: for each type the user's
-/// numbers. Lists of no types mark none.
+/// MarkedElements in a backend's memory: for each type the user's numbers. Lists of no types mark none.
 template <Backend B>
 struct MarkedThere {
   struct List {
     typename B::template Array<Index> numbers{};  // (count), and room
     Index count = 0;
   };
-  std::vector<List> refine{}, coarsen{}, raise{}, lower{};
+  std::vector<List> refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{}, merge{};
   int raised_rings = 0;
 
   static std::vector<List> of(B const& backend, std::vector<std::vector<Index>> const& lists) {
@@ -32,7 +31,13 @@ struct MarkedThere {
   }
   /// Whether some are to get another degree.
   [[nodiscard]] bool converts() const { return !none_in(raise) || !none_in(lower); }
-  [[nodiscard]] bool none() const { return none_in(refine) && none_in(coarsen) && !converts(); }
+  [[nodiscard]] bool splits() const { return !none_in(split) || !none_in(split_in_two); }
+  [[nodiscard]] bool merges() const { return !none_in(merge); }
+  /// How many kinds of changes are asked for.
+  [[nodiscard]] int kinds() const {
+    return !none_in(refine) + !none_in(coarsen) + !none_in(raise) + !none_in(lower) + splits() +
+           merges();
+  }
   /// Those to refine and to coarsen, on the host.
   [[nodiscard]] MarkedElements lists() const {
     auto const download_all = [](std::vector<List> const& from) {

@@ -46,12 +46,6 @@ struct MeshMarks {
   std::vector<MarkBits> of_types{};
   int raised_rings = 0, max_level = 0;
 
-  /// Whether none are split, and none merged that were.
-  [[nodiscard]] bool keep_shapes() const {
-    return std::ranges::all_of(of_types, [](MarkBits bits) {
-      return (bits[MeshList::split] | bits[MeshList::split_in_two] | bits[MeshList::merge]) == 0;
-    });
-  }
   /// Adds those of a type whose elements rules mark each by the bit of its number.
   template <class... Rules>
   void add(std::tuple<Rules...> const& rules) {
@@ -79,13 +73,19 @@ struct MeshMarks {
   }
 };
 
+/// Lists of marked elements, on the host or in the backend's memory, by the place of each in MeshList.
+template <class Marked>
+auto in_order_of_lists(Marked& marked) {
+  return std::array{&marked.refine,  &marked.raise, &marked.split, &marked.split_in_two,
+                    &marked.coarsen, &marked.lower, &marked.merge};
+}
+
 /// Lists on the host.
 template <class Parts>
 MarkedElements marked_elements(Parts const& parts, MeshMarks const& marks) {
   MarkedElements marked;
   marked.raised_rings = marks.raised_rings;
-  std::array const lists{&marked.refine,  &marked.raise, &marked.split, &marked.split_in_two,
-                         &marked.coarsen, &marked.lower, &marked.merge};
+  auto const lists = in_order_of_lists(marked);
   std::size_t type = 0;
   parts.for_each_type([&](auto const& table, auto const&) {
     for (auto* list : lists) list->emplace_back();
@@ -109,14 +109,15 @@ struct IsOnList {
   }
 };
 
-/// Those that are not for other shapes, in the backend's memory.
+/// The same in the backend's memory.
 template <class Parts>
 auto marked_there(Parts const& parts, MeshMarks const& marks) {
   using B = typename Parts::backend_type;
   auto const& backend = parts.backend;
   MarkedThere<B> marked;
   marked.raised_rings = marks.raised_rings;
-  auto counts = zeros<Index>(backend, 4 * marks.of_types.size());
+  auto const lists = in_order_of_lists(marked);
+  auto counts = zeros<Index>(backend, mesh_lists * marks.of_types.size());
   Index* count = counts.data();
   std::size_t type = 0;
   auto const select = [&](auto const& table, MeshList which, auto& lists) {
@@ -132,24 +133,21 @@ auto marked_there(Parts const& parts, MeshMarks const& marks) {
     ++count;
   };
   parts.for_each_type([&](auto const& table, auto const&) {
-    select(table, MeshList::refine, marked.refine);
-    select(table, MeshList::coarsen, marked.coarsen);
-    select(table, MeshList::raise, marked.raise);
-    select(table, MeshList::lower, marked.lower);
+    for (std::size_t l = 0; l < mesh_lists; ++l) select(table, static_cast<MeshList>(l), *lists[l]);
     ++type;
   });
   auto const found = download<Index>(counts);
   auto next = found.begin();
   type = 0;
   parts.for_each_type([&](auto const& table, auto const&) {
-    for (auto* list :
-         {&marked.refine[type], &marked.coarsen[type], &marked.raise[type], &marked.lower[type]}) {
-      list->count = *next++;
-      if (list->count == 0 || put_numbers(parts, table, list->numbers, list->count)) continue;
-      std::vector<Index> numbers(static_cast<std::size_t>(list->count));
-      list->numbers.download(numbers);
+    for (auto* of_types : lists) {
+      auto& list = (*of_types)[type];
+      list.count = *next++;
+      if (list.count == 0 || put_numbers(parts, table, list.numbers, list.count)) continue;
+      std::vector<Index> numbers(static_cast<std::size_t>(list.count));
+      list.numbers.download(numbers);
       for (Index& number : numbers) number = table.user_element(number);
-      list->numbers.upload(numbers);
+      list.numbers.upload(numbers);
     }
     ++type;
   });

@@ -164,6 +164,10 @@ SplittingReport split(TheBody& body, std::vector<std::vector<Index>> const& mark
     throw Error("split: into ", options.triangles, " triangles; give 2 or 4");
   MarkedElements wanted;
   (options.triangles == 2 ? wanted.split_in_two : wanted.split) = marked;
+  if (auto const done = detail::change_on_backend(body.parts(), wanted, most_levels)) {
+    tell_listeners(body.parts(), done->to_tell);
+    return {done->counts.split, done->new_nodes};
+  }
   auto const plan = plan_change(body.parts(), wanted);
   if (!plan) return {};
   commit(body.parts(), *plan);
@@ -180,6 +184,10 @@ MergingReport merge(TheBody& body, std::vector<std::vector<Index>> const& marked
   static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
                 "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
   detail::check_lists<typename TheBody::mesh_type>("merge", marked);
+  if (auto const done = detail::change_on_backend(body.parts(), {.merge = marked}, most_levels)) {
+    tell_listeners(body.parts(), done->to_tell);
+    return {done->counts.merged, done->gone_nodes};
+  }
   auto const plan = plan_change(body.parts(), {.merge = marked});
   if (!plan) return {};
   commit(body.parts(), *plan);

@@ -32,17 +32,16 @@ template <class B>
   requires requires { requires B::keeps_trees; }
 inline constexpr bool keeps_trees<B> = true;
 
-/// Whether the elements of a mesh have children of their own type, as pyramids have not.
+/// Whether the elements of a mesh are of the catalogue.
 template <class M>
-inline constexpr bool are_divided_alike = false;
+inline constexpr bool are_refinable = false;
 template <Element... Es>
-inline constexpr bool are_divided_alike<Mesh<Es...>> =
-    ((Refinable<Es> && !std::same_as<typename Es::cell, Pyramid>)&&...);
+inline constexpr bool are_refinable<Mesh<Es...>> = (Refinable<Es> && ...);
 
-/// Whether bodies of a kind may be refined and coarsened in their backend's memory.
+/// Whether bodies of a kind may change their mesh in their backend's memory.
 template <class Parts>
 inline constexpr bool changes_on_backend =
-    keeps_trees<typename Parts::backend_type> && are_divided_alike<typename Parts::mesh_type>;
+    keeps_trees<typename Parts::backend_type> && are_refinable<typename Parts::mesh_type>;
 /// Whether types of elements that differ in degree alone come in pairs.
 template <class M>
 inline constexpr bool degrees_are_paired = false;
@@ -71,6 +70,24 @@ inline constexpr bool converts_on_backend =
       };
       return (from(std::type_identity<Tables>{}) && ...);
     }(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
+/// Whether bodies of a kind may change the shape of elements in their backend's memory: where there are some that can be split, and
+/// their points, and those of what they are split into, keep nothing.
+template <class Parts>
+inline constexpr bool splits_on_backend = changes_on_backend<Parts> && []<class... Tables>(
+                                                                           std::tuple<Tables...>*) {
+  bool are_split = false, can_be = true;
+  auto const look_at = [&]<class From, class To>(std::type_identity<From>, std::type_identity<To>) {
+    if constexpr (differ_in_shape<typename From::element, typename To::element>) {
+      are_split = true;
+      can_be = can_be && From::Laws::internal_variable_count == 0 && values_go_along<From, To>;
+    }
+  };
+  auto const from = [&]<class From>(std::type_identity<From> own) {
+    (look_at(own, std::type_identity<Tables>{}), ...);
+  };
+  (from(std::type_identity<Tables>{}), ...);
+  return are_split && can_be;
+}(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
 /// The nodes of elements that are raised, by the kind of cell.
 template <class M>
 NodesOfKinds nodes_when_raised() {
@@ -108,15 +125,15 @@ std::vector<std::vector<Index>> numbers_by_type(Topology<M> const& of,
   }
   return numbers;
 }
-/// What was done to cells in a backend's memory; `merge`: their children were merged.
-enum class ChangeOfCells { refine, merge, raise, lower };
-/// Of a topology, with the same done to some of its cells.
+/// What was done to cells in a backend's memory; `coarsen`, `merge`: their children took part in it.
+enum class ChangeOfCells { refine, coarsen, raise, lower, split, merge };
+/// Of a topology, with the same done to some of its cells; those that are split in two, or pairs of pyramids, are ~cell.
 template <class M>
 TopologyPlan<M> plan_on_host(std::shared_ptr<Topology<M> const> const& before,
                              std::vector<Index> numbers, ChangeOfCells change,
                              ElementValues<M::dim> const& values) {
   HostThreads const threads(*before);
-  if (change == ChangeOfCells::merge) {
+  if (change == ChangeOfCells::coarsen || change == ChangeOfCells::merge) {
     std::vector<Index> children;
     for (Index const c : numbers) {
       auto const& parent = before->tree->cell(c);
@@ -126,7 +143,15 @@ TopologyPlan<M> plan_on_host(std::shared_ptr<Topology<M> const> const& before,
     numbers = std::move(children);
   }
   MarkedElements marked;
-  std::array const lists{&marked.refine, &marked.coarsen, &marked.raise, &marked.lower};
+  if (change == ChangeOfCells::split) {
+    std::vector<Index> in_two;
+    for (Index const c : numbers)
+      if (c < 0) in_two.push_back(~c);
+    std::erase_if(numbers, [](Index c) { return c < 0; });
+    marked.split_in_two = numbers_by_type(*before, in_two);
+  }
+  std::array const lists{&marked.refine, &marked.coarsen, &marked.raise,
+                         &marked.lower,  &marked.split,   &marked.merge};
   *lists[static_cast<std::size_t>(change)] = numbers_by_type(*before, numbers);
   return *plan_change(before, marked, {}, {}, values);
 }

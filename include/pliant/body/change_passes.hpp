@@ -19,6 +19,16 @@ struct CellOfSplit {
   Index* cells;
   PLIANT_HOST_DEVICE void operator()(Index r) const { cells[r] = splits[r].cell; }
 };
+/// The same of cells that are split; of those along a diagonal ~cell.
+struct SplitOfCell {
+  CellSplit const* splits;
+  Index* cells;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const [cell, division] = splits[r];
+    bool const in_two = division == Division::diagonal_0 || division == Division::diagonal_1;
+    cells[r] = in_two ? ~cell : cell;
+  }
+};
 struct RenumberCells {
   NewNumbers numbers;
   Index* cells;
@@ -68,6 +78,28 @@ struct IsMergedForGood {
   PLIANT_HOST_DEVICE bool operator()(Index k) const {
     Index const parent = tree.cells[static_cast<std::size_t>(cells[k])].parent;
     return parent < 0 || !families(parent);
+  }
+};
+/// The same of cells that were split: their parents are known, −1 for none, and of pyramids those across the base.
+struct IsWholeForGood {
+  Index const *parents, *partners;
+  DividedCells families;
+  PLIANT_HOST_DEVICE bool operator()(Index k) const {
+    return !families(parents[k]) && !families(partners[k]);
+  }
+};
+/// Finds these.
+struct FindWholes {
+  TreeView tree;
+  Index const* cells;
+  Index *parents, *partners;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    parents[k] = cells[k] < 0 ? -1 : tree.cells[static_cast<std::size_t>(cells[k])].parent;
+    partners[k] = -1;
+    if (parents[k] < 0) return;
+    auto const& parent = tree.cells[static_cast<std::size_t>(parents[k])];
+    if (parent.is_split() && parent.kind == CellKind::pyramid)
+      partners[k] = tree.across_base(parents[k]);
   }
 };
 /// Whether a cell would not be divided.
@@ -134,6 +166,10 @@ class Divided {
     copy_values<B, Index>(backend, cells, cells_.data(), cells_.size());
     now_ = extended(backend, cells_, cells_.size());
     backend.for_each(count, RenumberCells{numbers, now_.data()});
+  }
+  /// Gives them the numbers that they have behind another change, which leaves them.
+  void renumber(B const& backend, NewNumbers const& numbers) {
+    backend.for_each(static_cast<Index>(now_.size()), RenumberCells{numbers, now_.data()});
   }
   /// Waits.
   template <class Refined>

@@ -58,17 +58,28 @@ struct ListMergedFamilies {
         members[most * r + k] = -1;
   }
 };
-/// The same of elements of which some were of another type: their numbers there; −1: they were not.
+/// The same of elements of which some, or what these came for, were of another type: −1.
 struct FindConvertedOrigins {
   ElementNumbersView now;
-  PlacesOfConverted places;
-  Index const *number_before, *number_before_of_others;  // by the place before
+  LeavesView leaves;
+  Index const* number_before;  // by the place before
   Index *from, *from_others;
   PLIANT_HOST_DEVICE void operator()(Index i) const {
     Index const e = now.number(i);
-    bool const is_other = places.now.comes_from_others(i);
-    from[e] = is_other ? -1 : number_before[places.now.from(i)];
-    from_others[e] = is_other ? number_before_of_others[places(i)] : -1;
+    from[e] = leaves.comes_from_others(i) ? -1 : number_before[leaves.from(i)];
+    from_others[e] = -1;
+  }
+};
+/// Their numbers there.
+struct ListConvertedOrigins {
+  ElementNumbersView now;
+  ConvertedPlaces places;
+  Index const* number_before_of_others;  // by the place before
+  Index* from_others;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    if (!places.has(r)) return;
+    for (Index k = 0; k < places.families[r].come; ++k)
+      from_others[now.number(places.now_at(r) + k)] = number_before_of_others[places.before_at(r)];
   }
 };
 /// Where elements come from in two changes, one behind the other, of which the second divides nothing that the first merged.
@@ -163,17 +174,19 @@ class ElementOriginsOn {
     }
     number_before_ = {};
   }
-  /// Behind one that gave elements another degree, so that some were of type `other` before.
+  /// Behind one in which elements of type `other` became such of this one, `places`.
   void follow_conversion(B const& backend, ElementNumbersView const& numbers,
-                         PlacesOfConverted const& places, std::size_t other,
+                         ConvertedPlaces const& places, std::size_t other,
                          ElementOriginsOn const& others) {
     now = places.now.count;
     other_type = other;
     from_ = unset<Index>(backend, at(now));
     from_others_ = unset<Index>(backend, at(now));
+    backend.for_each(now, FindConvertedOrigins{numbers, places.now, number_before_.data(),
+                                               from_.data(), from_others_.data()});
     backend.for_each(
-        now, FindConvertedOrigins{numbers, places, number_before_.data(),
-                                  others.number_before_.data(), from_.data(), from_others_.data()});
+        places.count,
+        ListConvertedOrigins{numbers, places, others.number_before_.data(), from_others_.data()});
   }
   void forget_before() { number_before_ = {}; }
   /// Whether some were of another type, `other_type`: then there are more than before.

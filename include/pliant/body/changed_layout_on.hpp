@@ -47,7 +47,7 @@ class ChangedLayoutOn {
   ChangedLayoutOn(Parts const& parts, std::shared_ptr<On> on)
       : parts_(parts), on_(std::move(on)), backend_(parts.backend) {}
 
-  /// Whether the change gives elements another degree.
+  /// Whether elements go over to other types in the change.
   bool converts = false;
 
   /// Behind a change, with all but masses, which are not set; what it takes of rows is that of before. Makes the copies. hold(a copy
@@ -105,18 +105,21 @@ class ChangedLayoutOn {
     auto& table = std::get<I>(layout.tables);
     auto const& before = std::get<I>(parts_.layout.tables);
     auto const leaves = on_->leaves(I);
-    auto blocks = blocks_after_change(on_->first_of_block(I), parts_.layout.first_of_block[I]);
+    auto blocks = blocks_after_change(on_->first_of_block(I), parts_.layout.first_of_block[I],
+                                      on_->staying_in(I));
     auto rows = element_rows<E, row_width<Elements>>(
         backend_, on_->tree.view(), leaves, on_->rows.of_node(), before.elements.rows_of_nodes());
     Array<Tag> tags;
     if constexpr (Table<I>::groups > 1)
       tags =
           inherited_values<Tag>(backend_, leaves, std::get<I>(parts_.state.elements).tags.data());
-    if (converts && Table<I>::groups > 1)
-      from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, PlacesOfConverted const& places) {
-        backend_.for_each(leaves.count, ConvertTags<std::size_t{Table<J>::groups}>{
-                                            places, tags_of<J>(), tags.data(),
-                                            converted_groups<Table<J>, Table<I>>()});
+    if constexpr (Table<I>::groups > 1)
+      from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, ConvertedPlaces const& places) {
+        using From = typename Table<J>::element;
+        backend_.for_each(
+            places.count,
+            ConvertTags<std::size_t{Table<J>::groups}, most_parts<E, From>>{
+                places, tags_of<J>(), tags.data(), converted_groups<Table<J>, Table<I>>()});
       });
     table.elements =
         elements_of_rows<Elements>(backend_, std::move(rows), Table<I>::groups, std::move(tags),
@@ -126,15 +129,24 @@ class ChangedLayoutOn {
     constexpr Index values_of_each = Table<I>::Laws::value_count;
     if constexpr (values_of_each > 0) {
       table.values = inherited_values<T>(backend_, leaves, before.values.data(), values_of_each);
-      if (converts)
-        from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, PlacesOfConverted const& places) {
-          std::array<int, std::size_t{values_of_each}> column{};
-          std::ranges::copy(places_of_values<Table<J>, Table<I>>(), column.begin());
-          backend_.for_each(leaves.count,
-                            ConvertValues<T, std::size_t{values_of_each}>{
-                                places, std::get<J>(parts_.layout.tables).values.data(),
-                                table.values.data(), column});
-        });
+      from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, ConvertedPlaces const& places) {
+        using From = typename Table<J>::element;
+        using Families = ConvertedElements<From, E>;
+        std::array<int, std::size_t{values_of_each}> column{};
+        std::ranges::copy(places_of_values<Table<J>, Table<I>>(), column.begin());
+        auto const& from = std::get<J>(parts_.layout.tables);
+        backend_.for_each(places.count,
+                          ConvertValues<T, std::size_t{values_of_each}, Families>{
+                              {.count = places.count,
+                               .places = places,
+                               .before = from.elements.rows_of_nodes(),
+                               .now = {},
+                               .gone_elements = ElementsByRows<From>({on_->points.data()}),
+                               .come_elements = {}},
+                              from.values.data(),
+                              table.values.data(),
+                              column});
+      });
     }
     table.straight = before.straight;
     table.numbers = WhenAsked<ElementNumbers>::by(
@@ -150,13 +162,14 @@ class ChangedLayoutOn {
   [[nodiscard]] Tag const* tags_of() const {
     return Table<J>::groups > 1 ? std::get<J>(parts_.state.elements).tags.data() : nullptr;
   }
-  /// visit(TypeNumber<J>{}, where elements of type I come from among those of type J) for those that differ in degree.
+  /// visit(TypeNumber<J>{}, families of elements of type J of which such of type I are made) for all types J, where there are some.
   template <std::size_t I, class Visit>
   void from_other_types(Visit const& visit) const {
+    if (!converts) return;
     on_types<On::types>([&]<std::size_t... J>(TypeNumber<J>...) {
       auto const look_at = [&]<std::size_t Other>(TypeNumber<Other> other) {
-        if constexpr (differ_in_degree<typename Table<Other>::element, typename Table<I>::element>)
-          visit(other, places_of_converted(on_->leaves(I), on_->leaves(Other)));
+        if constexpr (interchange<typename Table<Other>::element, typename Table<I>::element>)
+          visit(other, on_->converted_places(Other, I));
       };
       (look_at(TypeNumber<J>{}), ...);
     });

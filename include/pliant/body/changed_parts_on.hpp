@@ -132,7 +132,7 @@ class ChangedPartsOn {
     energies_.add_kinetic(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
-    follow_on_host(std::move(parents), ChangeOfCells::merge);
+    follow_on_host(std::move(parents), ChangeOfCells::coarsen);
     on_->hanging.find_after(on_->tree, done);
     on_->order.coarsen(on_->tree, done);
     on_->rows.coarsen(done);

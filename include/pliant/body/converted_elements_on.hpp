@@ -9,97 +9,148 @@
 #include <pliant/backend/backend.hpp>
 #include <pliant/body/carried_points_on.hpp>
 #include <pliant/body/converted_elements.hpp>
+#include <pliant/body/element_rows_on.hpp>
 #include <pliant/body/leaf_order_on.hpp>
+#include <pliant/formulation/mass.hpp>
 #include <pliant/topology/changed_elements.hpp>
 #include <pliant/topology/element_types.hpp>
 
-// Elements that get another degree in a backend's memory: they are of another type then.
+// Elements that get another degree, are split or merged in a backend's memory: they, or what comes for them, are of another type then.
 namespace pliant::detail {
 
 /// Whether a change of degree makes elements of one type of those of the other.
 template <Element From, Element To>
 inline constexpr bool differ_in_degree =
     std::same_as<typename From::cell, typename To::cell> && From::degree != To::degree;
+/// Whether a change of shape does.
+template <Element From, Element To>
+inline constexpr bool differ_in_shape =
+    std::same_as<SplitInto<From>, To> || std::same_as<SplitInto<To>, From>;
 
-/// Where elements of a type were before that were of another one.
-struct PlacesOfConverted {
+/// Into how many elements of one type such of another one are made, at most.
+template <Element From, Element To>
+inline constexpr Index most_parts = !std::same_as<SplitInto<From>, To>                 ? 1
+                                    : std::same_as<typename From::cell, Quadrilateral> ? 4
+                                    : std::same_as<typename From::cell, Hexahedron>    ? 6
+                                                                                       : 2;
+
+/// Families of a change that are elements of one type now and were of another one before, by their places among these.
+struct ConvertedPlaces {
+  ConvertedFamily const* families;
+  Index count;
   LeavesView now;                            // of the type
   Index first_before = 0, count_before = 0;  // of the other one
 
-  /// The place of the element at a place now, among the other type's; −1: it is none of these.
-  [[nodiscard]] PLIANT_HOST_DEVICE Index operator()(Index i) const {
-    if (!now.comes_from_others(i)) return -1;
-    Index const place = now.from_all[i] - first_before;
-    return place >= 0 && place < count_before ? place : -1;
+  /// Whether family r is one of these.
+  [[nodiscard]] PLIANT_HOST_DEVICE bool has(Index r) const {
+    Index const place = now_at(r), own = before_at(r);
+    return place >= 0 && place < now.count && own >= 0 && own < count_before;
+  }
+  /// The places of its first element before and now, if it is.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index before_at(Index r) const {
+    return families[r].first_before - first_before;
+  }
+  [[nodiscard]] PLIANT_HOST_DEVICE Index now_at(Index r) const {
+    return now.places[families[r].cell] - now.first;
   }
 };
-inline PlacesOfConverted places_of_converted(LeavesView const& now, LeavesView const& other) {
-  return {now, other.first_before, other.count_before};
-}
 
-/// Those of listed cells that were elements of one type and are of another one, for loops of a backend: ChangedFamilies of one each.
+/// Families that were elements of one type and are of another one, for loops of a backend: ChangedFamilies; those of other types have
+/// no elements.
 template <Element From, Element To>
 struct ConvertedElements {
   using gone_element = From;
   using come_element = To;
-  static constexpr Index most_gone = 1, most_come = 1;
+  static constexpr Index most_gone = most_parts<To, From>, most_come = most_parts<From, To>;
 
-  Index const* cells;
   Index count;
-  PlacesOfConverted places;
+  ConvertedPlaces places;
   ElementRows before,
       now;  // the rows of nodes of either type's elements, by their places before and now
   ElementsByRows<From> gone_elements;
   ElementsByRows<To> come_elements;
+  Index const* node = nullptr;  // by row: the user's number
 
   [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const {
-    return place_before(r) >= 0 ? 1 : 0;
+    return places.has(r) ? places.families[r].gone : 0;
   }
-  [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const { return gone(r); }
-  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<From> rows_gone(Index r, Index) const {
-    return taken_rows<From>(before[place_before(r)]);
+  [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const {
+    return places.has(r) ? places.families[r].come : 0;
   }
-  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<To> rows_come(Index r, Index) const {
-    return taken_rows<To>(now[place(r)]);
+  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<From> rows_gone(Index r, Index k) const {
+    return taken_rows<From>(before[places.before_at(r) + k]);
   }
-
- private:
-  /// Of another type's elements too.
-  [[nodiscard]] PLIANT_HOST_DEVICE Index place(Index r) const {
-    return places.now.places[cells[r]] - places.now.first;
+  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<To> rows_come(Index r, Index k) const {
+    return taken_rows<To>(now[places.now_at(r) + k]);
   }
-  [[nodiscard]] PLIANT_HOST_DEVICE Index place_before(Index r) const {
-    Index const own = place(r);
-    return own >= 0 && own < places.now.count ? places(own) : -1;
+  /// A row that two pyramids have which are split or merged together: where their base is not plane, volume goes over from one to the
+  /// other, and momentum is counted from the velocity there.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index base_row(Index r) const
+    requires(std::same_as<From, Pyramid5> || std::same_as<To, Pyramid5>) &&
+            (std::same_as<From, Tet4> || std::same_as<To, Tet4>)
+  {
+    auto const first_of = [&](auto const& rows) {
+      Index found = rows[0];
+      for (std::size_t k = 1; k < 4; ++k)
+        if (node[rows[k]] < node[found]) found = rows[k];
+      return found;
+    };
+    if constexpr (std::same_as<From, Pyramid5>)
+      return first_of(rows_gone(r, 0));
+    else
+      return first_of(rows_come(r, 0));
   }
 };
 
-/// Gives converted elements their groups by those that they were in; without these, all were in the first.
-template <std::size_t Groups>
+/// Gives converted elements their groups by those that they were in, of merged ones the most frequent, as Transfer does; without
+/// these, all were in the first.
+template <std::size_t Groups, Index MostGone>
 struct ConvertTags {
-  PlacesOfConverted places;
+  ConvertedPlaces places;
   Tag const* before;
   Tag* now;
   std::array<Tag, Groups> to;
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    if (Index const p = places(i); p >= 0)
-      now[i] = to[before != nullptr ? static_cast<std::size_t>(before[p]) : 0];
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    if (!places.has(r)) return;
+    auto const& family = places.families[r];
+    Tag own[MostGone];
+    for (Index k = 0; k < family.gone; ++k)
+      own[k] =
+          to[before != nullptr ? static_cast<std::size_t>(before[places.before_at(r) + k]) : 0];
+    Tag const tag = merged_value(own, static_cast<Tag const*>(nullptr), family.gone);
+    for (Index k = 0; k < family.come; ++k) now[places.now_at(r) + k] = tag;
   }
 };
-/// Gives them the values that their laws read: each from a column of the other type's.
-template <class T, std::size_t Columns>
+/// Gives them the values that their laws read, each from a column of the other type's; of merged ones the mean by volume.
+template <class T, std::size_t Columns, class Families>
 struct ConvertValues {
-  PlacesOfConverted places;
+  Families families;
   T const* before;
   T* now;
   std::array<int, Columns> column;
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const p = places(i);
-    if (p < 0) return;
-    for (std::size_t k = 0; k < Columns; ++k)
-      now[static_cast<std::ptrdiff_t>(places.now.count) * static_cast<std::ptrdiff_t>(k) + i] =
-          before[static_cast<std::ptrdiff_t>(places.count_before) * column[k] + p];
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const& places = families.places;
+    if (!places.has(r)) return;
+    auto const [cell, come, first, gone] = places.families[r];
+    T volumes[Families::most_gone] = {}, own[Families::most_gone];
+    for (Index k = 0; k < gone && gone > 1; ++k)
+      volumes[k] = static_cast<T>(volume<From, MassQuadrature<From>>(
+          families.gone_elements.rest(families.rows_gone(r, k))));
+    for (std::size_t c = 0; c < Columns; ++c) {
+      for (Index k = 0; k < gone; ++k)
+        own[k] = before[static_cast<std::ptrdiff_t>(places.count_before) * column[c] +
+                        places.before_at(r) + k];
+      T const value = gone > 1 ? merged_value(own, volumes, gone) : own[0];
+      for (Index k = 0; k < come; ++k)
+        now[static_cast<std::ptrdiff_t>(places.now.count) * static_cast<std::ptrdiff_t>(c) +
+            places.now_at(r) + k] = value;
+    }
   }
+
+ private:
+  using From = typename Families::gone_element;
 };
 
 /// From which points those of converted elements take what they keep, by the group that these were in: from the nearest ones, as
@@ -163,14 +214,14 @@ inline constexpr bool values_go_along = []<int... H>(std::integer_sequence<int, 
 
 template <class T, std::size_t Groups>
 struct ConvertPoints {
-  PlacesOfConverted places;
+  ConvertedPlaces places;
   PointsView<T const> before;
   PointsView<T> now;
   std::array<typename ConvertedSources<Groups>::Own, Groups> groups;
   Index const* points;
-  PLIANT_HOST_DEVICE void operator()(Index i) const {
-    Index const p = places(i);
-    if (p < 0) return;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    if (!places.has(r)) return;
+    Index const p = places.before_at(r), i = places.now_at(r);
     auto const& own = groups[static_cast<std::size_t>(before.tag(p))];
     for (Index q = 0; q < own.points; ++q)
       for (Index k = 0; k < own.size; ++k)

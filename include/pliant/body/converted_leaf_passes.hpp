@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <pliant/body/converted_family.hpp>
+#include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/body/node_row_passes.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/tree_view.hpp>
@@ -47,24 +49,55 @@ struct LeafBlocks {
     return lower_place(first, count + 1, place + 1) - 1;
   }
 };
-/// Notes the places that leaves go away from, and keys by which leaves that arrive are sorted: their blocks and, in these, the places
-/// from which they come.
+/// Notes the places that leaves go away from, those that come for them, and keys by which these are sorted: their blocks and, in each, the
+/// places from which they come.
 struct LeavePlaces {
-  static constexpr int bits_of_place = 32;
+  static constexpr int bits_of_sibling = 3, bits_of_place = 32 + bits_of_sibling;
   LeafBlocks blocks;
   Index const* other_block;  // by block: that of the same cells of the other type
-  Index const* cells;
-  Index const* places;  // by cell
+  Index const* places;       // by cell
   std::uint8_t* goes;
   std::uint64_t* keys;
   Index* arriving;
+  ConvertedFamily* families;
 
+  /// Of family r, of which the first that comes is listed at `to`.
+  PLIANT_HOST_DEVICE void leave(Index r, ConvertedFamily const& family, Index to) const {
+    static_assert(RefinementPattern::most_sides <=
+                  1u << bits_of_sibling);  // pyramids of a hexahedron
+    families[r] = family;
+    for (Index k = 0; k < family.gone; ++k) goes[family.first_before + k] = 1;
+    auto const key = static_cast<std::uint64_t>(other_block[blocks.of(family.first_before)])
+                         << bits_of_place |
+                     static_cast<std::uint64_t>(family.first_before) << bits_of_sibling;
+    for (Index k = 0; k < family.come; ++k) {
+      keys[to + k] = key + static_cast<std::uint64_t>(k);
+      arriving[to + k] = family.cell + k;
+    }
+  }
+};
+/// Leaves of another degree.
+struct LeaveConverted : LeavePlaces {
+  Index const* cells;
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    Index const place = places[cells[r]];
-    goes[place] = 1;
-    keys[r] = static_cast<std::uint64_t>(other_block[blocks.of(place)]) << bits_of_place |
-              static_cast<std::uint32_t>(place);
-    arriving[r] = cells[r];
+    leave(r, {cells[r], 1, places[cells[r]], 1}, r);
+  }
+};
+/// Leaves that were split.
+struct LeaveSplit : LeavePlaces {
+  CellSplit const* cells;
+  LeafParts const* parts;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const& own = parts[r];
+    leave(r, {own.cell, own.cells, places[cells[r].cell], 1}, own.cell - parts[0].cell);
+  }
+};
+/// Leaves into which others were split, which are merged.
+struct LeaveMerged : LeavePlaces {
+  Merged of;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    Index const cell = new_cells(of)(of.parents[r]);
+    leave(r, {cell, 1, places[of.first_children[r]], of.children[r]}, r);
   }
 };
 struct StaysThere {
@@ -86,52 +119,62 @@ struct ArrivingLeaves {
     return static_cast<Index>(keys[k] >> LeavePlaces::bits_of_place);
   }
   [[nodiscard]] PLIANT_HOST_DEVICE Index place_before(Index k) const {
-    return static_cast<Index>(static_cast<std::uint32_t>(keys[k]));
+    return static_cast<Index>(static_cast<std::uint32_t>(keys[k] >> LeavePlaces::bits_of_sibling));
   }
 };
 /// Puts leaves that stay, and those that arrive, where they stand now: among those of a block in the order of the tree. Places before
-/// of the latter have no leaf, −1.
+/// of leaves that went have none, −1; the others have the new numbers of theirs.
 struct PutConverted {
   TreeOrder order;
   LeafBlocks blocks;  // before
   ArrivingLeaves arriving;
+  NewNumbers cells;
   std::uint8_t const* goes;
   Index const* start;  // by the place before: how many before it stay
+  Index* staying;      // those that stay, in their order
   Index *before, *leaves, *places, *from;
 
-  /// Of the leaf at a place before.
+  /// Of the leaf at a place before, one function after the other.
+  PLIANT_HOST_DEVICE void list_staying(Index i) const {
+    before[i] = goes[i] != 0 ? -1 : cells(before[i]);
+    if (before[i] >= 0) staying[start[i]] = before[i];
+  }
   PLIANT_HOST_DEVICE void put_staying(Index i) const {
-    if (goes[i] != 0) return;
-    Index const block = blocks.of(i), end = arriving.first_in(block + 1);
-    Index low = arriving.first_in(block), high = end;
-    while (low < high) {
-      Index const middle = low + (high - low) / 2;
-      if (order.precedes(arriving.cells[middle], before[i]))
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    put(start[i] + low, before[i], i);
+    if (before[i] < 0) return;
+    Index const block = blocks.of(i);
+    Index const arrived = count_before(before[i], arriving.cells, arriving.first_in(block),
+                                       arriving.first_in(block + 1));
+    put(start[i] + arrived, before[i], i);
   }
   PLIANT_HOST_DEVICE void put_arriving(Index k) const {
     Index const block = arriving.block(k), cell = arriving.cells[k];
-    Index low = blocks.first[block], high = blocks.first[block + 1];
+    Index const stay =
+        count_before(cell, staying, start[blocks.first[block]], start[blocks.first[block + 1]]);
+    put(stay + k, cell, arriving.place_before(k));
+  }
+
+ private:
+  /// Where a leaf would stand among those from `low` to `high` of a list.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index count_before(Index cell, Index const* list, Index low,
+                                                      Index high) const {
     while (low < high) {
       Index const middle = low + (high - low) / 2;
-      if (order.precedes(before[middle], cell))
+      if (order.precedes(list[middle], cell))
         low = middle + 1;
       else
         high = middle;
     }
-    put(start[low] + k, cell, arriving.place_before(k));
+    return low;
   }
-
- private:
   PLIANT_HOST_DEVICE void put(Index place, Index cell, Index old) const {
     leaves[place] = cell;
     places[cell] = place;
     from[place] = old;
   }
+};
+struct ListStayingLeaves {
+  PutConverted put;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { put.list_staying(i); }
 };
 struct PutStaying {
   PutConverted put;
@@ -141,19 +184,15 @@ struct PutArriving {
   PutConverted put;
   PLIANT_HOST_DEVICE void operator()(Index k) const { put.put_arriving(k); }
 };
-/// Takes leaves away from the places that they had.
-struct ForgetLeaves {
-  ArrivingLeaves arriving;
-  Index* before;
-  PLIANT_HOST_DEVICE void operator()(Index k) const { before[arriving.place_before(k)] = -1; }
-};
-/// Puts the first place of each block where that has come to, and tells it.
+/// Puts the first place of each block where that has come to, and tells it and how many leaves before it stay.
 struct MoveBlocksOfConverted {
   ArrivingLeaves arriving;
   Index const* start;
-  Index *first, *told;
+  Index *first, *told, *told_staying;
   PLIANT_HOST_DEVICE void operator()(Index block) const {
-    told[block] = first[block] = start[first[block]] + arriving.first_in(block);
+    Index const stay = start[first[block]];
+    told_staying[block] = stay;
+    told[block] = first[block] = stay + arriving.first_in(block);
   }
 };
 

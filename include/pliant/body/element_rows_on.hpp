@@ -95,8 +95,35 @@ struct InheritValues {
           from[static_cast<std::ptrdiff_t>(leaves.count_before) * k + leaves.from(i)];
   }
 };
-/// Gives merged leaves what Transfer gives them: of integers the most frequent of their children's, of equal ones the first;
-/// else the mean by volume.
+/// The value of an element that was merged from so many, as Transfer gives it: of integers the most frequent, of equal ones the first;
+/// else the mean by volume. Without volumes all count alike.
+template <class U>
+PLIANT_HOST_DEVICE U merged_value(U const* values, U const* volumes, Index count) {
+  if constexpr (std::is_integral_v<U> || std::is_enum_v<U>) {
+    Index best = 0, most = 0;
+    for (Index i = 0; i < count; ++i) {
+      Index equal = 0;
+      for (Index j = 0; j < count; ++j) equal += values[j] == values[i];
+      if (equal > most) {
+        most = equal;
+        best = i;
+      }
+    }
+    return values[best];
+  } else {
+    auto const volume_of = [&](Index i) { return volumes == nullptr ? U(1) : volumes[i]; };
+    U volume = 0, sum = 0;
+    for (Index i = 0; i < count; ++i) volume += volume_of(i);
+    bool same = true;  // what all have is not rounded
+    for (Index i = 0; i < count; ++i) {
+      same = same && values[i] == values[0];
+      Uncontracted const share = volume_of(i) / volume;
+      sum += static_cast<U>((share * Uncontracted(values[i])).value);
+    }
+    return same ? values[0] : sum;
+  }
+}
+/// Gives merged leaves theirs.
 template <class U>
 struct MergeValues {
   LeavesView leaves;
@@ -110,36 +137,8 @@ struct MergeValues {
                 first = leaves.first_child_before(r);
     for (Index k = 0; k < columns && children > 0; ++k)
       to[static_cast<std::ptrdiff_t>(leaves.count) * k + place] =
-          merged(from + static_cast<std::ptrdiff_t>(leaves.count_before) * k + first,
-                 volumes == nullptr ? nullptr : volumes + first, children);
-  }
-
- private:
-  /// Of children from these on.
-  static PLIANT_HOST_DEVICE U merged(U const* values, U const* volumes, Index children) {
-    if constexpr (std::is_integral_v<U> || std::is_enum_v<U>) {
-      Index best = 0, most = 0;
-      for (Index i = 0; i < children; ++i) {
-        Index equal = 0;
-        for (Index j = 0; j < children; ++j) equal += values[j] == values[i];
-        if (equal > most) {
-          most = equal;
-          best = i;
-        }
-      }
-      return values[best];
-    } else {
-      auto const volume_of = [&](Index i) { return volumes == nullptr ? U(1) : volumes[i]; };
-      U volume = 0, sum = 0;
-      for (Index i = 0; i < children; ++i) volume += volume_of(i);
-      bool same = true;  // what all have is not rounded
-      for (Index i = 0; i < children; ++i) {
-        same = same && values[i] == values[0];
-        Uncontracted const share = volume_of(i) / volume;
-        sum += static_cast<U>((share * Uncontracted(values[i])).value);
-      }
-      return same ? values[0] : sum;
-    }
+          merged_value(from + static_cast<std::ptrdiff_t>(leaves.count_before) * k + first,
+                       volumes == nullptr ? nullptr : volumes + first, children);
   }
 };
 
@@ -159,15 +158,17 @@ typename B::template Array<Index> element_rows(B const& backend, TreeView const&
   return rows;
 }
 
-/// The blocks of the elements after a refinement or a coarsening, the first of each; those of which no leaf was divided or merged
-/// stay, which are those with as many leaves as before. `first_before`: the same before it.
-inline ElementBlocks blocks_after_change(std::vector<Index> first,
-                                         std::vector<Index> first_before) {
+/// The blocks of the elements after a change, the first of each; those of which no leaf was divided or merged stay, which are those
+/// with as many leaves as before. `first_before`: the same before it. `staying`: where leaves go and others come, how many before each
+/// block stay.
+inline ElementBlocks blocks_after_change(std::vector<Index> first, std::vector<Index> first_before,
+                                         std::vector<Index> const& staying = {}) {
   ElementBlocks blocks{std::move(first), {}, std::move(first_before)};
   auto const &now = blocks.first, &then = blocks.first_before;
   blocks.stays.resize(now.size() - 1);
   for (std::size_t b = 0; b + 1 < now.size(); ++b)
-    blocks.stays[b] = now[b + 1] - now[b] == then[b + 1] - then[b];
+    blocks.stays[b] = now[b + 1] - now[b] == then[b + 1] - then[b] &&
+                      (staying.empty() || staying[b + 1] - staying[b] == then[b + 1] - then[b]);
   return blocks;
 }
 

@@ -107,8 +107,12 @@ struct AddFamilyImpulse {
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     Index const gone = families.gone(r), members = gone + families.come(r),
                 steps = members + families.come(r);
-    double base[dim], lost[dim] = {}, volume = 0;
+    double base[dim] = {}, lost[dim] = {}, volume = 0;
     bool is_done = false;
+    constexpr bool shares_base = requires { families.base_row(r); };
+    if constexpr (shares_base)
+      for (int d = 0; d < dim && members > 0; ++d)
+        base[d] = (gone > 1 ? now : before)(families.base_row(r), d);
     // First those that go, then those that come; then these again, which take their shares.
     for (Index step = 0; step < steps && !is_done; ++step)
       with_member(r, step, gone, members, [&](auto const& elements, auto const& rows, bool goes) {
@@ -116,7 +120,7 @@ struct AddFamilyImpulse {
         constexpr int nodes =
             static_cast<int>(std::tuple_size_v<std::remove_cvref_t<decltype(rows)>>);
         if (step < members) {
-          for (int d = 0; d < dim && step == 0; ++d) base[d] = before(rows[0], d);
+          for (int d = 0; d < dim && step == 0 && !shares_base; ++d) base[d] = before(rows[0], d);
           for (int a = 0; a < nodes; ++a) {
             Index const row = rows[static_cast<std::size_t>(a)];
             for (int d = 0; d < dim; ++d) {

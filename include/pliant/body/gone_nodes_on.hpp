@@ -32,11 +32,21 @@ std::vector<Vector<double, E::dim>> places_of_gone(MergedElements<E> const&) {
   return places;
 }
 
-/// Those of lowered elements: (nodes).
+/// Those of lowered elements: (nodes). Those of elements into which one was split around a node, (children, nodes): only that one
+/// goes, and none from pyramids.
 template <Element From, Element To>
 std::vector<Vector<double, From::dim>> places_of_gone(ConvertedElements<From, To> const&) {
   std::vector<Vector<double, From::dim>> places;
-  for (int a = 0; a < From::nodes; ++a) places.push_back(From::place(a));
+  if constexpr (std::same_as<SplitInto<To>, From> && !std::same_as<To, Pyramid5>) {
+    auto const& pattern =
+        pattern_of(kind_of<typename To::cell>,
+                   To::dim == 2 ? Division::four_triangles : Division::six_pyramids);
+    for (int child = 0; child < pattern.children; ++child)
+      for (int a = 0; a < From::nodes; ++a)
+        places.push_back(on_parent<typename From::cell>(From::place(a), pattern, child));
+  } else {
+    for (int a = 0; a < From::nodes; ++a) places.push_back(From::place(a));
+  }
   return places;
 }
 

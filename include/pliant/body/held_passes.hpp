@@ -44,7 +44,13 @@ struct SidesView {
     else
       return tree.sides[at(side)].first_child;
   }
-  static constexpr Index parts = Dim == 2 ? 2 : 4;
+  /// Into how many a divided side is.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index parts_of(Index side) const {
+    if constexpr (Dim == 2)
+      return 2;
+    else
+      return tree.parts_of(tree.sides[at(side)]);
+  }
   /// Calls visit(node) for the nodes that facets have at a side.
   template <class Visit>
   PLIANT_HOST_DEVICE void visit_nodes(Index side, Visit const& visit) const {
@@ -95,7 +101,7 @@ struct DirectionsOf {
   }
 };
 
-/// Parts of sides that were divided are held as these are. A call for each refined cell.
+/// Parts of sides that were divided are held as these are. A call for each divided cell.
 template <class Sides>
 struct InheritConditions {
   Sides sides;
@@ -106,7 +112,9 @@ struct InheritConditions {
     sides.visit_sides(cells[r].cell, [&](Index side) {
       ConditionBits const own = bits[side];
       if (own == 0 || own == differs) return;
-      for (Index k = 0; k < sides.parts; ++k) bits[sides.first_part(side) + k] = own;
+      Index const first = sides.first_part(side);
+      if (first < 0) return;
+      for (Index k = 0; k < sides.parts_of(side); ++k) bits[first + k] = own;
     });
   }
 };
@@ -125,8 +133,10 @@ struct HoldParts {
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     sides.visit_sides(cells[r].cell, [&](Index side) {
       if (bits[side] == differs || !conditions.hold(bits[side], directions)) return;
-      for (Index k = 0; k < sides.parts; ++k)
-        sides.visit_nodes(sides.first_part(side) + k, [&](Index node) {
+      Index const first = sides.first_part(side);
+      if (first < 0) return;
+      for (Index k = 0; k < sides.parts_of(side); ++k)
+        sides.visit_nodes(first + k, [&](Index node) {
           auto& own = held[of_node[node]];
           own = static_cast<DirectionMask>(own | directions);
         });

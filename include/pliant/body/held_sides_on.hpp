@@ -95,7 +95,8 @@ class HeldSidesOn {
       Index const first = sides.first_part(side);
       if (first < 0) continue;
       bool same = true;
-      for (Index k = 1; k < sides.parts; ++k) same = same && bits[at(first + k)] == bits[at(first)];
+      for (Index k = 1; k < sides.parts_of(side); ++k)
+        same = same && bits[at(first + k)] == bits[at(first)];
       bits[at(side)] = same ? bits[at(first)] : detail::differs;
     }
     bits_ = upload(backend, bits);

@@ -32,7 +32,7 @@ struct LeavesView {
 
   /// The place before of the leaf at a place, of a child its parent's, of a merged parent its first child's.
   [[nodiscard]] PLIANT_HOST_DEVICE Index from(Index i) const { return from_all[i] - first_before; }
-  /// Whether it was none of these then: it has another degree now.
+  /// Whether it was none of these then: it, or what it came for, was of another type.
   [[nodiscard]] PLIANT_HOST_DEVICE bool comes_from_others(Index i) const {
     return has_others && (from(i) < 0 || from(i) >= count_before);
   }
@@ -91,6 +91,11 @@ class LeafOrderOn {
   /// What the last change merged: (merged_count()), in the order of Coarsened::parents. Nothing, if that was a refinement.
   [[nodiscard]] MergedFamily const* merged_families() const { return families_.data(); }
   [[nodiscard]] Index merged_count() const { return merged_; }
+  /// What the last change converted, if it did.
+  [[nodiscard]] ConvertedFamily const* converted_families() const { return converted_.data(); }
+  [[nodiscard]] Index converted_count() const { return converted_count_; }
+  /// How many leaves before each block stayed, once the backend was waited for since such a change.
+  [[nodiscard]] std::vector<Index> told_staying() const { return told_staying_.all(); }
   /// The place of the first leaf of each block, and behind the last one.
   [[nodiscard]] Index const* first_of_block() const { return first_.data(); }
   [[nodiscard]] Index blocks() const { return blocks_; }
@@ -137,36 +142,32 @@ class LeafOrderOn {
     merged_ = 0;
   }
 
-  /// Puts leaves that have another degree into other blocks: `other_block`, by block; no leaf goes away from these. `first`: places of
-  /// the initial mesh's cells. All arrays are in the backend's memory.
-  void convert(TreeView const& tree, Index const* cells, Index count, Index const* other_block,
+  /// Puts leaves that are of another type now into other blocks: `other_block`, by block. `first`: places of the initial mesh's cells. All
+  /// arrays are in the backend's memory. Of leaves that have another degree,
+  void convert(TreeOn<B> const& tree, Index const* cells, Index count, Index const* other_block,
                Index const* first) {
-    using detail::LoopStep, detail::ScanStep, detail::SortStep;
-    auto goes = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(count_));
-    detail::grow(backend_, start_, static_cast<std::size_t>(count_) + 1);
-    detail::grow(backend_, others_, static_cast<std::size_t>(count_));
-    detail::grow(backend_, from_, static_cast<std::size_t>(count_));
-    detail::grow(backend_, keys_, static_cast<std::size_t>(count));
-    detail::grow(backend_, arriving_, static_cast<std::size_t>(count));
-    detail::LeafBlocks const blocks{first_.data(), blocks_};
-    detail::ArrivingLeaves const arriving{count, keys_.data(), arriving_.data()};
-    detail::PutConverted const put{{tree, first},  blocks,         arriving,
-                                   goes.data(),    start_.data(),  leaves_.data(),
-                                   others_.data(), places_.data(), from_.data()};
-    int const bits = detail::LeavePlaces::bits_of_place + detail::key_bits(blocks_);
-    detail::in_turn(
-        backend_,
-        LoopStep{count, detail::LeavePlaces{blocks, other_block, cells, places_.data(), goes.data(),
-                                            keys_.data(), arriving_.data()}},
-        SortStep{count, keys_.data(), arriving_.data(), bits},
-        ScanStep{count_, detail::StaysThere{goes.data()}, start_.data()},
-        LoopStep{count_, detail::PutStaying{put}}, LoopStep{count, detail::PutArriving{put}},
-        LoopStep{count, detail::ForgetLeaves{arriving, leaves_.data()}},
-        LoopStep{blocks_ + 1, detail::MoveBlocksOfConverted{arriving, start_.data(), first_.data(),
-                                                            told_.data()}});
-    std::swap(leaves_, others_);
-    count_before_ = count_;
-    merged_ = 0;
+    convert_by(tree, count, count, {tree.sizes().cells, nullptr}, other_block, first,
+               [&](auto const& leaving) {
+                 return detail::LeaveConverted{leaving, cells};
+               });
+  }
+  /// of leaves that were split,
+  void convert(TreeOn<B> const& tree, typename TreeOn<B>::Split const& done,
+               Index const* other_block, Index const* first) {
+    detail::grow_keeping(backend_, places_, places_.size(),
+                         static_cast<std::size_t>(tree.sizes().cells));
+    convert_by(tree, done.leaves, tree.leaves() - count_ + done.leaves,
+               {tree.sizes().cells, nullptr}, other_block, first, [&](auto const& leaving) {
+                 return detail::LeaveSplit{leaving, done.cells, done.parts};
+               });
+  }
+  /// and of such that were merged.
+  void convert(TreeOn<B> const& tree, Merged const& done, Index const* other_block,
+               Index const* first) {
+    convert_by(tree, done.merged, done.merged, detail::new_cells(done), other_block, first,
+               [&](auto const& leaving) {
+                 return detail::LeaveMerged{leaving, done};
+               });
   }
 
   /// Puts merged parents in the place where their children stood. `tree`: after that.
@@ -193,6 +194,49 @@ class LeafOrderOn {
   }
 
  private:
+  /// `families`: how many leaves go, each or several of one parent; `come`: how many come; leave(a LeavePlaces): a loop over families.
+  template <class MakeLeave>
+  void convert_by(TreeOn<B> const& tree, Index families, Index come,
+                  detail::NewNumbers const& cells, Index const* other_block, Index const* first,
+                  MakeLeave const& leave) {
+    using detail::LoopStep, detail::ScanStep, detail::SortStep;
+    auto const room = [&](auto& array, Index count) {
+      detail::grow(backend_, array, static_cast<std::size_t>(count));
+    };
+    Index const after = tree.leaves();
+    auto goes = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(count_));
+    room(start_, count_ + 1);
+    room(staying_, count_);
+    room(others_, after);
+    room(from_, after);
+    room(keys_, come);
+    room(arriving_, come);
+    room(converted_, families);
+    if (told_staying_.size() == 0) told_staying_ = ReadBack<B, Index>(backend_, told_.size());
+    detail::LeafBlocks const blocks{first_.data(), blocks_};
+    detail::ArrivingLeaves const arriving{come, keys_.data(), arriving_.data()};
+    detail::PutConverted const put{
+        {tree.view(), first}, blocks,         arriving,        cells,
+        goes.data(),          start_.data(),  staying_.data(), leaves_.data(),
+        others_.data(),       places_.data(), from_.data()};
+    int const bits = detail::LeavePlaces::bits_of_place + detail::key_bits(blocks_);
+    detail::in_turn(
+        backend_,
+        LoopStep{families,
+                 leave(detail::LeavePlaces{blocks, other_block, places_.data(), goes.data(),
+                                           keys_.data(), arriving_.data(), converted_.data()})},
+        SortStep{come, keys_.data(), arriving_.data(), bits},
+        ScanStep{count_, detail::StaysThere{goes.data()}, start_.data()},
+        LoopStep{count_, detail::ListStayingLeaves{put}}, LoopStep{count_, detail::PutStaying{put}},
+        LoopStep{come, detail::PutArriving{put}},
+        LoopStep{blocks_ + 1, detail::MoveBlocksOfConverted{arriving, start_.data(), first_.data(),
+                                                            told_.data(), told_staying_.data()}});
+    std::swap(leaves_, others_);
+    count_before_ = std::exchange(count_, after);
+    merged_ = 0;
+    converted_count_ = families;
+  }
+
   static std::vector<Index> first_blocks(Index count) {
     std::vector<Index> first;
     for (Index c = 0; c < count; c += cells_per_block) first.push_back(c);
@@ -205,9 +249,12 @@ class LeafOrderOn {
   Array<Index> places_, from_, start_, first_;
   ReadBack<B, Index> told_;  // first_
   Array<MergedFamily> families_;
+  Array<ConvertedFamily> converted_;
+  Array<Index> staying_;  // leaves, of a change that converts some
+  ReadBack<B, Index> told_staying_;
   Array<std::uint64_t> keys_;  // of leaves that go over to another type
   Array<Index> arriving_;
-  Index count_ = 0, count_before_ = 0, blocks_ = 0, merged_ = 0;
+  Index count_ = 0, count_before_ = 0, blocks_ = 0, merged_ = 0, converted_count_ = 0;
 };
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pliant/body/acting_on.hpp>
+#include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/element_numbers_on.hpp>
 #include <pliant/body/family_momentum_on.hpp>
 #include <pliant/body/gone_nodes_on.hpp>
@@ -40,6 +41,9 @@ struct OnHost {
   bool is_changing = false;                       // between two versions
 };
 
+/// How elements go over to another type.
+enum class Conversion : std::size_t { degree, split, merge };
+
 /// What a body keeps of its topology in a backend's memory while its mesh is changed there.
 template <class M, Backend B>
 struct TopologyOn;
@@ -50,9 +54,16 @@ struct TopologyOn<Mesh<Es...>, B> {
   static constexpr int dim = M::dim;
   static constexpr std::size_t types = sizeof...(Es);
   static constexpr bool has_several = types > 1;
-  /// The type that elements of each are of when they get another degree; the same where there is none.
-  static constexpr std::array<std::size_t, types> converted_types{
-      (converted_type<Es, M> == no_type ? detail::type_in<Es, M> : converted_type<Es, M>)...};
+  /// The type that elements of each become by a conversion; the same where there is none.
+  static constexpr std::array<std::size_t, types> types_by(Conversion how) {
+    auto const or_own = [](std::size_t found, std::size_t own) {
+      return found == no_type ? own : found;
+    };
+    return {or_own(how == Conversion::degree  ? converted_type<Es, M>
+                   : how == Conversion::split ? detail::type_in<SplitInto<Es>, M>
+                                              : detail::whole_type<Es, M>,
+                   detail::type_in<Es, M>)...};
+  }
   /// After so many changes the host follows, or of so many cells for each element, so that what it has to keep has an end.
   static constexpr int most_changes = 512, most_cells = 64;
   /// Where the elements of each type begin among all, and behind the last one.
@@ -63,6 +74,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   Bounds first_block, first_place,
       first_before;  // in that: of blocks; of leaves, and of those before the last change
   std::vector<Index> first_of_blocks{};  // of all types, behind a change
+  std::vector<Index> staying{};          // see LeafOrderOn; empty: nothing was converted
   NodeRowsOn<B> rows;
   std::array<ElementNumbersOn<B>, types> numbers;
   HangingNodesOn<dim, B> hanging;
@@ -71,8 +83,8 @@ struct TopologyOn<Mesh<Es...>, B> {
   GoneNodesOn<B> gone;
   typename B::template Array<double> points;  // (rows, node_stride), m
   typename B::template Array<Index>
-      first_places{};  // of the initial mesh's cells, once some leaf got another degree
-  typename B::template Array<Index> other_block{};  // see LeafOrderOn::convert
+      first_places{};  // of the initial mesh's cells, once some leaf went over to another type
+  std::array<typename B::template Array<Index>, 3> other_blocks{};  // see LeafOrderOn::convert
   HeldSidesOn<dim, std::min({nodes_on_cell<Es>...}), std::max({nodes_on_cell<Es>...}), B> held;
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
@@ -98,24 +110,40 @@ struct TopologyOn<Mesh<Es...>, B> {
     for (Index& place : own) place -= first_place[type];
     return own;
   }
+  /// How many leaves of a type before each of its blocks stayed, where some were converted.
+  [[nodiscard]] std::vector<Index> staying_in(std::size_t type) const {
+    if (staying.empty()) return {};
+    return {staying.begin() + first_block[type], staying.begin() + first_block[type + 1] + 1};
+  }
   /// Notes where types and blocks begin behind a change of the order, since which the backend was waited for.
-  void follow_order() {
+  void follow_order(bool converts = false) {
     first_of_blocks = order.told_first_of_block();
+    staying = converts ? order.told_staying() : std::vector<Index>{};
     first_before = first_place;
     for (std::size_t type = 0; type <= types; ++type)
       first_place[type] = first_of_blocks[static_cast<std::size_t>(first_block[type])];
   }
-  /// Puts leaves that have another degree among those of their type. `first`: of the initial mesh.
-  void convert_order(B const& backend, Index const* cells, Index count, CellOrder const& first) {
-    if (first_places.size() == 0) {
-      first_places = upload(backend, first.places);
+  /// Puts leaves that went over to another type among those of it: `what`, see LeafOrderOn::convert. `first`: of the initial mesh.
+  template <class... What>
+  void convert_order(B const& backend, Conversion how, CellOrder const& first,
+                     What const&... what) {
+    if (first_places.size() == 0) first_places = upload(backend, first.places);
+    auto& other_block = other_blocks[static_cast<std::size_t>(how)];
+    if (other_block.size() == 0) {
+      auto const other_types = types_by(how);
       std::vector<Index> other;
       for (std::size_t type = 0; type < types; ++type)
         for (Index block = first_block[type]; block < first_block[type + 1]; ++block)
-          other.push_back(block - first_block[type] + first_block[converted_types[type]]);
+          other.push_back(block - first_block[type] + first_block[other_types[type]]);
       other_block = upload(backend, other);
     }
-    order.convert(tree.view(), cells, count, other_block.data(), first_places.data());
+    order.convert(tree, what..., other_block.data(), first_places.data());
+  }
+  /// Elements of one type that were of another one before such a change.
+  [[nodiscard]] detail::ConvertedPlaces converted_places(std::size_t from, std::size_t to) const {
+    auto const before = leaves(from);
+    return {order.converted_families(), order.converted_count(), leaves(to), before.first_before,
+            before.count_before};
   }
   [[nodiscard]] NodeField<double, dim> point_field() { return node_field<dim>(points); }
   /// Whether what is prescribed is what a body's conditions and pressures are now.

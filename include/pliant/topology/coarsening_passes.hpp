@@ -13,7 +13,8 @@
 // Passes over cells of a tree that is coarsened, for loops of a backend.
 namespace pliant::detail {
 
-/// Stamps marked leaves that may go, and lists the cells of which they are children: refined ones, or split ones.
+/// Stamps marked leaves that may go, and lists the cells of which they are children: refined ones, or split ones. Negative marks are
+/// none.
 struct ListFamilies {
   TreeView tree;
   Index const* marked;
@@ -21,6 +22,7 @@ struct ListFamilies {
   ListOnce list;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (marked[k] < 0) return;
     auto const& cell = tree.cells[static_cast<std::size_t>(marked[k])];
     if (cell.first_child >= 0 || cell.parent < 0) return;
     if (tree.cells[static_cast<std::size_t>(cell.parent)].is_split() != of_split) return;
@@ -84,15 +86,16 @@ struct LeaveChildrenOut {
     if (i < tree.cells[static_cast<std::size_t>(c)].divided().children) leave_child_out(tree, c, i);
   }
 };
-/// Makes divided cells leaves of the degree of their children. Notes the first of these.
+/// Makes divided cells leaves of the degree of their children. Notes the first of these, and how many they were.
 struct MergeCells {
   TreeView tree;
   Index const* parents;
-  Index* first_children;
+  Index *first_children, *children;
 
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     auto& cell = tree.cells[static_cast<std::size_t>(parents[k])];
     first_children[k] = cell.first_child;
+    children[k] = cell.divided().children;
     cell.has = tree.cells[static_cast<std::size_t>(cell.first_child)].has;
     merge_cell(tree, parents[k]);
   }

@@ -94,9 +94,18 @@ struct TypesOf<Mesh<Es...>> {
     (visit(Es{}, type++), ...);
   }
 };
-/// The place of an element type among a mesh's.
-template <Element E, class M>
+/// The place of an element type among a mesh's; no_type where it is not there.
+template <class E, class M>
 inline constexpr std::size_t type_in = TypesOf<M>::template place_of<E>;
+/// That of the elements which are split into such of a type; no_type where there is none.
+template <Element E, class M>
+inline constexpr std::size_t whole_type = no_type;
+template <Element E, Element... Es>
+inline constexpr std::size_t whole_type<E, Mesh<Es...>> = [] {
+  std::size_t at = 0, found = no_type;
+  ((std::same_as<SplitInto<Es>, E> ? found = at++ : at++), ...);
+  return found;
+}();
 template <class M, std::size_t Type>
 using ElementOfType = std::tuple_element<Type, typename TypesOf<M>::tuple>;
 

@@ -78,7 +78,9 @@ struct Lowered : Coarsened {
   Index const* lowered_cells = nullptr;  ///< (lowered): these, ascending
 };
 /// What a call of TreeOn::merge did: as of TreeOn::coarsen, of cells that were split.
-struct Merged : Coarsened {};
+struct Merged : Coarsened {
+  Index const* children = nullptr;  ///< (merged): how many leaves each was split into
+};
 
 namespace detail {
 inline void check_max_level(char const* where, int max_level) {

@@ -51,10 +51,12 @@ class TreeCoarsening {
               LoopStep{knowing, MarkKnowing{listed(done, knowing), nullptr, marks}});
     });
     grow(backend, first_children_, at(merged));
+    grow(backend, children_, at(merged));
     in_turn(
         backend,
         LoopStep{merged * LeaveChildrenOut::each, LeaveChildrenOut{tree.view(), parents_.data()}},
-        LoopStep{merged, MergeCells{tree.view(), parents_.data(), first_children_.data()}});
+        LoopStep{merged, MergeCells{tree.view(), parents_.data(), first_children_.data(),
+                                    children_.data()}});
     KnowingCells knowing = listed(done, found[2]);
     Index newer = 0;  // cells that may know of others beside these
     if (finds_first) {
@@ -71,6 +73,9 @@ class TreeCoarsening {
     tell_numbers(done);
     return done;
   }
+
+  /// How many children the parents had that the last call merged.
+  [[nodiscard]] Index const* children() const { return children_.data(); }
 
   /// Takes the nodes away that nobody has any more behind cells that have corners only now, ascending. See TreeOn::lower.
   Lowered lower(B const& backend, PagedTree<B>& tree, TreeSizes const& initial,
@@ -241,7 +246,7 @@ class TreeCoarsening {
   }
 
   DivisionMarks divisions_, kept_divisions_;
-  Array<Index> families_, parents_, first_children_, before_;
+  Array<Index> families_, parents_, first_children_, children_, before_;
   Array<Index> counters_;
   ReadBack<B, Index> counts_;
   Array<Index> knowing_;      // see list_knowing

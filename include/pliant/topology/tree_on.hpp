@@ -166,8 +166,9 @@ class TreeOn {
   /// The same of cells that were split into leaves with corners only, all of which are marked; of two pyramids that share a base both
   /// or none.
   Merged merge(Index const* marked, Index count) {
-    return {counted(coarsening_(backend_, lists_, initial_, sizes(), degrees(), few, stamps_,
-                                marked, count, true))};
+    auto const done = counted(coarsening_(backend_, lists_, initial_, sizes(), degrees(), few,
+                                          stamps_, marked, count, true));
+    return {done, coarsening_.children()};
   }
 
   /// Marked leaves and rings of leaves around them, each of which shares an edge, whole or in part, with one of the ring before: how
