@@ -141,7 +141,7 @@ struct Beside {
 
 constexpr auto can_be_split = []<Element E>(E) { return !std::is_void_v<SplitInto<E>>; };
 constexpr auto are_parts = []<Element E>(E) { return is_part<E>; };
-constexpr auto are_whole = []<Element E>(E) { return !is_part<E>; };
+constexpr auto any = [](auto) { return true; };
 
 template <class P, class B>
 void check_shapes(B const& backend, int rounds) {
@@ -153,7 +153,8 @@ void check_shapes(B const& backend, int rounds) {
   CentralDifference steps({.step = dt}), of_host({.step = dt});
   std::size_t split = 0, merged = 0;
   for (int round = 0; round < rounds; ++round) {
-    if (round < 2) both.refine(both.some(is_solid ? 20 : 8, are_whole));
+    if (round < 2) both.refine(both.some(is_solid ? 40 : 8, any));
+    both.check_place();
     split += both.split(both.some(3, can_be_split), round % 2 == 0 ? 4 : 2);
     both.check_place();
     if (round != 1) both.check_all();
@@ -197,14 +198,13 @@ TEST_CASE("elements are split and merged in a backend's memory as on the host", 
   });
 }
 
-/// Marks for everything at once, as rules give them: what is refined, or split, is on no other list.
+/// Marks for everything at once, as rules give them: what is refined, or split, is on no other list. `coarsens`: less is so.
 template <class P, class B>
-MarkedElements marks_of_all_sorts(Beside<P, B>& both) {
-  auto const all = [](auto) { return true; };
-  MarkedElements marked{.refine = both.some(24, are_whole),
-                        .coarsen = both.some(1, all),
-                        .split = both.some(12, can_be_split),
-                        .split_in_two = both.some(16, can_be_split),
+MarkedElements marks_of_all_sorts(Beside<P, B>& both, bool coarsens) {
+  MarkedElements marked{.refine = both.some(P::dim == 3 || coarsens ? 80 : 24, any),
+                        .coarsen = both.some(1, any),
+                        .split = both.some(coarsens ? 60 : 12, can_be_split),
+                        .split_in_two = both.some(coarsens ? 60 : 16, can_be_split),
                         .merge = both.some(1, are_parts)};
   std::vector const in_order{&marked.refine, &marked.split, &marked.split_in_two};
   for (std::size_t k = 0; k < in_order.size(); ++k) {
@@ -231,30 +231,36 @@ auto change(TheBody& body, MarkedElements const& marked) {
   return plan->counts;
 }
 
+template <class P, class B>
+void check_all_sorts(B const& backend, int rounds) {
+  Beside<P, B> both(backend);
+  typename TopologyPlan<typename P::mesh_type>::Counts sums;
+  for (int round = 0; round < rounds; ++round) {
+    auto const marked = marks_of_all_sorts(both, round % 3 == 2);
+    auto const done = change(both.body, marked), wanted = change(both.host, marked);
+    CHECK(done.refined == wanted.refined);
+    CHECK(done.coarsened == wanted.coarsened);
+    CHECK(done.split == wanted.split);
+    CHECK(done.merged == wanted.merged);
+    sums.coarsened += done.coarsened;
+    sums.split += done.split;
+    sums.merged += done.merged;
+    both.check_place();
+    CHECK(both.body.mesh().nodes == both.host.mesh().nodes);
+    CHECK(both.body.mesh().tables == both.host.mesh().tables);
+    CHECK(both.body.parts().layout.own_masses() == both.host.parts().layout.own_masses());
+    CHECK(ledger(both.body).back().action == ledger(both.host).back().action);
+  }
+  CHECK(sums.coarsened > 3);
+  CHECK(sums.split > 20);
+  CHECK(sums.merged > 5);
+}
+
 TEST_CASE("elements are split and merged beside others that are refined and coarsened at once",
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
-    Beside<Plane, B> both(backend);
-    typename TopologyPlan<Plane::mesh_type>::Counts sums;
-    for (int round = 0; round < 12; ++round) {
-      auto const marked = marks_of_all_sorts(both);
-      auto const done = change(both.body, marked), wanted = change(both.host, marked);
-      CHECK(done.refined == wanted.refined);
-      CHECK(done.coarsened == wanted.coarsened);
-      CHECK(done.split == wanted.split);
-      CHECK(done.merged == wanted.merged);
-      sums.coarsened += done.coarsened;
-      sums.split += done.split;
-      sums.merged += done.merged;
-      both.check_place();
-      CHECK(both.body.mesh().nodes == both.host.mesh().nodes);
-      CHECK(both.body.mesh().tables == both.host.mesh().tables);
-      CHECK(both.body.parts().layout.own_masses() == both.host.parts().layout.own_masses());
-      CHECK(ledger(both.body).back().action == ledger(both.host).back().action);
-    }
-    CHECK(sums.coarsened > 3);
-    CHECK(sums.split > 20);
-    CHECK(sums.merged > 5);
+    check_all_sorts<Plane>(backend, 16);
+    check_all_sorts<Solid>(backend, 12);
   });
 }
 
@@ -281,23 +287,43 @@ TEST_CASE("the host splits and merges where listeners are told, or a node has to
   });
 }
 
-TEST_CASE("the host refines pyramids, and merges their children", "[adaptation]") {
+TEST_CASE("pyramids are refined and merged in a backend's memory as on the host", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     Beside<Solid, B> both(backend);
-    both.split({{0, 1, 2}, {}, {}});
-    both.check_place();
-    both.refine({{3}, {}, {}});
-    both.check_place();
-    both.refine({{}, {2, 7}, {}});
-    CHECK(!is_on_backend(both.body));
+    auto const first = both.body.mesh();
+    auto const masses = both.body.parts().layout.own_masses();
+    both.split({{0, 1, 2, 3, 4, 5, 6, 7, 8}, {}, {}});
+    both.refine({{}, {2, 7, 11, 20}, {}});
     both.check_all();
-    for (int k = 0; k < HostChanges::some; ++k) both.split({{k}, {}, {}});
-    both.split({{5}, {}, {}});
+    std::size_t merged = 0;
+    for (int round = 0; round < 2; ++round) {
+      both.refine(both.some(25, any), 2);
+      both.check_place();
+      both.check_all();
+      std::vector<Index> some;
+      for (Index e = 0; e < static_cast<Index>(both.host.mesh().template elements<Tet4>().size());
+           e += 3)
+        some.push_back(e);
+      for (auto* one : {&both.body, &both.host}) one->template assign<Solid::Tets>(some);
+      auto loads = nodal_loads_of(both.host.parts());
+      for (std::size_t i = 0; i < loads.size(); ++i) loads[i][1] += 0.1 * std::cos(double(i));
+      for (auto* one : {&both.body, &both.host}) one->set_loads(loads);
+      auto most = both.some(1, any);
+      for (auto& list : most)
+        std::erase_if(list, [&](Index) { return both.random.below(30) == 0; });
+      merged += both.coarsen(most);
+      both.check_place();
+      both.check_all();
+      both.go_on_alike();
+    }
+    CHECK(merged > 4);
+    for (std::size_t changed = 1; changed > 0;)
+      changed = both.coarsen(test::all(both.host, -1)) + both.merge(both.some(1, are_parts));
     both.check_place();
     both.check_all();
-    CHECK(both.coarsen(test::all(both.host, -1)) > 1);
-    CHECK(!is_on_backend(both.body));
-    both.check_all();
+    CHECK(both.body.mesh().nodes == first.nodes);
+    CHECK(both.body.mesh().tables == first.tables);
+    CHECK(both.body.parts().layout.own_masses() == masses);
   });
 }
 

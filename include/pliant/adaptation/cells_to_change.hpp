@@ -11,22 +11,6 @@
 // Cells of a tree in a backend's memory that are to change, and which of them have to stay as they are.
 namespace pliant::detail {
 
-/// Whether listed cells, or with other numbers now, are pyramids: 1, or 0.
-template <class Cell>
-struct IsPyramid {
-  TreeView tree;
-  Cell const* cells;
-  NewNumbers numbers;
-  PLIANT_HOST_DEVICE double operator()(Index r) const {
-    Index const c = numbers(number(cells[r]));
-    return tree.cells[static_cast<std::size_t>(c)].kind == CellKind::pyramid ? 1 : 0;
-  }
-
- private:
-  static PLIANT_HOST_DEVICE Index number(Index c) { return c; }
-  static PLIANT_HOST_DEVICE Index number(CellSplit const& split) { return split.cell; }
-};
-
 /// Cells to merge with those of their families, refined or split ones, to give a lower degree, to divide, to give a higher degree, and
 /// to split; −1: gone.
 template <Backend B>
@@ -45,8 +29,9 @@ struct CellsToChange {
   }
   [[nodiscard]] CellsToChange copy(B const& backend) {
     CellsToChange copied;
-    auto to = copied.all().begin();
-    for (auto* list : all()) **to++ = extended(backend, *list, list->size());
+    auto const from = all(), to = copied.all();
+    for (std::size_t l = 0; l < from.size(); ++l)
+      *to[l] = extended(backend, *from[l], from[l]->size());
     return copied;
   }
 

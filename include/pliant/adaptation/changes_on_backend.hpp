@@ -37,7 +37,6 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
   using Cells = typename B::template Array<Index>;
   using Marked = MarkedThere<B>;
   using Lists = std::vector<typename Marked::List>;
-  static constexpr bool has_pyramids = has_type<Pyramid5, M>;
 
  public:
   ChangesOnBackend(Parts& parts, int max_level)
@@ -48,7 +47,8 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     check_nobody_is_told(std::as_const(parts_), "change of the mesh");
     bool const converts = marked.converts() || marked.splits() || marked.merges();
     if (converts && !can_convert(marked)) return std::nullopt;
-    if (has_pyramids && marked.kinds() > 1) return std::nullopt;  // see has_pyramid
+    // Listeners there cannot be told where tetrahedra come from that pyramids have for children.
+    if (On::has_pyramids && !parts_.backend_listeners.empty()) return std::nullopt;
     if (!parts_.topology_on && !parts_.state.topology->tree && Marked::none_in(marked.refine) &&
         !marked.converts() && !marked.splits())
       return Done{};  // nothing to merge
@@ -139,8 +139,7 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     if (cells.coarsen.size() > 0) {
       auto const merged = on().tree.coarsen(cells.coarsen.data(), size(cells.coarsen));
       if (merged.merged > 0) {
-        if (has_pyramid(merged.parents, merged.merged, new_cells(merged)) || !may_be(merged))
-          return std::nullopt;
+        if (!may_be(merged)) return std::nullopt;
         counts.coarsened = static_cast<std::size_t>(merged.merged);
         done.gone_nodes = static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
         cells.renumber(backend(), merged);
@@ -158,8 +157,6 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     if (cells.refine.size() > 0) {
       auto const refined = on().tree.refine(cells.refine.data(), size(cells.refine), limits_);
       if (refined.leaves > 0) {
-        if (has_pyramid(refined.cells, refined.leaves, {on().tree.sizes().cells, nullptr}))
-          return std::nullopt;
         counts.refined = static_cast<std::size_t>(refined.leaves);
         done.new_nodes += static_cast<std::size_t>(refined.new_nodes);
         this->commit("refine", counts.refined, refined, plan_.has_value(),
@@ -223,20 +220,6 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     if (!may) on().tree.take_back();
     return may;
   }
-  /// Whether there is a pyramid among cells that were refined, or whose children were merged: the host has to do that, since children
-  /// of pyramids are of two types. Then the tree is as it was.
-  template <class Cell>
-  bool has_pyramid(Cell const* cells, Index count, NewNumbers const& numbers) {
-    if constexpr (has_pyramids) {
-      IsPyramid<Cell> const is_one{on().tree.view(), cells, numbers};
-      if (backend().maximum(count, is_one) == 0) return false;
-      on().tree.take_back();
-      return true;
-    } else {
-      return false;
-    }
-  }
-
   using Base::parts_, Base::plan_, Base::planned_, Base::merged_, Base::there_;
   RefinementLimits limits_;
 };

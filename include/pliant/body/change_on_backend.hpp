@@ -38,10 +38,28 @@ inline constexpr bool are_refinable = false;
 template <Element... Es>
 inline constexpr bool are_refinable<Mesh<Es...>> = (Refinable<Es> && ...);
 
-/// Whether bodies of a kind may change their mesh in their backend's memory.
+/// Whether the points of elements that others are split into, or these, keep nothing, and the laws of either read what those of the other
+/// do.
+template <class Parts>
+inline constexpr bool shapes_go_along = []<class... Tables>(std::tuple<Tables...>*) {
+  auto const from = []<class From>(std::type_identity<From>) {
+    auto const to = []<class To>(std::type_identity<To>) {
+      if constexpr (differ_in_shape<typename From::element, typename To::element>)
+        return From::Laws::internal_variable_count == 0 && values_go_along<From, To>;
+      else
+        return true;
+    };
+    return (to(std::type_identity<Tables>{}) && ...);
+  };
+  return (from(std::type_identity<Tables>{}) && ...);
+}(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
+/// Whether bodies of a kind may change their mesh in their backend's memory: with pyramids, of which tetrahedra are among the children,
+/// where these go along.
 template <class Parts>
 inline constexpr bool changes_on_backend =
-    keeps_trees<typename Parts::backend_type> && are_refinable<typename Parts::mesh_type>;
+    keeps_trees<typename Parts::backend_type> && are_refinable<typename Parts::mesh_type> &&
+    (!has_type<Pyramid5, typename Parts::mesh_type> ||
+     (can_be_refined<typename Parts::mesh_type> && shapes_go_along<Parts>));
 /// Whether types of elements that differ in degree alone come in pairs.
 template <class M>
 inline constexpr bool degrees_are_paired = false;
@@ -70,24 +88,9 @@ inline constexpr bool converts_on_backend =
       };
       return (from(std::type_identity<Tables>{}) && ...);
     }(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
-/// Whether bodies of a kind may change the shape of elements in their backend's memory: where there are some that can be split, and
-/// their points, and those of what they are split into, keep nothing.
+/// Whether bodies of a kind may change the shape of elements in their backend's memory.
 template <class Parts>
-inline constexpr bool splits_on_backend = changes_on_backend<Parts> && []<class... Tables>(
-                                                                           std::tuple<Tables...>*) {
-  bool are_split = false, can_be = true;
-  auto const look_at = [&]<class From, class To>(std::type_identity<From>, std::type_identity<To>) {
-    if constexpr (differ_in_shape<typename From::element, typename To::element>) {
-      are_split = true;
-      can_be = can_be && From::Laws::internal_variable_count == 0 && values_go_along<From, To>;
-    }
-  };
-  auto const from = [&]<class From>(std::type_identity<From> own) {
-    (look_at(own, std::type_identity<Tables>{}), ...);
-  };
-  (from(std::type_identity<Tables>{}), ...);
-  return are_split && can_be;
-}(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
+inline constexpr bool splits_on_backend = changes_on_backend<Parts> && shapes_go_along<Parts>;
 /// The nodes of elements that are raised, by the kind of cell.
 template <class M>
 NodesOfKinds nodes_when_raised() {

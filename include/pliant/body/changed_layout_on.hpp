@@ -116,10 +116,10 @@ class ChangedLayoutOn {
     if constexpr (Table<I>::groups > 1)
       from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, ConvertedPlaces const& places) {
         using From = typename Table<J>::element;
-        backend_.for_each(
-            places.count,
-            ConvertTags<std::size_t{Table<J>::groups}, most_parts<E, From>>{
-                places, tags_of<J>(), tags.data(), converted_groups<Table<J>, Table<I>>()});
+        backend_.for_each(places.count,
+                          ConvertTags<std::size_t{Table<J>::groups}, most_parts<E, From>>{
+                              places, tags_of<J>(), tags_of<I>(), tags.data(),
+                              converted_groups<Table<J>, Table<I>>()});
       });
     table.elements =
         elements_of_rows<Elements>(backend_, std::move(rows), Table<I>::groups, std::move(tags),
@@ -142,8 +142,10 @@ class ChangedLayoutOn {
                                .before = from.elements.rows_of_nodes(),
                                .now = {},
                                .gone_elements = ElementsByRows<From>({on_->points.data()}),
-                               .come_elements = {}},
+                               .come_elements = ElementsByRows<E>({on_->points.data()}),
+                               .before_of_own = before.elements.rows_of_nodes()},
                               from.values.data(),
+                              before.values.data(),
                               table.values.data(),
                               column});
       });

@@ -12,6 +12,7 @@
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/body/carried_points_on.hpp>
 #include <pliant/body/change_passes.hpp>
+#include <pliant/body/changed_families_on.hpp>
 #include <pliant/body/changed_layout_on.hpp>
 #include <pliant/body/element_rows_on.hpp>
 #include <pliant/body/energy_sums_on.hpp>
@@ -19,18 +20,8 @@
 #include <pliant/body/finite_fields.hpp>
 #include <pliant/body/gone_nodes_on.hpp>
 #include <pliant/force/forces.hpp>
-#include <pliant/topology/refined_elements.hpp>
 
 namespace pliant::detail {
-
-/// The elements of type I that a change merged, of which `on` has what came out. `before`, `now`: the body's layouts.
-template <std::size_t I, class On, class Layout>
-auto merged_elements(On const& on, Layout const& before, Layout const& now) {
-  using E = typename std::tuple_element_t<I, decltype(Layout::tables)>::element;
-  return MergedElements<E>{
-      on.leaves(I), on.order.merged_count(), std::get<I>(before.tables).elements.rows_of_nodes(),
-      std::get<I>(now.tables).elements.rows_of_nodes(), ElementsByRows<E>({on.points.data()})};
-}
 
 /// A body's parts behind a change of its mesh in the backend's memory. `On` has the tree after it, and follows.
 template <class Parts>
@@ -48,10 +39,12 @@ class ChangedPartsOn {
   using Copies = ArrayCopies<B>;
   using Energies = EnergySumsOn<Parts>;
   static constexpr int dim = Parts::dim;
-  /// Whether elements that are refined have to be given momentum back. Linear ones keep theirs: what their children interpolate is
-  /// what they did, and lumped masses are the integrals of shape functions.
-  static constexpr bool moves_momentum = on_types<On::types>(
-      []<std::size_t... I>(TypeNumber<I>...) { return ((ElementOf<I>::degree > 1) || ...); });
+  /// Whether elements that are refined have to be given momentum back. Linear ones but pyramids keep theirs: what their children
+  /// interpolate is what they did, and lumped masses are the integrals of shape functions.
+  static constexpr bool moves_momentum =
+      On::has_pyramids || on_types<On::types>([]<std::size_t... I>(TypeNumber<I>...) {
+        return ((ElementOf<I>::degree > 1) || ...);
+      });
   template <class U>
   using Array = typename Parts::template Array<U>;
 
@@ -73,10 +66,11 @@ class ChangedPartsOn {
     backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
     follow_on_host(std::move(cells), ChangeOfCells::refine);
     on_->hanging.find_after(on_->tree, done);
-    on_->order.refine(on_->tree, done);
+    on_->follow_order_of(backend_, *parts_.layout.first_order, done);
     on_->rows.extend(on_->tree, on_->order, done);
     if (done.new_nodes == 0) backend_.synchronize();  // rows of new nodes were waited for
-    on_->follow_order();
+    on_->follow_order(On::has_pyramids);
+    layout_.converts = On::has_pyramids;
     rows_ = on_->rows.count();
     double const speed = moves_momentum ? largest_speed() : 0;
     Copies copies(backend_);
@@ -134,10 +128,11 @@ class ChangedPartsOn {
     copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
     follow_on_host(std::move(parents), ChangeOfCells::coarsen);
     on_->hanging.find_after(on_->tree, done);
-    on_->order.coarsen(on_->tree, done);
+    on_->follow_order_of(backend_, *parts_.layout.first_order, done);
     on_->rows.coarsen(done);
     double const speed = largest_speed();  // waits
-    on_->follow_order();
+    on_->follow_order(On::has_pyramids);
+    layout_.converts = On::has_pyramids;
     rows_ = on_->rows.count();
     Copies copies(backend_);
     auto u = copies.template extended<T>(parts_.state.u, values());
@@ -148,7 +143,7 @@ class ChangedPartsOn {
     });
     MassWeightsOn<B> const weights(backend_, layout.interpolation, rows_);
     return on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
-      std::tuple const families{merged_elements<I>(*on_, parts_.layout, layout)...};
+      std::tuple const families{merged_families<I>(*on_, parts_.layout, layout)...};
       exchange_masses(weights, layout, speed, v, std::get<I>(families)...);
       clear_gone(layout, u, v, load, std::get<I>(families)...);
       auto changed = parts_with(std::move(layout), std::move(u), std::move(v), std::move(load));
@@ -167,8 +162,7 @@ class ChangedPartsOn {
 
   template <std::size_t I>
   auto refined(typename TreeOn<B>::Refined const& done) const {
-    return refined_elements<ElementOf<I>>(on_->tree, done, on_->rows.of_node(), at_rest(),
-                                          On::has_several);
+    return refined_families<ElementOf<I>>(*on_, done);
   }
   [[nodiscard]] Index come_in_all(typename TreeOn<B>::Refined const& done) const {
     return on_->order.count() - on_->order.count_before() + done.leaves;
@@ -201,8 +195,10 @@ class ChangedPartsOn {
                        Families const&... families) {
     MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_);
     on_->masses.take_gone(families...);
+    (visit_tets(families, [&](auto const& tets) { on_->masses.take_gone(tets); }), ...);
     on_->momentum.begin(weights_before, weights, on_->masses, families...);
     on_->masses.add_come(families...);
+    (visit_tets(families, [&](auto const& tets) { on_->masses.add_come(tets); }), ...);
     layout_.read_masses(layout, weights);
     double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);
     on_->momentum.give_back(weights_before, weights, parts_.material.density, bound,

@@ -14,6 +14,7 @@
 #include <pliant/formulation/mass.hpp>
 #include <pliant/topology/changed_elements.hpp>
 #include <pliant/topology/element_types.hpp>
+#include <pliant/topology/tets_of_pyramids.hpp>
 
 // Elements that get another degree, are split or merged in a backend's memory: they, or what comes for them, are of another type then.
 namespace pliant::detail {
@@ -27,12 +28,15 @@ template <Element From, Element To>
 inline constexpr bool differ_in_shape =
     std::same_as<SplitInto<From>, To> || std::same_as<SplitInto<To>, From>;
 
-/// Into how many elements of one type such of another one are made, at most.
+/// Into how many elements of one type such of another one are made, at most: of pyramids two tetrahedra where they are split, four beside
+/// other pyramids where they are refined.
 template <Element From, Element To>
 inline constexpr Index most_parts = !std::same_as<SplitInto<From>, To>                 ? 1
                                     : std::same_as<typename From::cell, Quadrilateral> ? 4
                                     : std::same_as<typename From::cell, Hexahedron>    ? 6
-                                                                                       : 2;
+                                                                                       : 4;
+/// How many elements of an element's own type such may be merged with.
+inline constexpr Index most_beside = pyramids_of_pyramid;
 
 /// Families of a change that are elements of one type now and were of another one before, by their places among these.
 struct ConvertedPlaces {
@@ -53,6 +57,10 @@ struct ConvertedPlaces {
   [[nodiscard]] PLIANT_HOST_DEVICE Index now_at(Index r) const {
     return now.places[families[r].cell] - now.first;
   }
+  /// How many elements of the type itself are merged with those of the other one.
+  [[nodiscard]] PLIANT_HOST_DEVICE Index children(Index r) const {
+    return now.merged > 0 ? now.children(r) : 0;
+  }
 };
 
 /// Families that were elements of one type and are of another one, for loops of a backend: ChangedFamilies; those of other types have
@@ -70,6 +78,7 @@ struct ConvertedElements {
   ElementsByRows<From> gone_elements;
   ElementsByRows<To> come_elements;
   Index const* node = nullptr;  // by row: the user's number
+  ElementRows before_of_own{};  // those of the type's own elements before
 
   [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const {
     return places.has(r) ? places.families[r].gone : 0;
@@ -82,6 +91,10 @@ struct ConvertedElements {
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<To> rows_come(Index r, Index k) const {
     return taken_rows<To>(now[places.now_at(r) + k]);
+  }
+  /// Those of elements of the type itself that are merged with these.
+  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<To> rows_beside(Index r, Index k) const {
+    return taken_rows<To>(before_of_own[places.now.first_child_before(r) + k]);
   }
   /// A row that two pyramids have which are split or merged together: where their base is not plane, volume goes over from one to the
   /// other, and momentum is counted from the velocity there.
@@ -107,18 +120,21 @@ struct ConvertedElements {
 template <std::size_t Groups, Index MostGone>
 struct ConvertTags {
   ConvertedPlaces places;
-  Tag const* before;
+  Tag const *before, *before_of_own;  // of the other type, and the type's own
   Tag* now;
   std::array<Tag, Groups> to;
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
     if (!places.has(r)) return;
     auto const& family = places.families[r];
-    Tag own[MostGone];
+    Tag own[MostGone + most_beside];
+    Index count = 0;
+    for (; count < places.children(r); ++count)
+      own[count] = before_of_own[places.now.first_child_before(r) + count];
     for (Index k = 0; k < family.gone; ++k)
-      own[k] =
+      own[count++] =
           to[before != nullptr ? static_cast<std::size_t>(before[places.before_at(r) + k]) : 0];
-    Tag const tag = merged_value(own, static_cast<Tag const*>(nullptr), family.gone);
+    Tag const tag = merged_value(own, static_cast<Tag const*>(nullptr), count);
     for (Index k = 0; k < family.come; ++k) now[places.now_at(r) + k] = tag;
   }
 };
@@ -126,7 +142,7 @@ struct ConvertTags {
 template <class T, std::size_t Columns, class Families>
 struct ConvertValues {
   Families families;
-  T const* before;
+  T const *before, *before_of_own;  // of the other type, and the type's own
   T* now;
   std::array<int, Columns> column;
 
@@ -134,23 +150,26 @@ struct ConvertValues {
     auto const& places = families.places;
     if (!places.has(r)) return;
     auto const [cell, come, first, gone] = places.families[r];
-    T volumes[Families::most_gone] = {}, own[Families::most_gone];
-    for (Index k = 0; k < gone && gone > 1; ++k)
-      volumes[k] = static_cast<T>(volume<From, MassQuadrature<From>>(
-          families.gone_elements.rest(families.rows_gone(r, k))));
+    constexpr Index most = Families::most_gone + most_beside;
+    T volumes[most] = {}, own[most];
+    Index const beside = places.children(r), all = beside + gone;
+    for (Index k = 0; k < all && all > 1; ++k)
+      volumes[k] = static_cast<T>(
+          k < beside ? families.come_elements.volume(families.rows_beside(r, k))
+                     : families.gone_elements.volume(families.rows_gone(r, k - beside)));
     for (std::size_t c = 0; c < Columns; ++c) {
-      for (Index k = 0; k < gone; ++k)
-        own[k] = before[static_cast<std::ptrdiff_t>(places.count_before) * column[c] +
-                        places.before_at(r) + k];
-      T const value = gone > 1 ? merged_value(own, volumes, gone) : own[0];
+      for (Index k = 0; k < all; ++k)
+        own[k] = k < beside ? before_of_own[static_cast<std::ptrdiff_t>(places.now.count_before) *
+                                                static_cast<std::ptrdiff_t>(c) +
+                                            places.now.first_child_before(r) + k]
+                            : before[static_cast<std::ptrdiff_t>(places.count_before) * column[c] +
+                                     places.before_at(r) + k - beside];
+      T const value = all > 1 ? merged_value(own, volumes, all) : own[0];
       for (Index k = 0; k < come; ++k)
         now[static_cast<std::ptrdiff_t>(places.now.count) * static_cast<std::ptrdiff_t>(c) +
             places.now_at(r) + k] = value;
     }
   }
-
- private:
-  using From = typename Families::gone_element;
 };
 
 /// From which points those of converted elements take what they keep, by the group that these were in: from the nearest ones, as

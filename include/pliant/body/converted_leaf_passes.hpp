@@ -7,6 +7,7 @@
 #include <pliant/body/leaf_order_passes.hpp>
 #include <pliant/body/node_row_passes.hpp>
 #include <pliant/config.hpp>
+#include <pliant/topology/tets_of_pyramids.hpp>
 #include <pliant/topology/tree_view.hpp>
 
 // Passes over the leaves of a tree in the order that a body keeps, some of which go over to another element type, for loops of a
@@ -52,28 +53,32 @@ struct LeafBlocks {
 /// Notes the places that leaves go away from, those that come for them, and keys by which these are sorted: their blocks and, in each, the
 /// places from which they come.
 struct LeavePlaces {
-  static constexpr int bits_of_sibling = 3, bits_of_place = 32 + bits_of_sibling;
+  static constexpr int bits_of_sibling = 4, bits_of_place = 32 + bits_of_sibling;
+  static constexpr std::uint8_t none = 255;
   LeafBlocks blocks;
   Index const* other_block;  // by block: that of the same cells of the other type
   Index const* places;       // by cell
-  std::uint8_t* goes;
+  std::uint8_t* in_place;    // see LeavesThere
   std::uint64_t* keys;
   Index* arriving;
   ConvertedFamily* families;
 
   /// Of family r, of which the first that comes is listed at `to`.
   PLIANT_HOST_DEVICE void leave(Index r, ConvertedFamily const& family, Index to) const {
-    static_assert(RefinementPattern::most_sides <=
-                  1u << bits_of_sibling);  // pyramids of a hexahedron
     families[r] = family;
-    for (Index k = 0; k < family.gone; ++k) goes[family.first_before + k] = 1;
-    auto const key = static_cast<std::uint64_t>(other_block[blocks.of(family.first_before)])
-                         << bits_of_place |
-                     static_cast<std::uint64_t>(family.first_before) << bits_of_sibling;
-    for (Index k = 0; k < family.come; ++k) {
-      keys[to + k] = key + static_cast<std::uint64_t>(k);
-      arriving[to + k] = family.cell + k;
-    }
+    for (Index k = 0; k < family.gone; ++k) in_place[family.first_before + k] = none;
+    Index const block = blocks.of(family.first_before);
+    for (Index k = 0; k < family.come; ++k)
+      list(to + k, family.cell + k, other_block[block], family.first_before, k);
+  }
+  /// A leaf that arrives in a block for others at a place, among siblings.
+  PLIANT_HOST_DEVICE void list(Index to, Index cell, Index block, Index place,
+                               Index sibling) const {
+    static_assert(RefinementPattern::most_children <= 1u << bits_of_sibling);
+    keys[to] = static_cast<std::uint64_t>(block) << bits_of_place |
+               static_cast<std::uint64_t>(place) << bits_of_sibling |
+               static_cast<std::uint64_t>(sibling);
+    arriving[to] = cell;
   }
 };
 /// Leaves of another degree.
@@ -100,9 +105,61 @@ struct LeaveMerged : LeavePlaces {
     leave(r, {cell, 1, places[of.first_children[r]], of.children[r]}, r);
   }
 };
-struct StaysThere {
-  std::uint8_t const* goes;
-  PLIANT_HOST_DEVICE Index operator()(Index i) const { return goes[i] != 0 ? 0 : 1; }
+/// Leaves that were refined, of a tree with pyramids, whose tetrahedra stand so many blocks behind them, and others' children in their
+/// place. So many arrive for each; where there are none, −1 behind all others.
+struct LeaveRefined : LeavePlaces {
+  TreeView tree;
+  CellSplit const* cells;
+  LeafParts const* parts;
+  Index blocks_to_tets;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    auto const& own = parts[r];
+    Index const place = places[cells[r].cell], block = blocks.of(place),
+                same = children_of_own_type(tree.cells[static_cast<std::size_t>(cells[r].cell)]);
+    in_place[place] = static_cast<std::uint8_t>(same);
+    bool const has_tets = same < own.cells;
+    for (Index k = 0; k < tets_of_pyramid; ++k)
+      if (has_tets)
+        list(tets_of_pyramid * r + k, own.cell + same + k, block + blocks_to_tets, place, k);
+      else
+        list(tets_of_pyramid * r + k, -1, blocks.count, 0, 0);
+    families[r] = has_tets ? ConvertedFamily{own.cell + same, own.cells - same, place, 1}
+                           : ConvertedFamily{own.cell, 0, -1, 0};
+  }
+};
+/// Children that were merged, of such a tree.
+struct LeaveCoarsened : LeavePlaces {
+  TreeView tree;
+  Coarsened of;
+  MergedFamily* merged;
+
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    Index const cell = new_cells(of)(of.parents[r]), first = of.first_children[r],
+                place = places[first];
+    auto const& parent = tree.cells[static_cast<std::size_t>(cell)];
+    Index const children = parent.pattern().children, same = children_of_own_type(parent);
+    for (Index k = 0; k < children; ++k) in_place[places[first + k]] = none;
+    list(r, cell, blocks.of(place), place, 0);
+    merged[r] = {cell, -1, place, same};
+    families[r] = same < children ? ConvertedFamily{cell, 1, places[first + same], children - same}
+                                  : ConvertedFamily{cell, 0, -1, 0};
+  }
+};
+struct FindMergedPlaces {
+  MergedFamily* families;
+  Index const* places;
+  PLIANT_HOST_DEVICE void operator()(Index r) const {
+    families[r].place = places[families[r].cell];
+  }
+};
+/// How many leaves stand in the place of one that are of its type: itself, none, or so many children.
+struct LeavesThere {
+  static constexpr std::uint8_t itself = 0, none = LeavePlaces::none;
+  std::uint8_t const* in_place;
+  PLIANT_HOST_DEVICE Index operator()(Index i) const {
+    return in_place[i] == itself ? 1 : in_place[i] == none ? 0 : Index{in_place[i]};
+  }
 };
 /// Leaves that arrive in blocks: sorted by these and, in each, in the order of the tree.
 struct ArrivingLeaves {
@@ -122,32 +179,37 @@ struct ArrivingLeaves {
     return static_cast<Index>(static_cast<std::uint32_t>(keys[k] >> LeavePlaces::bits_of_sibling));
   }
 };
-/// Puts leaves that stay, and those that arrive, where they stand now: among those of a block in the order of the tree. Places before
-/// of leaves that went have none, −1; the others have the new numbers of theirs.
+/// Puts leaves that stay, or whose children stand in their place, and those that arrive, where they stand now: among those of a block in the
+/// order of the tree. Places before of leaves that went have none, −1; the others have the new numbers of theirs.
 struct PutConverted {
   TreeOrder order;
   LeafBlocks blocks;  // before
   ArrivingLeaves arriving;
   NewNumbers cells;
-  std::uint8_t const* goes;
-  Index const* start;  // by the place before: how many before it stay
-  Index* staying;      // those that stay, in their order
+  LeavesThere there;
+  Index const* start;  // by the place before: how many stand there before it
+  Index* staying;      // those that stand there, in their order
   Index *before, *leaves, *places, *from;
 
   /// Of the leaf at a place before, one function after the other.
   PLIANT_HOST_DEVICE void list_staying(Index i) const {
-    before[i] = goes[i] != 0 ? -1 : cells(before[i]);
-    if (before[i] >= 0) staying[start[i]] = before[i];
+    Index const count = there(i), cell = count == 0 ? -1 : cells(before[i]);
+    before[i] = cell;
+    Index const first = count == 0 || there.in_place[i] == LeavesThere::itself
+                            ? cell
+                            : order.tree.cells[static_cast<std::size_t>(cell)].first_child;
+    for (Index k = 0; k < count; ++k) staying[start[i] + k] = first + k;
   }
   PLIANT_HOST_DEVICE void put_staying(Index i) const {
-    if (before[i] < 0) return;
-    Index const block = blocks.of(i);
-    Index const arrived = count_before(before[i], arriving.cells, arriving.first_in(block),
-                                       arriving.first_in(block + 1));
-    put(start[i] + arrived, before[i], i);
+    Index const block = blocks.of(i), end = start[i] + there(i);
+    for (Index at = start[i]; at < end; ++at)
+      put(at + count_before(staying[at], arriving.cells, arriving.first_in(block),
+                            arriving.first_in(block + 1)),
+          staying[at], i);
   }
   PLIANT_HOST_DEVICE void put_arriving(Index k) const {
     Index const block = arriving.block(k), cell = arriving.cells[k];
+    if (cell < 0) return;
     Index const stay =
         count_before(cell, staying, start[blocks.first[block]], start[blocks.first[block + 1]]);
     put(stay + k, cell, arriving.place_before(k));

@@ -75,9 +75,15 @@ struct PlacesOfDivided {
     auto const& own = parts[r];
     Index const before = own.cell - parts[0].cell;
     Index const first = leaves.places[own.cell] - leaves.first;
-    bool const is_among = first >= 0 && first < leaves.count;
-    for (Index k = 0; k < own.cells; ++k) come[before + k] = is_among ? first + k : -1;
-    go[r] = is_among ? leaves.from(first) : -1;
+    if (leaves.has_others)  // some of which may be among the children of these
+      for (Index k = 0; k < own.cells; ++k) {
+        Index const place = leaves.places[own.cell + k] - leaves.first;
+        come[before + k] = place >= 0 && place < leaves.count ? place : -1;
+      }
+    else
+      for (Index k = 0; k < own.cells; ++k) come[before + k] = first + k;
+    Index const from = leaves.from(first);
+    go[r] = from >= 0 && from < leaves.count_before ? from : -1;
   }
 };
 

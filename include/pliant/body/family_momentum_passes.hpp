@@ -105,8 +105,9 @@ struct AddFamilyImpulse {
   Index* refused;
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    Index const gone = families.gone(r), members = gone + families.come(r),
-                steps = members + families.come(r);
+    Index const gone = families.gone(r), come = families.come(r), tets = count_tets<false>(r),
+                all_gone = gone + tets, all_come = come + count_tets<true>(r),
+                members = all_gone + all_come, steps = members + all_come;
     double base[dim] = {}, lost[dim] = {}, volume = 0;
     bool is_done = false;
     constexpr bool shares_base = requires { families.base_row(r); };
@@ -115,40 +116,56 @@ struct AddFamilyImpulse {
         base[d] = (gone > 1 ? now : before)(families.base_row(r), d);
     // First those that go, then those that come; then these again, which take their shares.
     for (Index step = 0; step < steps && !is_done; ++step)
-      with_member(r, step, gone, members, [&](auto const& elements, auto const& rows, bool goes) {
-        auto const own = elements.volumes(rows);
-        constexpr int nodes =
-            static_cast<int>(std::tuple_size_v<std::remove_cvref_t<decltype(rows)>>);
-        if (step < members) {
-          for (int d = 0; d < dim && step == 0 && !shares_base; ++d) base[d] = before(rows[0], d);
-          for (int a = 0; a < nodes; ++a) {
-            Index const row = rows[static_cast<std::size_t>(a)];
-            for (int d = 0; d < dim; ++d) {
-              double const momentum =
-                  density * own[a] * ((goes ? before(row, d) : now(row, d)) - base[d]);
-              lost[d] += goes ? momentum : -momentum;
-            }
-            if (!goes) volume += own[a];
-          }
-          if (step < members - 1) return;
-          bool kept = true;
-          for (double const x : lost) kept = kept && x == 0;
-          is_done = kept;
-        } else {
-          for (int a = 0; a < nodes; ++a)
-            for (int d = 0; d < dim; ++d)
-              add(rows[static_cast<std::size_t>(a)], d, lost[d] * (own[a] / volume));
-        }
-      });
+      with_member(r, step < all_gone, step < all_gone ? step : (step - all_gone) % all_come, gone,
+                  come, [&](auto const& elements, auto const& rows, bool goes) {
+                    auto const own = elements.volumes(rows);
+                    constexpr int nodes =
+                        static_cast<int>(std::tuple_size_v<std::remove_cvref_t<decltype(rows)>>);
+                    if (step < members) {
+                      for (int d = 0; d < dim && step == 0 && !shares_base; ++d)
+                        base[d] = before(rows[0], d);
+                      for (int a = 0; a < nodes; ++a) {
+                        Index const row = rows[static_cast<std::size_t>(a)];
+                        for (int d = 0; d < dim; ++d) {
+                          double const momentum =
+                              density * own[a] * ((goes ? before(row, d) : now(row, d)) - base[d]);
+                          lost[d] += goes ? momentum : -momentum;
+                        }
+                        if (!goes) volume += own[a];
+                      }
+                      if (step < members - 1) return;
+                      bool kept = true;
+                      for (double const x : lost) kept = kept && x == 0;
+                      is_done = kept;
+                    } else {
+                      for (int a = 0; a < nodes; ++a)
+                        for (int d = 0; d < dim; ++d)
+                          add(rows[static_cast<std::size_t>(a)], d, lost[d] * (own[a] / volume));
+                    }
+                  });
   }
 
  private:
-  /// visit(what its type has, its rows, whether it goes)
+  static constexpr bool has_tets = requires(Families const& some) { some.tets; };
+
+  /// How many tetrahedra go, or come, with pyramids.
+  template <bool Come>
+  [[nodiscard]] PLIANT_HOST_DEVICE Index count_tets(Index r) const {
+    if constexpr (has_tets)
+      return Come ? families.tets.come(r) : families.tets.gone(r);
+    else
+      return 0;
+  }
+  /// visit(what its type has, its rows, whether it goes) for the k-th that goes, or comes: tetrahedra stand behind those of the
+  /// family's type.
   template <class Visit>
-  PLIANT_HOST_DEVICE void with_member(Index r, Index step, Index gone, Index members,
+  PLIANT_HOST_DEVICE void with_member(Index r, bool goes, Index k, Index gone, Index come,
                                       Visit const& visit) const {
-    bool const goes = step < gone;
-    Index const k = goes ? step : step < members ? step - gone : step - members;
+    if constexpr (has_tets) {
+      auto const& tets = families.tets;
+      if (goes && k >= gone) return visit(tets.elements, tets.rows_gone(r, k - gone), true);
+      if (!goes && k >= come) return visit(tets.elements, tets.rows_come(r, k - come), false);
+    }
     if constexpr (std::same_as<typename Families::gone_element, typename Families::come_element>)
       visit(families.elements, goes ? families.rows_gone(r, k) : families.rows_come(r, k), goes);
     else if (goes)

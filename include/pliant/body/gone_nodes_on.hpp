@@ -20,15 +20,17 @@ namespace pliant {
 namespace detail {
 
 /// Where the nodes of elements that go lie on the one that comes: those of children on their parent's element, (2: whether the parent
-/// is mirrored, children, nodes).
+/// is mirrored, children, nodes); children of other types have none but those of these.
 template <Element E>
 std::vector<Vector<double, E::dim>> places_of_gone(MergedElements<E> const&) {
   auto const& pattern = pattern_of(kind_of<typename E::cell>, Division::refined);
   std::vector<Vector<double, E::dim>> places;
   for (bool const mirrored : {false, true})
-    for (int child = 0; child < pattern.children; ++child)
+    for (int child = 0; child < pattern.children; ++child) {
+      if (pattern.child_kind[static_cast<std::size_t>(child)] != kind_of<typename E::cell>) break;
       for (int a = 0; a < E::nodes; ++a)
         places.push_back(on_parent<typename E::cell>(E::place(a), pattern, child, mirrored));
+    }
   return places;
 }
 

@@ -161,13 +161,35 @@ class LeafOrderOn {
                  return detail::LeaveSplit{leaving, done.cells, done.parts};
                });
   }
-  /// and of such that were merged.
+  /// of such that were merged,
   void convert(TreeOn<B> const& tree, Merged const& done, Index const* other_block,
                Index const* first) {
     convert_by(tree, done.merged, done.merged, detail::new_cells(done), other_block, first,
                [&](auto const& leaving) {
                  return detail::LeaveMerged{leaving, done};
                });
+  }
+
+  /// and those of a tree with pyramids that were refined, or whose children were merged: tetrahedra are among the children of pyramids, and
+  /// stand so many blocks behind them.
+  void convert(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& done, Index blocks_to_tets,
+               Index const* first) {
+    detail::grow_keeping(backend_, places_, places_.size(),
+                         static_cast<std::size_t>(tree.sizes().cells));
+    convert_by(
+        tree, done.leaves, detail::tets_of_pyramid * done.leaves, {tree.sizes().cells, nullptr},
+        nullptr, first, [&](auto const& leaving) {
+          return detail::LeaveRefined{leaving, tree.view(), done.cells, done.parts, blocks_to_tets};
+        });
+  }
+  void convert(TreeOn<B> const& tree, Coarsened const& done, Index const* first) {
+    detail::grow(backend_, families_, static_cast<std::size_t>(done.merged));
+    convert_by(tree, done.merged, done.merged, detail::new_cells(done), nullptr, first,
+               [&](auto const& leaving) {
+                 return detail::LeaveCoarsened{leaving, tree.view(), done, families_.data()};
+               });
+    backend_.for_each(done.merged, detail::FindMergedPlaces{families_.data(), places_.data()});
+    merged_ = done.merged;
   }
 
   /// Puts merged parents in the place where their children stood. `tree`: after that.
@@ -204,9 +226,9 @@ class LeafOrderOn {
       detail::grow(backend_, array, static_cast<std::size_t>(count));
     };
     Index const after = tree.leaves();
-    auto goes = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(count_));
+    auto in_place = zeros<std::uint8_t>(backend_, static_cast<std::size_t>(count_));
     room(start_, count_ + 1);
-    room(staying_, count_);
+    room(staying_, after);
     room(others_, after);
     room(from_, after);
     room(keys_, come);
@@ -217,16 +239,16 @@ class LeafOrderOn {
     detail::ArrivingLeaves const arriving{come, keys_.data(), arriving_.data()};
     detail::PutConverted const put{
         {tree.view(), first}, blocks,         arriving,        cells,
-        goes.data(),          start_.data(),  staying_.data(), leaves_.data(),
+        in_place.data(),      start_.data(),  staying_.data(), leaves_.data(),
         others_.data(),       places_.data(), from_.data()};
-    int const bits = detail::LeavePlaces::bits_of_place + detail::key_bits(blocks_);
+    int const bits = detail::LeavePlaces::bits_of_place + detail::key_bits(blocks_ + 1);
     detail::in_turn(
         backend_,
         LoopStep{families,
-                 leave(detail::LeavePlaces{blocks, other_block, places_.data(), goes.data(),
+                 leave(detail::LeavePlaces{blocks, other_block, places_.data(), in_place.data(),
                                            keys_.data(), arriving_.data(), converted_.data()})},
         SortStep{come, keys_.data(), arriving_.data(), bits},
-        ScanStep{count_, detail::StaysThere{goes.data()}, start_.data()},
+        ScanStep{count_, detail::LeavesThere{in_place.data()}, start_.data()},
         LoopStep{count_, detail::ListStayingLeaves{put}}, LoopStep{count_, detail::PutStaying{put}},
         LoopStep{come, detail::PutArriving{put}},
         LoopStep{blocks_ + 1, detail::MoveBlocksOfConverted{arriving, start_.data(), first_.data(),

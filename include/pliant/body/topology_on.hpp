@@ -54,6 +54,8 @@ struct TopologyOn<Mesh<Es...>, B> {
   static constexpr int dim = M::dim;
   static constexpr std::size_t types = sizeof...(Es);
   static constexpr bool has_several = types > 1;
+  /// Whether refined cells may have children of several types.
+  static constexpr bool has_pyramids = detail::has_type<Pyramid5, M>;
   /// The type that elements of each become by a conversion; the same where there is none.
   static constexpr std::array<std::size_t, types> types_by(Conversion how) {
     auto const or_own = [](std::size_t found, std::size_t own) {
@@ -138,6 +140,25 @@ struct TopologyOn<Mesh<Es...>, B> {
       other_block = upload(backend, other);
     }
     order.convert(tree, what..., other_block.data(), first_places.data());
+  }
+  /// Puts children in the place of refined leaves, or parents in that of merged ones: a TreeOn::Refined, or Coarsened. `first`: of the initial
+  /// mesh.
+  template <class Done>
+  void follow_order_of(B const& backend, CellOrder const& first, Done const& done) {
+    if constexpr (has_pyramids) {
+      if (first_places.size() == 0) first_places = upload(backend, first.places);
+      if constexpr (std::same_as<Done, Coarsened>)
+        order.convert(tree, done, first_places.data());
+      else
+        order.convert(
+            tree, done,
+            first_block[detail::type_in<Tet4, M>] - first_block[detail::type_in<Pyramid5, M>],
+            first_places.data());
+    } else if constexpr (std::same_as<Done, Coarsened>) {
+      order.coarsen(tree, done);
+    } else {
+      order.refine(tree, done);
+    }
   }
   /// Elements of one type that were of another one before such a change.
   [[nodiscard]] detail::ConvertedPlaces converted_places(std::size_t from, std::size_t to) const {

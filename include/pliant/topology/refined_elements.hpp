@@ -1,8 +1,10 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 
 #include <pliant/backend/field.hpp>
+#include <pliant/element/linear.hpp>
 #include <pliant/topology/changed_elements.hpp>
 #include <pliant/topology/division_view.hpp>
 #include <pliant/topology/rows_of_element.hpp>
@@ -10,8 +12,11 @@
 
 namespace pliant::detail {
 
+/// The children of a refined pyramid: so many pyramids, then tetrahedra.
+inline constexpr Index pyramids_of_pyramid = 6, tets_of_pyramid = 4;
+
 /// Cells of a tree that are refined, and their children, as elements of one type, for loops of a backend: ChangedFamilies of
-/// which one goes; cells of other types have no elements.
+/// which one goes; cells of other types have no elements. Of the children of pyramids these are those that are pyramids.
 template <Element E>
 struct RefinedElements {
   using gone_element = E;
@@ -37,7 +42,7 @@ struct RefinedElements {
   }
   [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const { return is_one(r) ? 1 : 0; }
   [[nodiscard]] PLIANT_HOST_DEVICE Index come(Index r) const {
-    return is_one(r) ? Index{parts[r].cells} : 0;
+    return !is_one(r) ? 0 : std::same_as<E, Pyramid5> ? pyramids_of_pyramid : Index{parts[r].cells};
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<E> rows_gone(Index r, Index) const {
     return rows_of(cell(r, -1));
