@@ -120,10 +120,10 @@ auto marked_there(Parts const& parts, MeshMarks const& marks) {
   auto counts = zeros<Index>(backend, mesh_lists * marks.of_types.size());
   Index* count = counts.data();
   std::size_t type = 0;
-  auto const select = [&](auto const& table, MeshList which, auto& lists) {
+  auto const select = [&](auto const& table, MeshList which, auto& of_types) {
     auto const& bits = marks.of_types[type];
     auto const l = static_cast<std::size_t>(which);
-    auto& list = lists.emplace_back();
+    auto& list = of_types.emplace_back();
     if (bits.of[l] != 0) {
       list.numbers = unset<Index>(backend, static_cast<std::size_t>(table.count()));
       backend.select(table.count(),

@@ -76,7 +76,7 @@ struct MoveBlocks {
 };
 
 /// New numbers of the cells of a tree that was coarsened.
-inline NewNumbers new_cells(Coarsened const& of) {
+PLIANT_HOST_DEVICE NewNumbers new_cells(Coarsened const& of) {
   return {of.merged > 0 ? of.staying.cells : of.before.cells, of.cells};
 }
 
