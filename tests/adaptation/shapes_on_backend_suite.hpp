@@ -346,6 +346,16 @@ TEST_CASE("a split that would exceed a limit in a backend's memory leaves the bo
   });
 }
 
+TEST_CASE("a block that loses as many elements as it gains is planned again", "[adaptation]") {
+  auto const stays = [](std::vector<Index> staying) {
+    return blocks_after_change({0, 4, 9}, {0, 4, 9}, staying).stays;
+  };
+  CHECK(stays({}) == std::vector<char>{1, 1});
+  CHECK(stays({0, 4, 9}) == std::vector<char>{1, 1});
+  CHECK(stays({0, 2, 7}) == std::vector<char>{0, 1});
+  CHECK(blocks_after_change({0, 4, 9}, {0, 5, 10}, {0, 4, 9}).stays == std::vector<char>{0, 1});
+}
+
 TEST_CASE("rules split and merge in a backend's memory", "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     Beside<Plane, B> both(backend);

@@ -130,24 +130,11 @@ class ChangedLayoutOn {
     if constexpr (values_of_each > 0) {
       table.values = inherited_values<T>(backend_, leaves, before.values.data(), values_of_each);
       from_other_types<I>([&]<std::size_t J>(TypeNumber<J>, ConvertedPlaces const& places) {
-        using From = typename Table<J>::element;
-        using Families = ConvertedElements<From, E>;
         std::array<int, std::size_t{values_of_each}> column{};
         std::ranges::copy(places_of_values<Table<J>, Table<I>>(), column.begin());
-        auto const& from = std::get<J>(parts_.layout.tables);
-        backend_.for_each(places.count,
-                          ConvertValues<T, std::size_t{values_of_each}, Families>{
-                              {.count = places.count,
-                               .places = places,
-                               .before = from.elements.rows_of_nodes(),
-                               .now = {},
-                               .gone_elements = ElementsByRows<From>({on_->points.data()}),
-                               .come_elements = ElementsByRows<E>({on_->points.data()}),
-                               .before_of_own = before.elements.rows_of_nodes()},
-                              from.values.data(),
-                              before.values.data(),
-                              table.values.data(),
-                              column});
+        backend_.for_each(places.count, ConvertValues<T, std::size_t{values_of_each}>{
+                                            places, std::get<J>(parts_.layout.tables).values.data(),
+                                            table.values.data(), column});
       });
     }
     table.straight = before.straight;

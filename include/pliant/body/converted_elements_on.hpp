@@ -11,7 +11,6 @@
 #include <pliant/body/converted_elements.hpp>
 #include <pliant/body/element_rows_on.hpp>
 #include <pliant/body/leaf_order_on.hpp>
-#include <pliant/formulation/mass.hpp>
 #include <pliant/topology/changed_elements.hpp>
 #include <pliant/topology/element_types.hpp>
 #include <pliant/topology/tets_of_pyramids.hpp>
@@ -78,7 +77,6 @@ struct ConvertedElements {
   ElementsByRows<From> gone_elements;
   ElementsByRows<To> come_elements;
   Index const* node = nullptr;  // by row: the user's number
-  ElementRows before_of_own{};  // those of the type's own elements before
 
   [[nodiscard]] PLIANT_HOST_DEVICE Index gone(Index r) const {
     return places.has(r) ? places.families[r].gone : 0;
@@ -91,10 +89,6 @@ struct ConvertedElements {
   }
   [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<To> rows_come(Index r, Index k) const {
     return taken_rows<To>(now[places.now_at(r) + k]);
-  }
-  /// Those of elements of the type itself that are merged with these.
-  [[nodiscard]] PLIANT_HOST_DEVICE RowsOfElement<To> rows_beside(Index r, Index k) const {
-    return taken_rows<To>(before_of_own[places.now.first_child_before(r) + k]);
   }
   /// A row that two pyramids have which are split or merged together: where their base is not plane, volume goes over from one to the
   /// other, and momentum is counted from the velocity there.
@@ -138,36 +132,23 @@ struct ConvertTags {
     for (Index k = 0; k < family.come; ++k) now[places.now_at(r) + k] = tag;
   }
 };
-/// Gives them the values that their laws read, each from a column of the other type's; of merged ones the mean by volume.
-template <class T, std::size_t Columns, class Families>
+/// Gives them the values that their laws read, each from a column of the other type's. Those of a family are equal, since children have
+/// their parent's.
+template <class T, std::size_t Columns>
 struct ConvertValues {
-  Families families;
-  T const *before, *before_of_own;  // of the other type, and the type's own
+  ConvertedPlaces places;
+  T const* before;
   T* now;
   std::array<int, Columns> column;
 
   PLIANT_HOST_DEVICE void operator()(Index r) const {
-    auto const& places = families.places;
     if (!places.has(r)) return;
-    auto const [cell, come, first, gone] = places.families[r];
-    constexpr Index most = Families::most_gone + most_beside;
-    T volumes[most] = {}, own[most];
-    Index const beside = places.children(r), all = beside + gone;
-    for (Index k = 0; k < all && all > 1; ++k)
-      volumes[k] = static_cast<T>(
-          k < beside ? families.come_elements.volume(families.rows_beside(r, k))
-                     : families.gone_elements.volume(families.rows_gone(r, k - beside)));
     for (std::size_t c = 0; c < Columns; ++c) {
-      for (Index k = 0; k < all; ++k)
-        own[k] = k < beside ? before_of_own[static_cast<std::ptrdiff_t>(places.now.count_before) *
-                                                static_cast<std::ptrdiff_t>(c) +
-                                            places.now.first_child_before(r) + k]
-                            : before[static_cast<std::ptrdiff_t>(places.count_before) * column[c] +
-                                     places.before_at(r) + k - beside];
-      T const value = all > 1 ? merged_value(own, volumes, all) : own[0];
-      for (Index k = 0; k < come; ++k)
-        now[static_cast<std::ptrdiff_t>(places.now.count) * static_cast<std::ptrdiff_t>(c) +
-            places.now_at(r) + k] = value;
+      T const value = before[static_cast<std::ptrdiff_t>(places.count_before) * column[c] +
+                             places.before_at(r)];
+      T* const of_column =
+          now + static_cast<std::ptrdiff_t>(places.now.count) * static_cast<std::ptrdiff_t>(c);
+      for (Index k = 0; k < places.families[r].come; ++k) of_column[places.now_at(r) + k] = value;
     }
   }
 };

@@ -5,7 +5,6 @@
 #include <pliant/backend/field.hpp>
 #include <pliant/config.hpp>
 #include <pliant/formulation/affine.hpp>
-#include <pliant/formulation/mass.hpp>
 #include <pliant/topology/rows_of_element.hpp>
 
 // Elements of one type that go in a change of a mesh, and those that come in their place, for loops of a backend.
@@ -28,9 +27,6 @@ struct ElementsByRows {
   [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, E::nodes> masses(RowsOfElement<E> const& rows,
                                                                    double density) const {
     return nodal_masses<E>(rest(rows), density, of_cell);
-  }
-  [[nodiscard]] PLIANT_HOST_DEVICE double volume(RowsOfElement<E> const& rows) const {
-    return pliant::volume<E, MassQuadrature<E>>(rest(rows));
   }
   [[nodiscard]] PLIANT_HOST_DEVICE Vector<double, E::nodes> volumes(
       RowsOfElement<E> const& rows) const {
