@@ -51,8 +51,8 @@ struct CellsToChange {
     return {split.data(), size(split), split_in_two.data(), size(split_in_two)};
   }
   /// Tries the changes on a tree, and leaves out what a refinement beside it divides: families that would be divided again, and cells
-  /// that keep their degree. Throws Error where a limit would be exceeded.
-  template <int Dim>
+  /// that keep their degree. Throws Error where a limit would be exceeded. `Reshapes`: whether cells may be split, and merged again.
+  template <bool Reshapes, int Dim>
   void leave_what_is_refined(B const& backend, TreeOn<B>& tree, NodesOfKinds const& raised,
                              NodesAtRest<Dim> const& nodes, RefinementLimits const& limits) {
     for (bool again = true; again;) {
@@ -61,12 +61,15 @@ struct CellsToChange {
       if (size(coarsen) > 0) merged = tree.coarsen(coarsen.data(), size(coarsen));
       trial.renumber(backend, merged);
       Divided<B> families(backend, merged.parents, merged.merged, new_cells(merged));
+      Merged whole;
       auto parents = unset<Index>(backend, merge.size()),
            partners = unset<Index>(backend, merge.size());
-      backend.for_each(size(merge), FindWholes{tree.view(), trial.merge.data(), parents.data(),
-                                               partners.data()});
-      Merged whole;
-      if (size(merge) > 0) whole = tree.merge(trial.merge.data(), size(merge));
+      if constexpr (Reshapes)
+        if (size(merge) > 0) {
+          backend.for_each(size(merge), FindWholes{tree.view(), trial.merge.data(), parents.data(),
+                                                   partners.data()});
+          whole = tree.merge(trial.merge.data(), size(merge));
+        }
       trial.renumber(backend, whole);
       if (whole.merged > 0) families.renumber(backend, new_cells(whole));
       Divided<B> wholes(backend, whole.parents, whole.merged, new_cells(whole));
@@ -77,7 +80,8 @@ struct CellsToChange {
       auto const refined = tree.refine(trial.refine.data(), size(refine), limits);
       for (auto* list : {&families, &wholes, &cells}) list->find(backend, refined);
       if (size(raise) > 0) (void)tree.raise(trial.raise.data(), size(raise), raised, limits);
-      if (splits()) (void)tree.split(trial.to_split(), nodes, limits);
+      if constexpr (Reshapes)
+        if (splits()) (void)tree.split(trial.to_split(), nodes, limits);
       tree.take_back();
       again = families.any() || wholes.any() || cells.any();
       if (families.any())

@@ -134,8 +134,8 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
       copy_values<B, Index>(backend(), with_rings, cells.raise.data(), cells.raise.size());
     }
     if (!plan_ && cells.need_trial(limits_))
-      cells.leave_what_is_refined(backend(), on().tree, nodes_when_raised<M>(), nodes_at_rest(),
-                                  limits_);
+      cells.template leave_what_is_refined<splits_on_backend<Parts>>(
+          backend(), on().tree, nodes_when_raised<M>(), nodes_at_rest(), limits_);
     if (cells.coarsen.size() > 0) {
       auto const merged = on().tree.coarsen(cells.coarsen.data(), size(cells.coarsen));
       if (merged.merged > 0) {

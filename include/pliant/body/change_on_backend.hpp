@@ -88,9 +88,10 @@ inline constexpr bool converts_on_backend =
       };
       return (from(std::type_identity<Tables>{}) && ...);
     }(static_cast<decltype(Parts::layout_type::tables)*>(nullptr));
-/// Whether bodies of a kind may change the shape of elements in their backend's memory.
+/// Whether bodies of a kind may change the shape of elements in their backend's memory: of those that others can be split into, or these.
 template <class Parts>
-inline constexpr bool splits_on_backend = changes_on_backend<Parts> && shapes_go_along<Parts>;
+inline constexpr bool splits_on_backend = changes_on_backend<Parts> && shapes_go_along<Parts> &&
+                                          has_other_shapes<typename Parts::mesh_type>;
 /// The nodes of elements that are raised, by the kind of cell.
 template <class M>
 NodesOfKinds nodes_when_raised() {

@@ -64,6 +64,12 @@ inline constexpr bool has_type = false;
 template <class E, Element... Es>
 inline constexpr bool has_type<E, Mesh<Es...>> = (std::same_as<E, Es> || ...);
 
+/// Whether elements of some type of a mesh can be split into such of another one.
+template <class M>
+inline constexpr bool has_other_shapes = false;
+template <Element... Es>
+inline constexpr bool has_other_shapes<Mesh<Es...>> = (has_type<SplitInto<Es>, Mesh<Es...>> || ...);
+
 /// Tetrahedra are among the children of pyramids.
 template <class M>
 inline constexpr bool can_be_refined = false;
