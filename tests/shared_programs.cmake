@@ -107,6 +107,8 @@ join(shared/changed_meshes
 join(shared/switching
      adaptation/points_on_backend body/rows_on topology/tree_on topology/tree_on_coarsening
      topology/tree_on_conversion topology/tree_on_splitting)
+join(shared/types_on_backend
+     adaptation/mixed_on_backend adaptation/degrees_on_backend adaptation/shapes_on_backend)
 join(shared/groups
      shared/state adaptation/sleep_of_viscous_bodies body/values_by_place
      solver/local_steps_of_viscous_bodies)

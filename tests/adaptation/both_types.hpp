@@ -20,25 +20,14 @@ using Viscous = Formulation<E, Gauss<points<E>>, Prony<NeoHookean>::law>;
 /// A body of two types, of which one has a viscous group too. `on_host`: it is changed by the host.
 template <Element A, Element C, class B>
 auto body_of_both(B const& backend, Mesh<A, C> const& mesh, bool on_host) {
-  constexpr int dim = A::dim;
   Group<Viscous<C>> viscous{typename Viscous<C>::template law<double>{{3, 2}, {0.5}, {0.1}}};
   Body body{backend, mesh, soft, Group<Soft<A>>{}, Group<Soft<C>>{}, viscous};
-  std::vector<Point<dim>> u(mesh.nodes.size()), v(u);
-  for (std::size_t i = 0; i < u.size(); ++i)
-    for (std::size_t k = 0; k < dim; ++k) {
-      u[i][k] = 0.05 * mesh.nodes[i][(k + 1) % dim] * mesh.nodes[i][k];
-      v[i][k] = std::cos(2 * mesh.nodes[i][(k + 1) % dim]) - mesh.nodes[i][k];
-    }
-  body.hold(mesh.boundary("left"), 2);
-  body.press(mesh.boundary("top"), 0.2);
-  body.drive(mesh.boundary("bottom"), drawn<dim>, {.directions = 1});
-  body.set_displacements(u);
-  body.set_velocities(v);
+  auto const u = set_in_motion(body, mesh);
   std::vector<Index> some;
   for (Index e = 0; e < static_cast<Index>(mesh.template elements<C>().size()); e += 2)
     some.push_back(e);
   body.template assign<Viscous<C>>(some);
-  body.set_loads(std::vector<Point<dim>>(mesh.nodes.size(), u[1]));
+  body.set_loads(std::vector<Point<A::dim>>(mesh.nodes.size(), u[1]));
   if (on_host) change_on_host(body);
   return body;
 }

@@ -128,6 +128,24 @@ Point<Dim> turned(Point<Dim> const& x, double time) {
   return u;
 }
 
+/// Holds, presses and drives a body at the sides of a mesh, and sets it in motion; gives the displacements.
+template <class TheBody, class M>
+auto set_in_motion(TheBody& body, M const& mesh) {
+  constexpr int dim = TheBody::dim;
+  std::vector<Point<dim>> u(mesh.nodes.size()), v(u);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    for (std::size_t k = 0; k < dim; ++k) {
+      u[i][k] = 0.05 * mesh.nodes[i][(k + 1) % dim] * mesh.nodes[i][k];
+      v[i][k] = std::cos(2 * mesh.nodes[i][(k + 1) % dim]) - mesh.nodes[i][k];
+    }
+  body.hold(mesh.boundary("left"), 2);
+  body.press(mesh.boundary("top"), 0.2);
+  body.drive(mesh.boundary("bottom"), drawn<dim>, {.directions = 1});
+  body.set_displacements(u);
+  body.set_velocities(v);
+  return u;
+}
+
 /// Refines, coarsens and steps both. set_up(body).
 template <class F, class B, class SetUp>
 void check_changes(B const& backend, Index cells, std::size_t one_in, SetUp const& set_up) {

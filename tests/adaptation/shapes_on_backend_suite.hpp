@@ -57,25 +57,14 @@ struct Solid {
 /// A body that moves, with conditions, a pressure and loads.
 template <class P, class B>
 auto set_up(B const& backend, bool on_host) {
-  constexpr int dim = P::dim;
   auto const mesh = P::mesh();
   auto body = P::body(backend, mesh);
-  std::vector<Point<dim>> u(mesh.nodes.size()), v(u);
-  for (std::size_t i = 0; i < u.size(); ++i)
-    for (std::size_t k = 0; k < dim; ++k) {
-      u[i][k] = 0.05 * mesh.nodes[i][(k + 1) % dim] * mesh.nodes[i][k];
-      v[i][k] = std::cos(2 * mesh.nodes[i][(k + 1) % dim]) - mesh.nodes[i][k];
-    }
-  body.hold(mesh.boundary("left"), 2);
-  body.press(mesh.boundary("top"), 0.2);
-  body.drive(mesh.boundary("bottom"), drawn<dim>, {.directions = 1});
-  body.set_displacements(u);
-  body.set_velocities(v);
+  auto const u = set_in_motion(body, mesh);
   std::vector<Index> some;
   for (Index e = 0; e < static_cast<Index>(std::get<P::whole>(mesh.tables).size()); e += 2)
     some.push_back(e);
   body.template assign<typename P::WholeStiff>(some);
-  body.set_loads(std::vector<Point<dim>>(mesh.nodes.size(), u[1]));
+  body.set_loads(std::vector<Point<P::dim>>(mesh.nodes.size(), u[1]));
   if (on_host) change_on_host(body);
   return body;
 }
