@@ -5,7 +5,7 @@
 #include <pliant/mesh/with_types.hpp>
 
 #include "adaptation/changes_on_backend.hpp"
-#include "topology/mixed_meshes.hpp"
+#include "topology/random_changes.hpp"
 
 // Bodies whose elements are split into such of other shapes, and merged, in their backend's memory, beside bodies that the host changes.
 namespace pliant::test::shapes_on_backend_suite {
@@ -372,6 +372,49 @@ TEST_CASE("rules split and merge in a backend's memory", "[adaptation]") {
     CHECK(counts[2] > counts[0]);
     CHECK(counts[3] < counts[2]);
     CHECK(counts[4] > counts[3]);
+  });
+}
+
+/// Changes of every sort at random, in a backend's memory and on the host, and back to the first mesh.
+template <class P, class B>
+void check_storm(B const& backend, int changes) {
+  double const rounding = std::numeric_limits<typename B::scalar>::epsilon();
+  auto const made = [&](bool on_host) {
+    auto body = P::body(backend);
+    set_in_motion(body, body.mesh());
+    if (on_host) change_on_host(body);
+    return body;
+  };
+  auto body = made(false), host = made(true);
+  auto const first = body.mesh();
+  auto const masses = body.parts().layout.own_masses();
+  Random random(11), again(11);
+  for (int k = 0; k < changes; ++k) {
+    change<P>(body, random);
+    change<P>(host, again);
+    if (k % 3 == 2) {
+      check_same(body, host, rounding);
+      auto const u = host.displacements(), v = host.velocities();
+      for (auto* one : {&body, &host}) {
+        one->set_displacements(u);
+        one->set_velocities(v);
+      }
+    }
+  }
+  REQUIRE(is_on_backend(body));
+  undo(body);
+  REQUIRE(is_on_backend(body));
+  CHECK(body.mesh().nodes == first.nodes);
+  CHECK(body.mesh().tables == first.tables);
+  CHECK(body.mesh().boundaries == first.boundaries);
+  CHECK(body.parts().layout.own_masses() == masses);
+}
+
+TEST_CASE("a storm of changes of shape, degree and mesh in a backend's memory leads back",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_storm<ChangingPlane>(backend, 30);
+    check_storm<ChangingSolid>(backend, 24);
   });
 }
 
