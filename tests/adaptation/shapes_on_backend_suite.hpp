@@ -253,6 +253,44 @@ TEST_CASE("elements are split and merged beside others that are refined and coar
   });
 }
 
+template <class P>
+inline constexpr std::size_t types_of = std::tuple_size_v<decltype(typename P::mesh_type{}.tables)>;
+
+/// Merges what is split while finer elements beside it are refined.
+template <class P, class B>
+void check_divided_again(B const& backend) {
+  Beside<P, B> both(backend);
+  auto const levels = [&]<class E>(E) { return refinement_levels<E>(both.host); };
+  using Whole = typename P::Whole::element;
+  both.refine(both.some(5, can_be_split), 1);
+  auto const coarse_and_fine = [&] {
+    std::pair<Marks, Marks> lists;
+    lists.first.resize(types_of<P>), lists.second.resize(types_of<P>);
+    auto const all = levels(Whole{});
+    for (std::size_t e = 0; e < all.size(); ++e)
+      (all[e] == 0 ? lists.first : lists.second)[P::whole].push_back(static_cast<Index>(e));
+    return lists;
+  };
+  auto const families = both.split(coarse_and_fine().first);
+  MarkedElements marked{.refine = coarse_and_fine().second, .merge = both.some(1, are_parts)};
+  for (auto& list : marked.refine) std::erase_if(list, [](Index e) { return e % 3 != 0; });
+  auto const done = change(both.body, marked), wanted = change(both.host, marked);
+  both.check_place();
+  CHECK(done.merged == wanted.merged);
+  CHECK(done.merged > 0);
+  CHECK(done.merged < families);
+  CHECK(done.refined == wanted.refined);
+  CHECK(both.body.mesh().tables == both.host.mesh().tables);
+}
+
+TEST_CASE("what a refinement beside it would divide again stays split in a backend's memory",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    check_divided_again<Plane>(backend);
+    check_divided_again<Solid>(backend);
+  });
+}
+
 TEST_CASE("the host splits and merges where listeners are told, or a node has to stay",
           "[adaptation]") {
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
