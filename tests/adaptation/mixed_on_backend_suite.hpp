@@ -95,7 +95,7 @@ TEST_CASE("elements that others were split into are refined and merged on a back
     both.host.on_backend_change([&](auto const& change) {
       if (std::exchange(is_told, true)) return;
       std::vector<typename B::template Array<int>> colours;
-      for (std::size_t type : {0, 1}) {
+      for (std::size_t const type : {0u, 1u}) {
         std::vector<int> own(at(change.elements_before(type)), -1);
         for (std::size_t e = 0; type == 1 && e < own.size(); ++e) own[e] = static_cast<int>(e);
         colours.push_back(upload(backend, own));

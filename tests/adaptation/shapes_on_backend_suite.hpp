@@ -14,7 +14,7 @@ using Marks = std::vector<std::vector<Index>>;
 
 struct Plane {
   static constexpr int dim = 2;
-  static constexpr std::size_t whole = 1, part = 0;
+  static constexpr std::size_t whole = 1;
   using mesh_type = Mesh<Tri3, Quad4>;
   using Whole = Formulation<Quad4, Gauss<2>, NeoHookean>;
   using Part = Formulation<Tri3, Gauss<1>, NeoHookean>;
@@ -23,20 +23,20 @@ struct Plane {
   static mesh_type mesh() { return mixed_mesh(7); }
   template <class B>
   static auto body(B const& backend, mesh_type const& mesh) {
-    Group<WholeStiff> whole;
-    Group<PartStiff> part;
+    Group<WholeStiff> quads;
+    Group<PartStiff> triangles;
     Random random(5);
     auto const fill = [&](auto& values, std::size_t count) {
       while (values.size() < count) values.push_back({1 + random(), 2 + random()});
     };
-    fill(whole.values, std::get<1>(mesh.tables).size());
-    fill(part.values, std::get<0>(mesh.tables).size());
-    return Body(backend, mesh, soft, Group<Whole>{}, part, whole, Group<Part>{});
+    fill(quads.values, std::get<1>(mesh.tables).size());
+    fill(triangles.values, std::get<0>(mesh.tables).size());
+    return Body(backend, mesh, soft, Group<Whole>{}, triangles, quads, Group<Part>{});
   }
 };
 struct Solid {
   static constexpr int dim = 3;
-  static constexpr std::size_t whole = 0, part = 1, tets = 2;
+  static constexpr std::size_t whole = 0;
   using mesh_type = Mesh<Hex8, Pyramid5, Tet4>;
   using Whole = Formulation<Hex8, Gauss<2>, NeoHookean>;
   using Part = Formulation<Pyramid5, Gauss<2>, NeoHookean>;
