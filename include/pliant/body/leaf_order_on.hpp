@@ -239,7 +239,7 @@ class LeafOrderOn {
     detail::ArrivingLeaves const arriving{come, keys_.data(), arriving_.data()};
     detail::PutConverted const put{
         {tree.view(), first}, blocks,         arriving,        cells,
-        in_place.data(),      start_.data(),  staying_.data(), leaves_.data(),
+        {in_place.data()},    start_.data(),  staying_.data(), leaves_.data(),
         others_.data(),       places_.data(), from_.data()};
     int const bits = detail::LeavePlaces::bits_of_place + detail::key_bits(blocks_ + 1);
     detail::in_turn(
