@@ -1,10 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/grown_array.hpp>
