@@ -26,7 +26,7 @@ auto change_on_backend_by(Parts& parts, int max_level, FindMarked const& find_ma
 }
 /// Of marked elements.
 template <class Parts>
-auto change_on_backend(Parts& parts, MarkedElements const& marked, int max_level) {
+auto change_on_backend(Parts& parts, MarkedLists const& marked, int max_level) {
   return change_on_backend_by(parts, max_level, [&] {
     using M = typename Parts::mesh_type;
     check_conversion<M>("raise", 1, marked.raise);
@@ -43,7 +43,7 @@ auto change_on_backend(Parts& parts, MarkedElements const& marked, int max_level
           check_numbers<E>(verb, lists[type], static_cast<std::size_t>(table.count()));
         ++type;
       });
-      return Marked::of(parts.backend, lists);
+      return Marked::of(lists);
     };
     return Marked{there("refine", marked.refine), there("coarsen", marked.coarsen),
                   there("raise", marked.raise),   there("lower", marked.lower),

@@ -63,7 +63,7 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     if (!plan_) return Done{};
     planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
     auto const merged = merged_by(*plan_);
-    auto done = make(marked, Marked::of(backend(), merged));
+    auto done = make(marked, Marked::of(merged));
     if (done && tells) done->to_tell.plan = std::move(plan_);
     return done;
   }
@@ -75,9 +75,12 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     for (auto const& list : lists) count += static_cast<std::size_t>(list.count);
     auto cells = unset<Index>(backend(), count);
     Index* to = cells.data();
-    for (std::size_t type = 0; type < lists.size(); to += lists[type++].count)
-      backend().for_each(lists[type].count,
-                         LookUpCells{on().element_numbers(type), lists[type].numbers.data(), to});
+    for (std::size_t type = 0; type < lists.size(); to += lists[type++].count) {
+      auto const& list = lists[type];
+      Index const* const numbers =
+          list.on_host.empty() ? list.numbers.data() : on().from_host.put(list.on_host);
+      backend().for_each(list.count, LookUpCells{on().element_numbers(type), numbers, to});
+    }
     return cells;
   }
 
@@ -120,6 +123,11 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
   std::optional<Done> change(Marked const& marked, Lists const& coarsen) {
     Done done;
     auto& counts = done.counts;
+    std::size_t on_host = 0;
+    for (auto const* lists : {&coarsen, &marked.merge, &marked.lower, &marked.refine, &marked.raise,
+                              &marked.split, &marked.split_in_two})
+      on_host += Marked::count_on_host(*lists);
+    on().from_host.begin(backend(), on_host);
     CellsToChange<B> cells{cells_of(coarsen),
                            cells_of(marked.merge),
                            cells_of(marked.lower),

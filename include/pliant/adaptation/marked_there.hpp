@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
@@ -9,22 +10,34 @@
 
 namespace pliant::detail {
 
-/// MarkedElements in a backend's memory: for each type the user's numbers. Lists of no types mark none.
+/// MarkedElements that loops take: for each type the user's numbers, in the backend's memory or on the host, where they stay while
+/// these are in use. Lists of no types mark none.
 template <Backend B>
 struct MarkedThere {
   struct List {
+    std::span<Index const> on_host{};             // (count); or empty, and
     typename B::template Array<Index> numbers{};  // (count), and room
     Index count = 0;
+
+    [[nodiscard]] std::vector<Index> values() const {
+      if (!on_host.empty()) return {on_host.begin(), on_host.end()};
+      std::vector<Index> values(static_cast<std::size_t>(count));
+      numbers.download(values);
+      return values;
+    }
   };
   std::vector<List> refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{}, merge{};
   int raised_rings = 0;
 
-  static std::vector<List> of(B const& backend, std::vector<std::vector<Index>> const& lists) {
+  static std::vector<List> of(ListsOfTypes lists) {
     std::vector<List> there;
-    for (auto const& list : lists)
-      there.push_back({list.empty() ? typename B::template Array<Index>{} : upload(backend, list),
-                       static_cast<Index>(list.size())});
+    for (auto const& list : lists) there.push_back({list, {}, static_cast<Index>(list.size())});
     return there;
+  }
+  static std::size_t count_on_host(std::vector<List> const& lists) {
+    std::size_t count = 0;
+    for (auto const& list : lists) count += list.on_host.size();
+    return count;
   }
   static bool none_in(std::vector<List> const& lists) {
     return std::ranges::all_of(lists, [](List const& list) { return list.count == 0; });
@@ -40,13 +53,12 @@ struct MarkedThere {
   }
   /// Those to refine and to coarsen, on the host.
   [[nodiscard]] MarkedElements lists() const {
-    auto const download_all = [](std::vector<List> const& from) {
+    auto const values_of = [](std::vector<List> const& from) {
       std::vector<std::vector<Index>> to;
-      for (auto const& list : from)
-        list.numbers.download(to.emplace_back(static_cast<std::size_t>(list.count)));
+      for (auto const& list : from) to.push_back(list.values());
       return to;
     };
-    return {.refine = download_all(refine), .coarsen = download_all(coarsen)};
+    return {.refine = values_of(refine), .coarsen = values_of(coarsen)};
   }
 };
 

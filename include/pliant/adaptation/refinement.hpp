@@ -113,12 +113,12 @@ RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked
   detail::check_lists<typename TheBody::mesh_type>("raise", marked);
   if (options.ring < 0)
     throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
-  MarkedElements const wanted{.raise = marked, .raised_rings = options.ring};
-  if (auto const done = detail::change_on_backend(body.parts(), wanted, most_levels)) {
+  if (auto const done = detail::change_on_backend(
+          body.parts(), {.raise = marked, .raised_rings = options.ring}, most_levels)) {
     tell_listeners(body.parts(), done->to_tell);
     return {done->counts.raised, done->new_nodes};
   }
-  auto const plan = plan_change(body.parts(), wanted);
+  auto const plan = plan_change(body.parts(), {.raise = marked, .raised_rings = options.ring});
   if (!plan) return {};
   commit(body.parts(), *plan);
   tell_listeners(body.parts(), *plan);
@@ -162,12 +162,15 @@ SplittingReport split(TheBody& body, std::vector<std::vector<Index>> const& mark
   detail::check_lists<typename TheBody::mesh_type>("split", marked);
   if (options.triangles != 2 && options.triangles != 4)
     throw Error("split: into ", options.triangles, " triangles; give 2 or 4");
-  MarkedElements wanted;
-  (options.triangles == 2 ? wanted.split_in_two : wanted.split) = marked;
-  if (auto const done = detail::change_on_backend(body.parts(), wanted, most_levels)) {
+  bool const in_two = options.triangles == 2;
+  detail::MarkedLists lists;
+  (in_two ? lists.split_in_two : lists.split) = marked;
+  if (auto const done = detail::change_on_backend(body.parts(), lists, most_levels)) {
     tell_listeners(body.parts(), done->to_tell);
     return {done->counts.split, done->new_nodes};
   }
+  MarkedElements wanted;
+  (in_two ? wanted.split_in_two : wanted.split) = marked;
   auto const plan = plan_change(body.parts(), wanted);
   if (!plan) return {};
   commit(body.parts(), *plan);

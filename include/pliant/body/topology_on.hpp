@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/backend/host_values.hpp>
 #include <pliant/body/acting_on.hpp>
 #include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/element_numbers_on.hpp>
@@ -90,6 +91,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   HeldSidesOn<dim, std::min({nodes_on_cell<Es>...}), std::max({nodes_on_cell<Es>...}), B> held;
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
+  HostValues<B, Index> from_host{};         // marked elements
   OnHost<M> on_host;
 
   /// Of a body as it is. Takes a look at all of it.

@@ -17,6 +17,19 @@
 // From marks on elements to changes of the cells that they are.
 namespace pliant {
 
+namespace detail {
+
+/// Elements by their numbers, for each element type.
+using ListsOfTypes = std::span<std::vector<Index> const>;
+
+/// MarkedElements that stay where they are while these are in use.
+struct MarkedLists {
+  ListsOfTypes refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{}, merge{};
+  int raised_rings = 0;
+};
+
+}  // namespace detail
+
 /// Elements to refine, to coarsen, to give a higher or lower degree, to split (quadrilaterals into four triangles, or into
 /// two) and to merge: for each element type in the order of the mesh, their numbers. A list of no types marks none.
 struct MarkedElements {
@@ -24,6 +37,9 @@ struct MarkedElements {
       merge{};
   int raised_rings = 0;  ///< so many rings of neighbours across edges are raised along
 
+  operator detail::MarkedLists() const {
+    return {refine, coarsen, raise, lower, split, split_in_two, merge, raised_rings};
+  }
   bool none() const {
     auto const is_empty = [](auto const& list) {
       return std::ranges::all_of(list, [](auto const& own) { return own.empty(); });
@@ -96,7 +112,7 @@ std::vector<Index> cells_of(RefinementTree<M> const& old, char const* verb,
 }
 
 template <class M>
-void check_lists(char const* verb, std::vector<std::vector<Index>> const& marked) {
+void check_lists(char const* verb, ListsOfTypes marked) {
   constexpr std::size_t types = TypesOf<M>::count;
   if (marked.size() != types)
     throw Error(verb, ": got lists of marked elements for ", marked.size(),
@@ -106,7 +122,7 @@ void check_lists(char const* verb, std::vector<std::vector<Index>> const& marked
 
 /// Throws Error where elements are marked to be of another degree than `from` that no type of the mesh is of.
 template <class M>
-void check_conversion(char const* verb, int from, std::vector<std::vector<Index>> const& marked) {
+void check_conversion(char const* verb, int from, ListsOfTypes marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if (E::degree != from)
@@ -169,7 +185,7 @@ void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit
 
 /// Throws Error where elements are marked that cannot be split.
 template <class M>
-void check_splits(std::vector<std::vector<Index>> const& marked) {
+void check_splits(ListsOfTypes marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if constexpr (std::is_void_v<SplitInto<E>>)
@@ -232,7 +248,7 @@ std::vector<Index> merged_splits(Hierarchy<Dim> const& tree, std::vector<Index> 
 }
 /// Throws Error where elements are marked that nothing is split into.
 template <class M>
-void check_merges(std::vector<std::vector<Index>> const& marked) {
+void check_merges(ListsOfTypes marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (!is_part<E> && !marked.empty() && !marked[type].empty())
       throw Error("merge: no element is split into ", E::name(),
