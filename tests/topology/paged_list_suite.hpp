@@ -29,6 +29,24 @@ struct RepeatEntries {
   }
 };
 
+struct MarkPages {
+  Index const* pages;
+  detail::PageMarker mark;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { mark(static_cast<std::size_t>(pages[i])); }
+};
+
+/// Makes pages of a list its own.
+template <Backend B>
+void own_pages(B const& backend, PagedList<B, Index>& list, std::vector<Index> const& pages) {
+  auto const listed = upload(backend, pages);
+  auto count = zeros<Index>(backend, 1);
+  backend.for_each(static_cast<Index>(pages.size()),
+                   MarkPages{listed.data(), list.marker(backend, count.data())});
+  auto const own = list.own(backend, download<Index>(count)[0]);
+  own.replace.run(backend);
+  detail::for_each_piece(own.words, [&](std::size_t, Index n) { backend.for_each(n, own.copy); });
+}
+
 /// A list in pages, and what it holds.
 template <Backend B>
 struct Pair {
@@ -40,6 +58,9 @@ struct Pair {
 
   explicit Pair(B const& on) : backend(on) {}
 
+  [[nodiscard]] std::size_t page_count() const {
+    return (values.size() + Page<Index>::entries - 1) / Page<Index>::entries;
+  }
   void write(std::size_t first, std::size_t count) {
     backend.for_each(static_cast<Index>(count),
                      WriteEntries{list.pages(), static_cast<Index>(first), next += 10000});
@@ -56,25 +77,25 @@ struct Pair {
     write(first, std::min(values.size() - first, Page<Index>::entries));
   }
   void change(std::size_t page) {
-    std::vector<std::uint8_t> touched(list.page_count(), 0);
-    touched[page] = 1;
-    list.change(backend, touched);
+    own_pages(backend, list, {static_cast<Index>(page), static_cast<Index>(page)});
     write_page(page);
   }
   /// So many pages in eight, of which some are written.
   void change_some(Random& random, std::size_t in_eight) {
-    std::vector<std::uint8_t> touched(list.page_count());
-    for (auto& byte : touched) byte = random.below(8) < in_eight ? 1 : 0;
-    list.change(backend, touched);
-    for (std::size_t page = 0; page < touched.size(); ++page)
-      if (touched[page] != 0 && random.below(4) == 0) write_page(page);
+    std::vector<Index> touched;
+    for (std::size_t page = 0; page < page_count(); ++page)
+      if (random.below(8) < in_eight) touched.push_back(static_cast<Index>(page));
+    own_pages(backend, list, touched);
+    for (Index const page : touched)
+      if (random.below(4) == 0) write_page(static_cast<std::size_t>(page));
   }
   void replace_from(std::size_t first, std::size_t count) {
     auto const period = values.size() - first;
-    auto const before = list.replace_from(backend, first, count);
-    backend.for_each(
-        static_cast<Index>(count),
-        RepeatEntries{before, list.pages(), static_cast<Index>(first), static_cast<Index>(period)});
+    auto const replaced = list.replace_from(backend, first, count);
+    detail::in_turn(backend, replaced.replace, replaced.copy, replaced.extend);
+    backend.for_each(static_cast<Index>(count),
+                     RepeatEntries{replaced.before, list.pages(), static_cast<Index>(first),
+                                   static_cast<Index>(period)});
     auto const old = values;
     values.resize(first + count);
     for (std::size_t i = 0; i < count; ++i) values[first + i] = old[first + (i + 1) % period];
@@ -88,7 +109,7 @@ struct Pair {
     values = kept;
   }
   void begin_noting() {
-    list.begin_noting();
+    list.begin_noting(backend);
     noted = SharedList<Index>(values);
   }
   void check() {
@@ -111,7 +132,7 @@ TEST_CASE("lists in pages hold what they were given, and take back what was not 
           break;
         case 1:
         case 2:
-          if (!on.values.empty()) on.change(random.below(on.list.page_count()));
+          if (!on.values.empty()) on.change(random.below(on.page_count()));
           break;
         case 3:
           if (!on.values.empty()) {
@@ -147,7 +168,7 @@ TEST_CASE("lists in pages take back changes of most pages at once, and others be
     for (int round = 0; round < 60; ++round) {
       on.change_some(random, round % 5 == 0 ? 3 : 7);
       if (random.below(2) == 0) on.change_some(random, 7);
-      if (random.below(2) == 0) on.change(random.below(on.list.page_count()));
+      if (random.below(2) == 0) on.change(random.below(on.page_count()));
       if (random.below(3) == 0) {
         auto const first = on.values.size() - 1 - random.below(4000);
         on.replace_from(first, random.below(4000));

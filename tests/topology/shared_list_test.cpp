@@ -201,16 +201,24 @@ TEST_CASE("a list in pages takes back what did not end as memory ran out", "[top
   };
   auto const changed = [&](std::size_t every) {
     return [&backend, every](List& list) {
-      std::vector<std::uint8_t> touched(list.page_count(), 0);
-      for (std::size_t p = 0; p < touched.size(); p += every) touched[p] = 1;
-      list.change(backend, touched);
+      Index count = 0;
+      auto const mark = list.marker(backend, &count);
+      for (std::size_t p = 0; p < 60; p += every) mark(p);
+      list.own(backend, count).replace.run(backend);
     };
   };
   check(changed(1));
   check(changed(2));
-  check([&](List& list) { (void)list.extend(backend, 50 * page); });
-  check([&](List& list) { (void)list.replace_from(backend, 20 * page + 5, 70 * page); });
-  check([&](List& list) { (void)list.replace_from(backend, 20 * page + 5, 3 * page); });
+  check([&](List& list) { list.extend(backend, 50 * page).run(backend); });
+  auto const replaced = [&](std::size_t count) {
+    return [&backend, count](List& list) {
+      auto const done = list.replace_from(backend, 20 * page + 5, count);
+      done.replace.run(backend);
+      done.extend.run(backend);
+    };
+  };
+  check(replaced(70 * page));
+  check(replaced(3 * page));
 }
 
 }  // namespace pliant::test

@@ -1,19 +1,18 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <span>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/topology/paged_list.hpp>
 #include <pliant/topology/tree_lists.hpp>
 
 namespace pliant::detail {
 
-/// Marks the pages of entries, a byte each, for PagedTree::own.
+/// Marks the pages of entries, for PagedTree::own.
 struct PageMarks {
   TreeView tree;
-  std::uint8_t *cells, *edges, *sides;
+  PageMarker cells, edges, sides;
 
   PLIANT_HOST_DEVICE void cell(Index c) const { mark<TreeCell>(cells, c); }
   PLIANT_HOST_DEVICE void edge(Index e) const { mark<TreeEdge>(edges, e); }
@@ -47,8 +46,25 @@ struct PageMarks {
 
  private:
   template <class V>
-  static PLIANT_HOST_DEVICE void mark(std::uint8_t* pages, Index i) {
-    atomic_set(pages[static_cast<std::size_t>(i) / Page<V>::entries], 1);
+  static PLIANT_HOST_DEVICE void mark(PageMarker const& pages, Index i) {
+    pages(static_cast<std::size_t>(i) / Page<V>::entries);
+  }
+};
+
+/// Copies the pages of three lists one behind the other, from a place on.
+struct CopyPagesOfTree {
+  CopyListedPages<TreeCell> cells;
+  CopyListedPages<TreeEdge> edges;
+  CopyListedPages<TreeSide> sides;
+  std::size_t of_cells, of_edges;  // words
+  std::size_t first;
+
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    std::size_t i = first + static_cast<std::size_t>(k);
+    if (i < of_cells) return cells(i);
+    i -= of_cells;
+    if (i < of_edges) return edges(i);
+    sides(i - of_edges);
   }
 };
 
@@ -66,13 +82,21 @@ struct PagedTree {
         edges(backend, lists.edges),
         sides(backend, lists.sides),
         rows(backend, lists.rows),
-        layout(lists.layout) {}
+        layout(lists.layout),
+        listed_(zeros<Index>(backend, 3)),
+        told_(backend, 3) {}
 
   [[nodiscard]] TreeView view() const {
     return {cells.pages(), edges.pages(), sides.pages(), rows.pages(), layout};
   }
   [[nodiscard]] std::size_t bytes() const {
     return cells.bytes() + edges.bytes() + sides.bytes() + rows.bytes();
+  }
+  void begin_noting(B const& backend) {
+    cells.begin_noting(backend);
+    edges.begin_noting(backend);
+    sides.begin_noting(backend);
+    rows.begin_noting(backend);
   }
   void keep() {
     cells.keep();
@@ -86,19 +110,27 @@ struct PagedTree {
     sides.take_back(backend);
     rows.take_back(backend);
   }
-  /// Makes pages the tree's own: mark(marks) runs loops that mark them.
+  /// Makes pages the tree's own. mark(marks, tell): runs loops that mark them and, behind these, a step. Waits.
   template <class Mark>
   void own(B const& backend, Mark const& mark) {
-    auto const c = cells.page_count(), e = edges.page_count(), s = sides.page_count();
-    auto touched = zeros<std::uint8_t>(backend, c + e + s);
-    auto* const first = touched.data();
-    mark(PageMarks{view(), first, first + c, first + c + e});
-    auto const bytes = download<std::uint8_t>(touched);
-    std::span const all(bytes);
-    cells.change(backend, all.subspan(0, c));
-    edges.change(backend, all.subspan(c, e));
-    sides.change(backend, all.subspan(c + e, s));
+    auto* const listed = listed_.data();
+    mark(PageMarks{view(), cells.marker(backend, listed), edges.marker(backend, listed + 1),
+                   sides.marker(backend, listed + 2)},
+         LoopStep{3, TellListed{listed, told_.data()}});
+    backend.synchronize();
+    auto const counts = told_.template first<3>();
+    auto const c = cells.own(backend, counts[0]);
+    auto const e = edges.own(backend, counts[1]);
+    auto const s = sides.own(backend, counts[2]);
+    in_turn(backend, c.replace, e.replace, s.replace);
+    for_each_piece(c.words + e.words + s.words, [&](std::size_t first, Index n) {
+      backend.for_each(n, CopyPagesOfTree{c.copy, e.copy, s.copy, c.words, e.words, first});
+    });
   }
+
+ private:
+  typename B::template Array<Index> listed_;  // how many pages of cells, edges and sides are
+  ReadBack<B, Index> told_;
 };
 
 }  // namespace pliant::detail

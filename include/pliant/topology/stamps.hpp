@@ -2,10 +2,31 @@
 
 #include <cstddef>
 
+#include <pliant/backend/atomic.hpp>
 #include <pliant/backend/backend.hpp>
 #include <pliant/config.hpp>
 
 namespace pliant::detail {
+
+/// Whether a call is the first that gives an entry the stamp `now`.
+PLIANT_HOST_DEVICE bool stamps_first(Index& stamp, Index now) {
+  Index seen = atomic_load(stamp);
+  while (seen != now)
+    if (atomic_exchange(stamp, seen, now)) return true;
+  return false;
+}
+
+/// Entries that a loop lists, each once: those of which the stamp is not `now` yet.
+struct ListOnce {
+  Index* stamps;  // by entry
+  Index now;
+  Index* list;
+  Index* count;
+
+  PLIANT_HOST_DEVICE void operator()(Index entry) const {
+    if (stamps_first(stamps[entry], now)) list[atomic_add(*count, 1)] = entry;
+  }
+};
 
 /// A number for each entry of a list, by which loops tell entries that were seen: those with the number of the last `begin`.
 template <Backend B>

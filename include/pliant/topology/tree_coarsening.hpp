@@ -44,11 +44,11 @@ class TreeCoarsening {
     Index const merged = found[1];
     if (merged == 0) return done;
     // Parents are put in order in the launch that marks pages.
-    tree.own(backend, [&](PageMarks const& marks) {
+    tree.own(backend, [&](PageMarks const& marks, auto const& tell) {
       Index const knowing = finds_first ? 0 : found[2];
       in_turn(backend, SortStep{merged, keys_.data(), parents_.data(), key_bits(done.before.cells)},
               LoopStep{merged * MarkMerged::each, MarkMerged{parents_.data(), marks}},
-              LoopStep{knowing, MarkKnowing{listed(done, knowing), nullptr, marks}});
+              LoopStep{knowing, MarkKnowing{listed(done, knowing), nullptr, marks}}, tell);
     });
     grow(backend, first_children_, at(merged));
     grow(backend, children_, at(merged));
@@ -85,8 +85,8 @@ class TreeCoarsening {
     if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
     list_knowing(backend, tree.view(), done, cells, count, true);
     auto const knowing = listed(done, counted(backend)[2]);
-    tree.own(backend, [&](PageMarks const& marks) {
-      backend.for_each(knowing.count, MarkKnowing{knowing, nullptr, marks});
+    tree.own(backend, [&](PageMarks const& marks, auto const& tell) {
+      in_turn(backend, LoopStep{knowing.count, MarkKnowing{knowing, nullptr, marks}}, tell);
     });
     auto const view = number(backend, tree, done, knowing.count);
     move_up(backend, tree, done, view, knowing, knowing.count);
@@ -170,11 +170,12 @@ class TreeCoarsening {
   /// Makes what knows of newer entries than those that stay the tree's own, and gives what of it is listed; waits.
   KnowingCells own_knowing(B const& backend, PagedTree<B>& tree, Coarsened const& of,
                            Index merged) {
-    tree.own(backend, [&](PageMarks const& marks) {
+    tree.own(backend, [&](PageMarks const& marks, auto const& tell) {
       Index const most = list_knowing(backend, tree.view(), of, parents_.data(), merged, false);
       in_turn(
           backend, LoopStep{most, MarkKnowing{listed(of, most), counters_.data() + 2, marks}},
-          LoopStep{of.before.cells - of.staying.cells, MarkKnowing{listed(of, 0), nullptr, marks}});
+          LoopStep{of.before.cells - of.staying.cells, MarkKnowing{listed(of, 0), nullptr, marks}},
+          tell);
     });
     return listed(of, counts_.template first<4>()[2]);
   }
@@ -217,31 +218,38 @@ class TreeCoarsening {
   void move_up(B const& backend, PagedTree<B>& tree, Coarsened const& of,
                CompactionView const& view, KnowingCells const& knowing, Index told) {
     auto const &first = of.staying, &before = of.before, &now = of.now;
-    auto const move = [&](auto& list, NewNumbers const& numbers, Index count_before, Index count) {
-      auto const old = list.replace_from(backend, at(numbers.first), at(count - numbers.first));
-      using V = std::remove_cvref_t<decltype(old[0])>;
-      return LoopStep{count_before - numbers.first, MoveUp<V>{view, numbers, old, list.pages()}};
+    auto const entries = [&](Index cells) { return tree.layout.entry(at(cells)); };
+    auto const sides =
+        tree.sides.replace_from(backend, at(first.sides), at(now.sides - first.sides));
+    auto const edges =
+        tree.edges.replace_from(backend, at(first.edges), at(now.edges - first.edges));
+    auto const cells =
+        tree.cells.replace_from(backend, at(first.cells), at(now.cells - first.cells));
+    auto const rows =
+        tree.rows.replace_from(backend, entries(first.cells), entries(now.cells - first.cells));
+    auto const move = [](auto const& old, auto const& list, CompactionView const& by,
+                         NewNumbers const& numbers, Index count_before) {
+      using V = std::remove_cvref_t<decltype(old.before[0])>;
+      return LoopStep{count_before - numbers.first,
+                      MoveUp<V>{by, numbers, old.before, list.pages()}};
     };
     side_stamps_.begin(backend, at(first.sides));
     edge_stamps_.begin(backend, at(first.edges));
-    auto const move_sides = move(tree.sides, view.sides, before.sides, now.sides);
-    auto const move_edges = move(tree.edges, view.edges, before.edges, now.edges);
     // Few cells leave threads to share them.
     bool const are_few = told <= TreeView::few;
-    Index const sides = are_few ? TellSides::most : 1, edges = are_few ? TellEdges::most : 1;
-    in_turn(backend, move_sides,
-            LoopStep{told * sides, TellSides{view, tree.view(), knowing, sides, side_stamps_.data(),
-                                             side_stamps_.now()}},
-            move_edges,
-            LoopStep{told * edges, TellEdges{view, tree.view(), knowing, edges, edge_stamps_.data(),
-                                             edge_stamps_.now()}});
-    auto const move_cells = move(tree.cells, view.cells, before.cells, now.cells);
-    auto const entries = [&](Index cells) { return tree.layout.entry(at(cells)); };
-    auto const old_rows =
-        tree.rows.replace_from(backend, entries(first.cells), entries(now.cells - first.cells));
-    in_turn(backend, move_cells,
+    Index const each_side = are_few ? TellSides::most : 1,
+                each_edge = are_few ? TellEdges::most : 1;
+    in_turn(backend, sides.replace, sides.copy,
+            move(sides, tree.sides, view, view.sides, before.sides),
+            LoopStep{told * each_side, TellSides{view, tree.view(), knowing, each_side,
+                                                 side_stamps_.data(), side_stamps_.now()}},
+            edges.replace, edges.copy, move(edges, tree.edges, view, view.edges, before.edges),
+            LoopStep{told * each_edge, TellEdges{view, tree.view(), knowing, each_edge,
+                                                 edge_stamps_.data(), edge_stamps_.now()}},
+            cells.replace, cells.copy, move(cells, tree.cells, view, view.cells, before.cells),
+            rows.replace, rows.copy,
             LoopStep{static_cast<Index>(entries(before.cells - first.cells)),
-                     MoveRowsUp{view, old_rows, tree.rows.pages()}},
+                     MoveRowsUp{view, rows.before, tree.rows.pages()}},
             LoopStep{knowing.count, TellCells{view, tree.view(), knowing.listed}});
   }
 

@@ -77,9 +77,9 @@ class TreeConversion {
     backend.synchronize();
     Index const n = told_.template first<1>()[0];
     if (n == 0) return 0;
-    tree.own(backend, [&](PageMarks const& marks) {
+    tree.own(backend, [&](PageMarks const& marks, auto const& tell) {
       in_turn(backend, SortStep{n, keys_.data(), list_.data(), key_bits(cells)},
-              LoopStep{n, MarkConverted{list_.data(), marks}});
+              LoopStep{n, MarkConverted{list_.data(), marks}}, tell);
     });
     backend.for_each(n, ConvertCells{tree.view(), list_.data(), to});
     return n;

@@ -28,10 +28,10 @@ class TreeDivision {
     return leaves_.data();
   }
   /// Marks the pages that the division of these edits.
-  void mark_pages(PageMarks const& marks) const {
+  [[nodiscard]] LoopStep<MarkDivided> marking(PageMarks const& marks) const {
     // Few leaves leave threads to share them.
     Index const each = count_ <= TreeView::few ? MarkDivided::parts : 1;
-    backend_.for_each(count_ * each, MarkDivided{leaves_.data(), marks, each});
+    return {count_ * each, {leaves_.data(), marks, each}};
   }
   /// Numbers what they make, behind what there is, and checks it: check(how many nodes, edges, sides and cells), which may
   /// throw. Waits.

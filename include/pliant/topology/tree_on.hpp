@@ -102,12 +102,7 @@ class TreeOn {
     return lists;
   }
   /// Notes what changes from now on, for that.
-  void begin_noting() {
-    lists_.cells.begin_noting();
-    lists_.edges.begin_noting();
-    lists_.sides.begin_noting();
-    lists_.rows.begin_noting();
-  }
+  void begin_noting() { lists_.begin_noting(backend_); }
 
   /// Refines marked leaves below the limit of levels and, before each, the leaves that are coarser across one of its edges or
   /// sides, and so on. `marked`: in the backend's memory; cells may be marked several times, and what is no leaf is left
@@ -120,14 +115,13 @@ class TreeOn {
     need(keys_, n);
     CellSplit* const leaves = division_.begin(n);
     Index* const list = closure_.list();
-    lists_.own(backend_, [&](detail::PageMarks const& marks) {
+    lists_.own(backend_, [&](detail::PageMarks const& marks, auto const& tell) {
       int const bits_of_cell = detail::key_bits(size(lists_.cells));
       detail::in_turn(
           backend_,
           detail::LoopStep{n, detail::LevelKeys{view(), list, keys_.data(), bits_of_cell}},
           detail::SortStep{n, keys_.data(), list, bits_of_cell + detail::key_bits(most_levels + 1)},
-          detail::LoopStep{n, detail::ListLeaves{list, leaves}});
-      division_.mark_pages(marks);
+          detail::LoopStep{n, detail::ListLeaves{list, leaves}}, division_.marking(marks), tell);
     });
     Index const first_new_node = now_.nodes;
     divide("refine", limits);
@@ -145,9 +139,9 @@ class TreeOn {
                 n = splitting_(backend_, view(), cells, stamps_, marked);
     if (n == 0) return {};
     CellSplit* const leaves = division_.begin(n);
-    lists_.own(backend_, [&](detail::PageMarks const& marks) {
+    lists_.own(backend_, [&](detail::PageMarks const& marks, auto const& tell) {
       splitting_.choose(backend_, view(), cells, n, nodes, leaves);
-      division_.mark_pages(marks);
+      detail::in_turn(backend_, division_.marking(marks), tell);
     });
     divide("split", limits);
     return {{n, division_.new_nodes(), division_.leaves(), division_.made(), division_.parts()}};

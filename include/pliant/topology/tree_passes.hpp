@@ -11,29 +11,10 @@
 #include <pliant/topology/division_view.hpp>
 #include <pliant/topology/element_nodes.hpp>
 #include <pliant/topology/paged_tree.hpp>
+#include <pliant/topology/stamps.hpp>
 
 // Passes over cells of a tree, for loops of a backend.
 namespace pliant::detail {
-
-/// Whether a call is the first that gives an entry the stamp `now`.
-PLIANT_HOST_DEVICE bool stamps_first(Index& stamp, Index now) {
-  Index seen = atomic_load(stamp);
-  while (seen != now)
-    if (atomic_exchange(stamp, seen, now)) return true;
-  return false;
-}
-
-/// Cells that a loop lists, each once: those of which the stamp is not `now` yet.
-struct ListOnce {
-  Index* stamps;  // by cell
-  Index now;
-  Index* list;
-  Index* count;
-
-  PLIANT_HOST_DEVICE void operator()(Index c) const {
-    if (stamps_first(stamps[c], now)) list[atomic_add(*count, 1)] = c;
-  }
-};
 
 /// Lists marked leaves below a level; negative ones are none.
 struct ListMarked {
