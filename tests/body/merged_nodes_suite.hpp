@@ -159,9 +159,7 @@ struct MergedNodes {
 
   /// Brings masses and velocities to the coarser mesh; returns what held nodes took.
   Point<dim> merge(Array<T>& v, Array<DirectionMask> const& held, double bound = 64 * density) {
-    masses.take_gone(merged);
     momentum.begin(weights_before, weights_now, masses, merged);
-    masses.add_come(merged);
     masses.read(weights_now, kilograms.data());
     auto rounded = zeros<T>(backend, at(rows));
     masses.round(kilograms.data(), rounded.data());

@@ -139,9 +139,7 @@ struct RefinedNodes {
     auto const elements_now = detail::refined_elements<E>(
         tree, refined, of_node, NodeField<double const, dim>{points.data(), rows.count()});
     masses.extend(rows.count());
-    masses.take_gone(elements_now);
     momentum.begin(before_weights, weights, masses, elements_now);
-    masses.add_come(elements_now);
     masses.read(weights, kilograms.data());
     masses.round(kilograms.data(), mass.data());
     momentum.give_back(before_weights, weights, density, 64 * density, kilograms.data(),

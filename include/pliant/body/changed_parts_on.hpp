@@ -55,17 +55,17 @@ class ChangedPartsOn {
         on_(std::move(on)),
         backend_(parts.backend),
         layout_(parts, on_),
-        energies_(backend_),
+        energies_(backend_, on_->energies),
         topology_(std::move(on_host.topology)),
         prescribed_(std::move(on_host.prescribed)) {}
 
   ChangedTopology<Parts> refined(typename TreeOn<B>::Refined const& done) {
     synchronize_velocities(parts_);
-    energies_.add_kinetic(Energies::before, parts_);
     auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
-    backend_.for_each(done.leaves, CellOfSplit{done.cells, cells->data()});
+    on_->hanging.find_after(on_->tree, done, energies_.clearing(),
+                            LoopStep{done.leaves, CellOfSplit{done.cells, cells->data()}});
+    energies_.add_kinetic(Energies::before, parts_);
     follow_on_host(std::move(cells), ChangeOfCells::refine);
-    on_->hanging.find_after(on_->tree, done);
     on_->follow_order_of(backend_, *parts_.layout.first_order, done);
     on_->rows.extend(on_->tree, on_->order, done);
     if (done.new_nodes == 0) backend_.synchronize();  // rows of new nodes were waited for
@@ -123,11 +123,11 @@ class ChangedPartsOn {
 
   ChangedTopology<Parts> coarsened(Coarsened const& done) {
     synchronize_velocities(parts_);
-    energies_.add_kinetic(Energies::before, parts_);
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
-    copy_values<B, Index>(backend_, done.parents, parents->data(), at(done.merged));
+    on_->hanging.find_after(on_->tree, done, energies_.clearing(),
+                            LoopStep{done.merged, CopyValue<Index>{done.parents, parents->data()}});
+    energies_.add_kinetic(Energies::before, parts_);
     follow_on_host(std::move(parents), ChangeOfCells::coarsen);
-    on_->hanging.find_after(on_->tree, done);
     on_->follow_order_of(backend_, *parts_.layout.first_order, done);
     on_->rows.coarsen(done);
     double const speed = largest_speed();  // waits
@@ -194,10 +194,8 @@ class ChangedPartsOn {
   void exchange_masses(MassWeightsOn<B> const& weights, Layout& layout, double speed, Array<T>& v,
                        Families const&... families) {
     MassWeightsOn<B> const weights_before(backend_, parts_.layout.interpolation, rows_);
-    on_->masses.take_gone(families...);
     (visit_tets(families, [&](auto const& tets) { on_->masses.take_gone(tets); }), ...);
     on_->momentum.begin(weights_before, weights, on_->masses, families...);
-    on_->masses.add_come(families...);
     (visit_tets(families, [&](auto const& tets) { on_->masses.add_come(tets); }), ...);
     layout_.read_masses(layout, weights);
     double const bound = 64 * parts_.layout.mass_in_all * std::max(speed, 1e-150);

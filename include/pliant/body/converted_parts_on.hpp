@@ -142,6 +142,7 @@ class ConvertedPartsOn : ChangedPartsOn<Parts> {
   ChangedTopology<Parts> converted(List cells, ChangeOfCells change, Follow const& follow,
                                    Fill const& fill, Hold const& hold, Clear const& clear) {
     synchronize_velocities(parts_);
+    energies_.clearing().run(backend_);
     energies_.add_kinetic(Energies::before, parts_);
     this->follow_on_host(std::move(cells), change);
     follow();

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <pliant/backend/element_sums.hpp>
+#include <pliant/backend/grown_array.hpp>
+#include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/body/change_passes.hpp>
 #include <pliant/body/element_rows_on.hpp>
@@ -24,6 +26,8 @@ class EnergySumsOn {
   using Table = std::tuple_element_t<I, decltype(Parts::layout_type::tables)>;
   static constexpr int dim = Parts::dim;
   static constexpr std::size_t types = std::tuple_size_v<decltype(Parts::layout_type::tables)>;
+  static constexpr std::size_t count = 4;
+  using Array = typename Parts::template Array<double>;
 
  public:
   enum Time : std::size_t { before, after };
@@ -32,7 +36,14 @@ class EnergySumsOn {
     std::array<double, 2> strain, kinetic;
   };
 
-  explicit EnergySumsOn(B const& backend) : backend_(backend), sums_(zeros<double>(backend, 4)) {}
+  /// `sums`: room in the backend's memory.
+  EnergySumsOn(B const& backend, Array& sums) : backend_(backend), sums_(sums) {
+    grow(backend, sums, count);
+  }
+  /// A step of loops (see in_turn) before all others.
+  [[nodiscard]] LoopStep<FillValue<double>> clearing() {
+    return {static_cast<Index>(count), {sums_.data(), 0}};
+  }
 
   /// Of the elements of a body's type I at some places, (count); −1 for none.
   template <std::size_t I>
@@ -63,7 +74,8 @@ class EnergySumsOn {
                      sums_.data() + 2 + time);
   }
   [[nodiscard]] Sums read() const {
-    auto const s = download<double>(sums_);
+    std::array<double, count> s;
+    sums_.download(s);
     return {{s[0], s[1]}, {s[2], s[3]}};
   }
 
@@ -95,7 +107,7 @@ class EnergySumsOn {
   }
 
   B const& backend_;
-  typename Parts::template Array<double> sums_;
+  Array& sums_;
 };
 
 }  // namespace pliant::detail

@@ -32,15 +32,15 @@ class FamilyMomentumOn {
  public:
   explicit FamilyMomentumOn(B const& backend) : backend_(backend), told_(backend, 1) {}
 
-  /// Looks up which nodes a change touches, and what these have of the masses of elements that stay; between
-  /// NodalMassesOn::take_gone and add_come. `before`, `now`: of the slaves that there were, and are.
+  /// Takes nodes the masses of elements that go, and gives them those of elements that come. Looks up which nodes a change touches, and
+  /// what these have of the masses of elements that stay. `before`, `now`: of the slaves that there were, and are.
   template <detail::ChangedFamilies... Families>
-  void begin(MassWeightsOn<B> const& before, MassWeightsOn<B> const& now,
-             NodalMassesOn<B> const& masses, Families const&... families) {
+  void begin(MassWeightsOn<B> const& before, MassWeightsOn<B> const& now, NodalMassesOn<B>& masses,
+             Families const&... families) {
     auto const rows = at(masses.rows());
     detail::grow_zeroed(backend_, place_, rows);
     detail::grow(backend_, list_, rows);
-    counter_ = zeros<Index>(backend_, 1);
+    detail::grow(backend_, counter_, 1);
     detail::TouchOnce const touch{place_.data(), list_.data(), counter_.data()};
     auto const touch_members = [&]<class Own>(Own const& own) {
       // Those that are more, or have more nodes, have the nodes of the others.
@@ -60,11 +60,14 @@ class FamilyMomentumOn {
       most += at(slaves->slaves().count) + at(slaves->masters().count);
     most_ = static_cast<Index>(std::min(most, rows));
     detail::grow(backend_, staying_mass_, at(most_));
-    detail::in_turn(backend_, touch_members(families)..., touch_all(slaves_before.slaves()),
+    detail::in_turn(backend_, masses.taking_gone(families)...,
+                    detail::LoopStep{1, detail::FillValue<Index>{counter_.data(), 0}},
+                    touch_members(families)..., touch_all(slaves_before.slaves()),
                     touch_all(slaves_before.masters()), touch_all(slaves_now.slaves()),
                     touch_all(slaves_now.masters()),
                     of_listed(detail::NoteMass{list_.data(), place_.data(), masses.unit(),
-                                               masses.own(), staying_mass_.data()}));
+                                               masses.own(), staying_mass_.data()}),
+                    masses.adding_come(families)...);
   }
 
   /// Changes the velocities `v`, to which a refinement gave new nodes theirs, so that each family keeps its momentum. Slaves keep
@@ -86,27 +89,26 @@ class FamilyMomentumOn {
     using Placed = detail::DoublesByPlace<dim>;
     Placed const v_before{place_.data(), before_.data()}, v_now{place_.data(), now_.data()},
         impulse{place_.data(), impulse_.data()};
-    of_listed(
-        detail::TakeVelocities<T, dim>{list_.data(), v, before_.data(), now_.data(), sums_.data()})
-        .run(backend_);
-    before.template apply<dim>(v_before);
-    now.template apply<dim>(v_now);
     auto const add_impulses = [&]<class Own>(Own const& own) {
       return detail::LoopStep{own.count,
                               detail::AddFamilyImpulse<Own>{own, density, v_before, v_now, unit,
                                                             place_.data(), sums_.data(), refused}};
     };
     detail::in_turn(
-        backend_, add_impulses(families)...,
+        backend_,
+        of_listed(detail::TakeVelocities<T, dim>{list_.data(), v, before_.data(), now_.data(),
+                                                 sums_.data()}),
+        before.template applying<dim>(v_before), now.template applying<dim>(v_now),
+        add_impulses(families)...,
         of_listed(detail::AddImpulseOfSlave<dim>{unit, sums_.data(), staying_mass_.data(),
-                                                 before_.data(), now_.data(), impulse_.data()}));
-    now.template hand<dim>(impulse);
-    detail::in_turn(backend_, of_listed(detail::CheckImpulses<dim>{unit, impulse_.data(), refused}),
-                    of_listed(detail::GiveImpulses<T, dim>{list_.data(), impulse_.data(), kilograms,
-                                                           held, unit, v, taken_.data()}),
-                    of_listed(detail::ForgetPlaces{list_.data(), place_.data()}),
-                    detail::LoopStep{1, detail::CopyValue<detail::TakenMomentum<dim>>{
-                                            taken_.data(), told_.data()}});
+                                                 before_.data(), now_.data(), impulse_.data()}),
+        now.template handing<dim>(impulse), now.template clearing<dim>(impulse),
+        of_listed(detail::CheckImpulses<dim>{unit, impulse_.data(), refused}),
+        of_listed(detail::GiveImpulses<T, dim>{list_.data(), impulse_.data(), kilograms, held, unit,
+                                               v, taken_.data()}),
+        of_listed(detail::ForgetPlaces{list_.data(), place_.data()}),
+        detail::LoopStep{
+            1, detail::CopyValue<detail::TakenMomentum<dim>>{taken_.data(), told_.data()}});
     most_ = 0;
   }
   /// What held nodes took of momentum, N s, once the backend was waited for. Throws Error where an impulse was refused.

@@ -117,10 +117,10 @@ class HeldSidesOn {
           detail::HoldParts<Sides>{sides, refined.cells, bits_.data(), directions_,
                                    is_there ? in_turn_[k] : DirectionMask{0}, of_node, held}};
     };
-    backend.for_each(count_ - first_new, detail::ClearBits{bits_.data() + first_new});
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       detail::in_turn(
           backend,
+          detail::LoopStep{count_ - first_new, detail::ClearBits{bits_.data() + first_new}},
           detail::LoopStep{refined.leaves,
                            detail::InheritConditions<Sides>{sides, refined.cells, bits_.data()}},
           hold(K)...);
@@ -142,19 +142,22 @@ class HeldSidesOn {
     Index const first = Dim == 2 ? done.staying.edges : done.staying.sides,
                 now = count_in(done.now);
     detail::grow(backend, moved_, at(now - first));
-    backend.for_each(
-        count_ - first,
-        detail::MoveBits{{first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()});
-    backend.for_each(done.merged, detail::FindCutSides<Sides>{Sides{tree.view()},
-                                                              {done.staying.cells, done.cells},
-                                                              done.parents,
-                                                              bits_.data(),
-                                                              moved_.data(),
-                                                              first,
-                                                              found_.data()});
-    backend.for_each(done.before.nodes - done.staying.nodes,
-                     detail::FindNamedNodes{done.nodes, of_node + done.staying.nodes, named_.data(),
-                                            found_.data()});
+    using detail::LoopStep;
+    detail::in_turn(
+        backend,
+        LoopStep{count_ - first,
+                 detail::MoveBits{
+                     {first, Dim == 2 ? done.edges : done.sides}, bits_.data(), moved_.data()}},
+        LoopStep{done.merged, detail::FindCutSides<Sides>{Sides{tree.view()},
+                                                          {done.staying.cells, done.cells},
+                                                          done.parents,
+                                                          bits_.data(),
+                                                          moved_.data(),
+                                                          first,
+                                                          found_.data()}},
+        LoopStep{done.before.nodes - done.staying.nodes,
+                 detail::FindNamedNodes{done.nodes, of_node + done.staying.nodes, named_.data(),
+                                        found_.data()}});
     backend.synchronize();
     if (found_.template first<1>()[0] != 0) return false;
     detail::copy_values<B, detail::ConditionBits>(backend, moved_.data(), bits_.data() + first,

@@ -189,7 +189,17 @@ struct TakeFoundRows {
 /// Which of the nodes from a first one on go, by their new numbers.
 struct GoesAway {
   Index const* numbers;
-  PLIANT_HOST_DEVICE bool operator()(Index k) const { return numbers[k] < 0; }
+  PLIANT_HOST_DEVICE Index operator()(Index k) const { return numbers[k] < 0 ? 1 : 0; }
+};
+/// Lists the rows of those that go.
+struct ListFreed {
+  GoesAway goes;
+  Index const* before;   // how many of the nodes before each go
+  Index const* of_node;  // by old numbers, from the same first node on
+  Index* freed;
+  PLIANT_HOST_DEVICE void operator()(Index k) const {
+    if (goes(k) != 0) freed[before[k]] = of_node[k];
+  }
 };
 /// Gives nodes that moved up the rows they had; rows of those that go are free.
 struct MoveRows {

@@ -148,12 +148,16 @@ class NodeRowsOn {
     Index* const of_node = of_node_.data() + done.staying.nodes;
     need(freed_, freed_count_);
     need(found_, staying);
-    backend_.select(n, detail::GoesAway{done.nodes}, freed_.data(), counter_.data());
-    backend_.for_each(freed_count_, detail::LookUp{of_node, freed_.data()});
-    backend_.for_each(
-        n, detail::MoveRows{
-               {done.staying.nodes, done.nodes}, of_node_.data(), node_.data(), found_.data()});
-    detail::copy_values<B, Index>(backend_, found_.data(), of_node, at(staying));
+    need(before_, n + 1);
+    using detail::LoopStep, detail::ScanStep;
+    detail::GoesAway const goes{done.nodes};
+    detail::in_turn(backend_, ScanStep{n, goes, before_.data()},
+                    LoopStep{n, detail::ListFreed{goes, before_.data(), of_node, freed_.data()}},
+                    LoopStep{n, detail::MoveRows{{done.staying.nodes, done.nodes},
+                                                 of_node_.data(),
+                                                 node_.data(),
+                                                 found_.data()}},
+                    LoopStep{staying, detail::CopyValue<Index>{found_.data(), of_node}});
     nodes_ = done.now.nodes;
     most_partial_ += freed_count_;
   }

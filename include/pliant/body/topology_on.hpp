@@ -84,7 +84,8 @@ struct TopologyOn<Mesh<Es...>, B> {
   NodalMassesOn<B> masses;
   FamilyMomentumOn<dim, B> momentum;
   GoneNodesOn<B> gone;
-  typename B::template Array<double> points;  // (rows, node_stride), m
+  typename B::template Array<double> points;      // (rows, node_stride), m
+  typename B::template Array<double> energies{};  // of a change
   typename B::template Array<Index>
       first_places{};  // of the initial mesh's cells, once some leaf went over to another type
   std::array<typename B::template Array<Index>, 3> other_blocks{};  // see LeafOrderOn::convert

@@ -110,25 +110,37 @@ class MassWeightsOn {
   /// Sets slaves to the mean of their masters: to the velocity at which their mass moves.
   template <int C, class Values>
   void apply(Values const& values) const {
-    auto const& rows = interpolation_.slaves();
-    if (interpolation_.empty()) return;
-    backend_.for_each(rows.count, detail::MeanOfMasters<T, C, Values>{
-                                      weight(), rows.node.data(), rows.first.data(),
-                                      rows.other.data(), rows.weight.data(), values});
+    applying<C>(values).run(backend_);
   }
   /// Hands what slaves hold to their masters, and sets slaves to zero. A master adds up by ascending slaves.
   template <int C, class Values>
   void hand(Values const& values) const {
+    if (!interpolation_.empty()) detail::in_turn(backend_, handing<C>(values), clearing<C>(values));
+  }
+
+  // The same as steps of loops (see in_turn).
+
+  template <int C, class Values>
+  [[nodiscard]] detail::LoopStep<detail::MeanOfMasters<T, C, Values>> applying(
+      Values const& values) const {
+    auto const& rows = interpolation_.slaves();
+    return {rows.count,
+            {weight(), rows.node.data(), rows.first.data(), rows.other.data(), rows.weight.data(),
+             values}};
+  }
+  template <int C, class Values>
+  [[nodiscard]] detail::LoopStep<detail::TakeFromSlaves<T, C, Values>> handing(
+      Values const& values) const {
     auto const& rows = interpolation_.masters();
-    if (interpolation_.empty()) return;
-    auto const& slaves = interpolation_.slaves();
-    detail::in_turn(
-        backend_,
-        detail::LoopStep{
-            rows.count,
-            detail::TakeFromSlaves<T, C, Values>{weight(), rows.node.data(), rows.first.data(),
-                                                 rows.other.data(), rows.weight.data(), values}},
-        detail::LoopStep{slaves.count, detail::ClearSlave<C, Values>{slaves.node.data(), values}});
+    return {rows.count,
+            {weight(), rows.node.data(), rows.first.data(), rows.other.data(), rows.weight.data(),
+             values}};
+  }
+  template <int C, class Values>
+  [[nodiscard]] detail::LoopStep<detail::ClearSlave<C, Values>> clearing(
+      Values const& values) const {
+    auto const& rows = interpolation_.slaves();
+    return {rows.count, {rows.node.data(), values}};
   }
 
  private:

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <pliant/backend/backend.hpp>
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/backend/value_at.hpp>
 #include <pliant/config.hpp>
 #include <pliant/topology/hanging_view.hpp>
@@ -118,6 +121,36 @@ class LinearEdgesOn {
 
  private:
   typename B::template Array<std::uint8_t> linear_;  // by edge
+};
+
+/// Leaves each slave once, where they hang at several places.
+template <Backend B>
+class SlavesOnce {
+  template <class U>
+  using Array = typename B::template Array<U>;
+
+ public:
+  /// Of n sorted slaves, and their places, leaves the first of equal ones; gives how many are left. Waits.
+  Index keep(B const& backend, Index n, Array<std::uint64_t>& nodes, Array<Index>& order) {
+    auto const most = static_cast<std::size_t>(n);
+    if (told_.size() == 0) told_ = ReadBack<B, Index>(backend, 1);
+    grow(backend, first_, most);
+    grow(backend, nodes_, most);
+    grow(backend, order_, most);
+    backend.select(n, IsFirstOfEqual{nodes.data()}, first_.data(), told_.data());
+    backend.synchronize();
+    Index const count = told_.template first<1>()[0];
+    backend.for_each(
+        count, TakeSlaves{first_.data(), nodes.data(), order.data(), nodes_.data(), order_.data()});
+    std::swap(nodes, nodes_);
+    std::swap(order, order_);
+    return count;
+  }
+
+ private:
+  Array<Index> first_, order_;
+  Array<std::uint64_t> nodes_;
+  ReadBack<B, Index> told_;
 };
 
 }  // namespace pliant::detail

@@ -57,24 +57,22 @@ class HangingNodesOn {
     select(tree.sizes().edges, detail::IsHungOnEdge<Dim>{view}, edges_, edges_at);
     select(sides_of(tree), detail::IsHungOnSide<Dim>{view}, sides_, sides_at);
   }
-  /// The same after a refinement: looks at what hung before it, and at what was refined.
-  void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined) {
-    if (!knows_all_ || tree.mixes_degrees()) return find(tree);
+  /// The same after a refinement: looks at what hung before it, and at what was refined. `beside`: steps of other loops (in_turn).
+  template <class... Steps>
+  void find_after(TreeOn<B> const& tree, typename TreeOn<B>::Refined const& refined,
+                  Steps const&... beside) {
+    if (!knows_all_ || tree.mixes_degrees()) return find_beside(tree, beside...);
     using detail::LoopStep, detail::CopyValue, detail::FillValue, detail::IsHungOnEdge,
         detail::IsHungOnSide, detail::ListStillHung;
     using NewEdges = detail::ListNewlyHungEdges<Dim>;
     using NewSides = detail::ListNewlyHungSides<Dim>;
     detail::HangingView<Dim> const view{tree.view()};
-    std::swap(edges_, edges_before_);
-    std::swap(sides_, sides_before_);
     Index const new_edges = NewEdges::each * refined.leaves,
                 new_sides = sides_have_nodes_ ? NewSides::each * refined.leaves : 0;
-    need(edges_, edge_count_ + new_edges);
-    need(sides_, side_count_ + new_sides);
-    need(counters_, 2);
+    make_room(new_edges, new_sides);
     Index *const edges = counters_.data(), *const sides = edges + 1;
     detail::in_turn(
-        backend_, LoopStep{2, FillValue<Index>{edges, 0}},
+        backend_, beside..., LoopStep{2, FillValue<Index>{edges, 0}},
         LoopStep{
             edge_count_,
             ListStillHung<IsHungOnEdge<Dim>>{{view}, edges_before_.data(), edges_.data(), edges}},
@@ -87,9 +85,10 @@ class HangingNodesOn {
   }
   /// The same after a coarsening. Only leaves that were made of families come to have finer neighbours: what else hangs did so
   /// before.
-  void find_after(TreeOn<B> const& tree, Coarsened const& coarsened) {
-    if (!knows_all_ || tree.mixes_degrees()) return find(tree);
-    if (coarsened.merged == 0) return;
+  template <class... Steps>
+  void find_after(TreeOn<B> const& tree, Coarsened const& coarsened, Steps const&... beside) {
+    if (!knows_all_ || tree.mixes_degrees()) return find_beside(tree, beside...);
+    if (coarsened.merged == 0) return detail::in_turn(backend_, beside...);
     using detail::LoopStep, detail::CopyValue, detail::FillValue, detail::IsHungOnEdge,
         detail::IsHungOnSide, detail::ListStaying, detail::NewNumbers;
     using EdgesOfMerged = detail::ListHungEdgesOfMerged<Dim>;
@@ -97,20 +96,16 @@ class HangingNodesOn {
     detail::HangingView<Dim> const view{tree.view()};
     auto const& staying = coarsened.staying;
     NewNumbers const cells{staying.cells, coarsened.cells};
-    std::swap(edges_, edges_before_);
-    std::swap(sides_, sides_before_);
     Index const of_edges = EdgesOfMerged::each * coarsened.merged,
                 of_sides = sides_have_nodes_ ? SidesOfMerged::each * coarsened.merged : 0;
-    need(edges_, edge_count_ + of_edges);
-    need(sides_, side_count_ + of_sides);
-    need(counters_, 2);
+    make_room(of_edges, of_sides);
     edge_stamps_.begin(backend_, at(coarsened.now.edges));
     side_stamps_.begin(backend_, sides_have_nodes_ ? at(coarsened.now.sides) : 0);
     detail::ListOnce const edges{edge_stamps_.data(), edge_stamps_.now(), edges_.data(),
                                  counters_.data()},
         sides{side_stamps_.data(), side_stamps_.now(), sides_.data(), counters_.data() + 1};
     detail::in_turn(
-        backend_, LoopStep{2, FillValue<Index>{counters_.data(), 0}},
+        backend_, beside..., LoopStep{2, FillValue<Index>{counters_.data(), 0}},
         LoopStep{edge_count_,
                  ListStaying<IsHungOnEdge<Dim>>{
                      {view}, edges_before_.data(), {staying.edges, coarsened.edges}, edges}},
@@ -153,7 +148,7 @@ class HangingNodesOn {
     detail::SortStep const sorting{n, nodes_.data(), order_.data(), detail::key_bits(nodes)};
     if (mixes) {
       detail::in_turn(backend_, listing, sorting);
-      n = keep_first_of_each(n);
+      n = once_.keep(backend_, n, nodes_, order_);
     }
     first_ = unset<Index>(backend_, at(n) + 1);
     need(counters_, 2);
@@ -198,6 +193,18 @@ class HangingNodesOn {
     filling(tree, row_of_node, slaves).run(backend_);
     return slaves;
   }
+  /// For so many more than there were.
+  void make_room(Index edges, Index sides) {
+    std::swap(edges_, edges_before_);
+    std::swap(sides_, sides_before_);
+    need(edges_, edge_count_ + edges);
+    need(sides_, side_count_ + sides);
+    need(counters_, 2);
+  }
+  void find_beside(TreeOn<B> const& tree, auto const&... steps) {
+    detail::in_turn(backend_, steps...);
+    find(tree);
+  }
   [[nodiscard]] Index sides_of(TreeOn<B> const& tree) const {
     return sides_have_nodes_ ? tree.sizes().sides : 0;
   }
@@ -216,21 +223,6 @@ class HangingNodesOn {
     select(sizes.edges, detail::IsHungOnAnyEdge<Dim>{hung}, edges_, edges_at);
     select(sides, detail::IsHungOnAnySide<Dim>{hung}, sides_, sides_at);
     select(sizes.cells, detail::IsHungInCell{tree.view()}, cells_, cells_at);
-  }
-  /// Of sorted slaves, some of which were found at several places, leaves the first place of each; gives how many are left. Waits.
-  Index keep_first_of_each(Index n) {
-    need(start_, n);
-    need(nodes_kept_, n);
-    need(order_kept_, n);
-    backend_.select(n, detail::IsFirstOfEqual{nodes_.data()}, start_.data(),
-                    counts_.data() + sum_at);
-    backend_.synchronize();
-    Index const count = counts_.template first<6>()[sum_at];
-    backend_.for_each(count, detail::TakeSlaves{start_.data(), nodes_.data(), order_.data(),
-                                                nodes_kept_.data(), order_kept_.data()});
-    std::swap(nodes_, nodes_kept_);
-    std::swap(order_, order_kept_);
-    return count;
   }
   /// Rows of what was found, without values.
   RowsOn<B> room_for_slaves() {
@@ -290,8 +282,7 @@ class HangingNodesOn {
   Array<Index> start_, order_, first_, counters_;
   ReadBack<B, Index> counts_;
   Array<std::uint64_t> nodes_, nodes_before_;  // slaves, and those before
-  Array<std::uint64_t> nodes_kept_;            // of those found at several places
-  Array<Index> order_kept_;
+  detail::SlavesOnce<B> once_;                 // of a tree that mixes degrees
   Array<detail::HangingPlace> places_;
   Array<Index> slave_at_;  // by node: its number among slaves, one more; or zero
   Index slaves_ = 0;       // how many are numbered there

@@ -12,6 +12,7 @@
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/topology/coarsening_passes.hpp>
 #include <pliant/topology/compaction_passes.hpp>
 #include <pliant/topology/division_marks.hpp>
@@ -81,8 +82,7 @@ class TreeCoarsening {
   Lowered lower(B const& backend, PagedTree<B>& tree, TreeSizes const& initial,
                 TreeSizes const& sizes, Index const* cells, Index count) {
     Lowered done{{.staying = initial, .before = sizes, .now = sizes}, count, cells};
-    counters_ = zeros<Index>(backend, counters);
-    if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
+    begin_counting(backend).run(backend);
     list_knowing(backend, tree.view(), done, cells, count, true);
     auto const knowing = listed(done, counted(backend)[2]);
     tree.own(backend, [&](PageMarks const& marks, auto const& tell) {
@@ -113,6 +113,12 @@ class TreeCoarsening {
     done.edges = numbers_[2].data();
     done.sides = numbers_[3].data();
   }
+  /// A step behind which loops count.
+  LoopStep<FillValue<Index>> begin_counting(B const& backend) {
+    if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
+    grow(backend, counters_, counters);
+    return {static_cast<Index>(counters), {counters_.data(), 0}};
+  }
   /// Numbers that loops counted, which this waits for.
   std::array<Index, 4> counted(B const& backend) {
     backend.synchronize();
@@ -127,13 +133,12 @@ class TreeCoarsening {
                      Index const* marked, Index count, bool of_split) {
     Index const most = std::min(count, of.before.cells);
     stamps.begin(backend, at(of.before.cells));
-    counters_ = zeros<Index>(backend, counters);
+    auto const begin = begin_counting(backend);
     auto* const counts = counters_.data();
-    if (counts_.size() == 0) counts_ = ReadBack<B, Index>(backend, 4);
     grow(backend, families_, at(most));
     grow(backend, parents_, at(most));
     grow(backend, keys_, at(most));
-    in_turn(backend,
+    in_turn(backend, begin,
             LoopStep{count, ListFamilies{tree,
                                          marked,
                                          of_split,
