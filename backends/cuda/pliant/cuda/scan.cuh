@@ -7,17 +7,19 @@
 #include <pliant/cuda/launch.hpp>
 #include <pliant/cuda/tuning.hpp>
 
-// scan and select: each block takes a part of the list. A first kernel calls the function, notes what it gives, and sums it over
-// each part; a second one stores sums. For a short list one block does both at once.
+// scan and select: each block takes a part of the list, calls the function, and tells the others the sum over its part; once it
+// knows what those before it have, it stores sums (Merrill, Garland, Single-pass parallel prefix scan with decoupled look-back, 2016).
 namespace pliant::detail {
 
 /// Of [0, n), for a block: whole rounds of `round`, but for the last. 64 bits: a round may pass the largest Index.
 struct ListPart {
   std::int64_t first, last;
-  __device__ ListPart(Index n, int round) {
+  __device__ ListPart(Index n, int round) : ListPart(n, round, blockIdx.x) {}
+  /// The part of another block.
+  __device__ ListPart(Index n, int round, unsigned block) {
     std::int64_t const rounds = (std::int64_t{n} + round - 1) / round;
-    first = rounds * blockIdx.x / gridDim.x * round;
-    last = min(rounds * (blockIdx.x + 1) / gridDim.x * round, std::int64_t{n});
+    first = rounds * block / gridDim.x * round;
+    last = min(rounds * (block + 1) / gridDim.x * round, std::int64_t{n});
   }
   /// All of it, for a block alone.
   __device__ explicit ListPart(Index n) : first(0), last(n) {}
@@ -50,22 +52,6 @@ __device__ inline Index scan_block(Index value, Index& total) {
   return sum - value;
 }
 
-/// f(i) to notes[i], and their sum over each block's part.
-template <class F, class Note>
-__global__ void __launch_bounds__(list_threads)
-    note_values(Index n, __grid_constant__ F const f, Note* notes, Index* sums) {
-  begin_after_previous_kernel();
-  ListPart const part(n, list_threads);
-  Index sum = 0, total = 0;
-  for (std::int64_t i = part.first + threadIdx.x; i < part.last; i += list_threads) {
-    Index const value = f(static_cast<Index>(i));
-    notes[i] = static_cast<Note>(value);
-    sum += value;
-  }
-  scan_block(sum, total);
-  if (threadIdx.x == 0) sums[blockIdx.x] = total;
-}
-
 /// store(i, f(i), the sum over all before i) for a part of a list. before: the sum over all before the part. Returns that over
 /// all before its end.
 template <class F, class Store>
@@ -81,16 +67,86 @@ __device__ Index store_part(ListPart const& part, F const& f, Store const& store
   return before;
 }
 
-/// The same for all of a list. sums: those of parts, of which a block reads those before its own.
-template <class F, class Store>
+template <class Note>
+struct Noted {
+  Note const* notes;
+  __device__ Index operator()(Index i) const { return notes[i]; }
+};
+/// The sum over all parts before one, for the first warp, each thread of which gets it; waits for them. `tag`: of this launch.
+__device__ inline Index sum_of_parts_before(unsigned part, unsigned long long const volatile* parts,
+                                            unsigned tag) {
+  auto const lane = static_cast<std::int64_t>(threadIdx.x) % warp_size;
+  Index before = 0;
+  for (std::int64_t last = std::int64_t{part} - 1; last >= 0; last -= warp_size) {
+    std::int64_t const own = last - lane;
+    unsigned long long word = 0;
+    unsigned kind = PartSums::known;
+    if (own >= 0)
+      do {
+        word = parts[own];
+        kind = static_cast<unsigned>(word >> 32) - tag;
+      } while (kind != PartSums::of_part && kind != PartSums::known);
+    unsigned const are_known = __ballot_sync(0xffffffffu, kind == PartSums::known);
+    int const nearest = are_known == 0 ? warp_size - 1 : __ffs(static_cast<int>(are_known)) - 1;
+    auto value = own >= 0 && lane <= nearest ? static_cast<Index>(word) : 0;
+    for (int step = warp_size / 2; step > 0; step /= 2)
+      value += __shfl_xor_sync(0xffffffffu, value, step);
+    before += value;
+    if (are_known != 0) break;
+  }
+  return before;
+}
+
+/// store(i, f(i), the sum over all before i) for all of a list. Blocks take parts in the order in which they start, so that those that
+/// one waits for have started. `notes`: room for what f gives.
+template <class F, class Note, class Store>
 __global__ void __launch_bounds__(list_threads)
-    store_sums(Index n, __grid_constant__ F const f, Store const store, Index const* sums) {
+    scan_parts(Index n, __grid_constant__ F const f, Note* notes, Store const store,
+               PartSums* sums) {
   begin_after_previous_kernel();
-  Index of_parts = 0, before = 0;
-  for (unsigned b = threadIdx.x; b < blockIdx.x; b += list_threads) of_parts += sums[b];
-  scan_block(of_parts, before);
-  Index const sum = store_part(ListPart(n, list_threads), f, store, before);
-  if (blockIdx.x == gridDim.x - 1 && threadIdx.x == 0) store.total(n, sum);
+  __shared__ unsigned own_part, own_tag;
+  __shared__ Index before_part;
+  if (threadIdx.x == 0) {
+    own_tag = sums->next_tag;
+    own_part = atomicAdd(&sums->started, 1u);
+  }
+  __syncthreads();
+  unsigned const number = own_part, tag = own_tag;
+  ListPart const part(n, list_threads, number);
+  bool const is_one_round = part.last - part.first <= list_threads;
+  Index value = 0, of_thread = 0, total = 0;
+  for (std::int64_t i = part.first + threadIdx.x; i < part.last; i += list_threads) {
+    value = f(static_cast<Index>(i));
+    if (!is_one_round) notes[i] = static_cast<Note>(value);
+    of_thread += value;
+  }
+  Index const sum = scan_block(of_thread, total);
+  auto const tell = [&](unsigned kind, Index known) {
+    atomicExch(&sums->parts[number], static_cast<unsigned long long>(tag + kind) << 32 |
+                                         static_cast<unsigned>(known));
+  };
+  if (threadIdx.x < warp_size) {
+    Index before = 0;
+    if (number > 0) {
+      if (threadIdx.x == 0) tell(PartSums::of_part, total);
+      before = sum_of_parts_before(number, sums->parts, tag);
+    }
+    if (threadIdx.x == 0) {
+      tell(PartSums::known, before + total);
+      before_part = before;
+    }
+  }
+  __syncthreads();
+  Index const before = before_part;
+  if (!is_one_round)
+    store_part(part, Noted<Note>{notes}, store, before);
+  else if (part.first + threadIdx.x < part.last)
+    store(static_cast<Index>(part.first + threadIdx.x), value, before + sum);
+  if (threadIdx.x != 0) return;
+  if (number == gridDim.x - 1) store.total(n, before + total);
+  if (atomicAdd(&sums->ended, 1u) < gridDim.x - 1) return;
+  sums->started = sums->ended = 0;
+  sums->next_tag = tag + PartSums::kinds;
 }
 
 struct StoreSums {
@@ -106,11 +162,6 @@ struct StoreNumbers {
   __device__ void total(Index, Index sum) const { *count = sum; }
 };
 
-template <class Note>
-struct Noted {
-  Note const* notes;
-  __device__ Index operator()(Index i) const { return notes[i]; }
-};
 template <class F>
 struct IsWanted {
   F f;
@@ -118,34 +169,25 @@ struct IsWanted {
 };
 
 template <class F, class Note, class Store>
-void scan_by_notes(CudaContext const& context, char const* verb, Index n, F const& f, Note* notes,
-                   Index* sums, Store const& store) {
-  LaunchShape const shape{list_blocks(n, list_threads), list_threads};
-  auto const stream = context.stream()->get();
-  if (shape.blocks == 1)
-    return launch(Start::early, verb, shape, stream, store_sums<F, Store>, n, f, store, sums);
-  launch(Start::early, verb, shape, stream, note_values<F, Note>, n, f, notes, sums);
-  launch(Start::early, verb, shape, stream, store_sums<Noted<Note>, Store>, n, Noted<Note>{notes},
-         store, sums);
+void scan_by_parts(CudaContext& context, char const* verb, Index n, F const& f, Note* notes,
+                   Store const& store) {
+  Index const blocks = std::clamp<Index>((n - 1) / list_threads + 1, 1, most_list_blocks);
+  launch(Start::early, verb, {blocks, list_threads}, context.stream()->get(),
+         scan_parts<F, Note, Store>, n, f, notes, store, context.part_sums());
 }
 
 template <class F>
 void scan_list(CudaContext& context, Index n, F const& f, Index* to) {
   auto const device = context.stream()->enter();
-  auto* const sums =
-      reinterpret_cast<Index*>(context.scratch().take(most_list_blocks * sizeof(Index)));
-  scan_by_notes(context, "scan", n, f, to, sums, StoreSums{to});
+  scan_by_parts(context, "scan", n, f, to, StoreSums{to});
 }
 
 template <class F>
 void select_list(CudaContext& context, Index n, F const& f, Index* to, Index* count) {
   auto const device = context.stream()->enter();
-  constexpr std::size_t bytes_of_sums = most_list_blocks * sizeof(Index);
-  std::byte* const memory =
-      context.scratch().take(bytes_of_sums + (n > short_list ? static_cast<std::size_t>(n) : 0));
-  scan_by_notes(context, "select", n, IsWanted<F>{f},
-                reinterpret_cast<std::uint8_t*>(memory + bytes_of_sums),
-                reinterpret_cast<Index*>(memory), StoreNumbers{to, count});
+  auto* const notes =
+      reinterpret_cast<std::uint8_t*>(context.scratch().take(static_cast<std::size_t>(n)));
+  scan_by_parts(context, "select", n, IsWanted<F>{f}, notes, StoreNumbers{to, count});
 }
 
 }  // namespace pliant::detail
