@@ -56,7 +56,7 @@ PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) 
   TreeCell const child = tree.cells[at(cell.first_child + i)];
   auto const own = tree.row(cell.first_child + i);
   visit_cell(child.kind, [&]<class Cell>(Cell) {
-    tree.count_leaf<Cell>(own.edges, child.has, -1);
+    tree.count_child<Cell>(own.edges, p, at(i), child.has, -1);
     for (int s = 0; s < sides_of<Cell>; ++s) {
       auto const& of_parent = p.child_side[at(i)][at(s)];
       bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&

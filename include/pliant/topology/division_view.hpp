@@ -198,7 +198,7 @@ struct DivisionView {
     }
     tree.cells[at(number)] = child;
     tree.put_row<Cell>(number, numbers);
-    tree.count_leaf<Cell>(numbers.edges.data(), child.has, 1);
+    tree.count_child<Cell>(numbers.edges.data(), p, i, child.has, 1);
   }
   template <class Bits>
   static PLIANT_HOST_DEVICE bool has(Bits bits, std::size_t k) {

@@ -42,6 +42,7 @@ class PatternMaker {
     else
       maker.split(division);
     maker.find_homes();
+    maker.count_at_edges();
     return maker.p_;
   }
 
@@ -210,6 +211,22 @@ class PatternMaker {
       };
       visit_cell(p_.child_kind[i], find);
     }
+  }
+  constexpr void count_at_edges() {
+    std::array<std::array<std::uint8_t*, RefinementPattern::most_points>,
+               RefinementPattern::most_points>
+        first{};  // by the ends of edges
+    for (std::size_t i = 0; i < at(p_.children); ++i)
+      visit_cell(p_.child_kind[i], [&]<class Child>(Child) {
+        std::size_t j = 0;
+        for (auto const& edge : Child::edges()) {
+          auto const a = at(p_.child[i][at(edge[0])]), b = at(p_.child[i][at(edge[1])]);
+          auto& own = first[a < b ? a : b][a < b ? b : a];
+          if (own == nullptr) own = &p_.children_at_edge[i][j];
+          ++*own;
+          ++j;
+        }
+      });
   }
   constexpr RefinementPattern::Part home_of_edge(int a, int b) {
     std::uint32_t const ends = bit(a) | bit(b);

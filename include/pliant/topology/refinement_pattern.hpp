@@ -81,6 +81,8 @@ struct RefinementPattern {
   std::array<std::array<int, 2>, most_edges> inner_edge{};  ///< their ends, as points
   std::array<std::array<Part, most_edges>, most_children> child_edge{};
   std::array<std::array<Part, most_sides>, most_children> child_side{};
+  /// How many children have an edge, at the first of them; 0 at others.
+  std::array<std::array<std::uint8_t, most_edges>, most_children> children_at_edge{};
   std::array<std::array<int, 2>, most_inner_sides> children_at_inner_side{};  ///< in their order
 
   constexpr int corners_of_side(int s) const {

@@ -35,7 +35,8 @@ class TreeCompaction {
         gone, size(lists_.cells),
         [&](Index e) { return e >= i.edges && !CompactionView::is_used(view.edges[at(e)]); },
         [&](Index s) { return s >= i.sides && !CompactionView::is_used(view.sides[at(s)]); });
-    auto const cells = each_once(std::move(gone)), nodes = nodes_that_go(touched);
+    auto const cells = each_once(std::move(gone), lists_.cells.size()),
+               nodes = nodes_that_go(touched);
     auto const &edges = unused.edges, &sides = unused.sides;
     auto const first = are_linear_
                            ? lists_.divisions.last_before(
@@ -93,7 +94,7 @@ class TreeCompaction {
       CompactionView::visit_nodes_that_go(lists_.view(), c, [&](Index node) {
         if (node >= lists_.initial.nodes) found.push_back(node);
       });
-    return each_once(std::move(found));
+    return each_once(std::move(found), at(lists_.nodes));
   }
   [[nodiscard]] std::vector<Index> nodes_without_element() const {
     auto const& i = lists_.initial;
@@ -156,7 +157,7 @@ class TreeCompaction {
     add(touched, any);
     add(lists_.divided, end);
     add(lists_.converted, any);
-    return each_once(std::move(known));
+    return each_once(std::move(known), at(end));
   }
   /// Edges and sides of these cells, and of all from `first_cell` on: those for which is_edge(number) or is_side(number), each once,
   /// ascending.
@@ -176,7 +177,8 @@ class TreeCompaction {
     };
     for (Index const c : cells) add(c);
     for (Index c = first_cell; c < size(lists_.cells); ++c) add(c);
-    return {each_once(std::move(found.edges)), each_once(std::move(found.sides))};
+    return {each_once(std::move(found.edges), lists_.edges.size()),
+            each_once(std::move(found.sides), lists_.sides.size())};
   }
 
   /// Those from `first` on move up to their new numbers, and of those before, what the known ones know of others.

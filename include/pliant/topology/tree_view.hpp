@@ -146,6 +146,17 @@ struct TreeView {
     for (std::size_t e = 0; e < n; ++e) own[e] = &edges[at(of_cell[e])];
     for (std::size_t e = 0; e < n; ++e) add(*own[e], CellsAtEdge::leaf(has), by);
   }
+  /// The same of child i of a cell with such a pattern, if it is done for all of them: each edge is written to once.
+  template <class Cell>
+  PLIANT_HOST_DEVICE void count_child(Index const* of_child, RefinementPattern const& p,
+                                      std::size_t i, CellNodes has, int by) const {
+    constexpr std::size_t n = Cell::edges().size();
+    TreeEdge* own[n];
+    for (std::size_t e = 0; e < n; ++e) own[e] = &edges[at(of_child[e])];
+    for (std::size_t e = 0; e < n; ++e)
+      if (int const children = p.children_at_edge[i][e]; children > 0)
+        add(*own[e], CellsAtEdge::leaf(has), by * children);
+  }
   /// The same for a refined cell. Split ones count by their children.
   PLIANT_HOST_DEVICE void count_refined(Index c, int by) const {
     auto const own = row(c);
@@ -177,7 +188,7 @@ struct TreeView {
   }
   /// Counts a cell by `one` so often at an edge.
   PLIANT_HOST_DEVICE void add(TreeEdge& edge, std::uint64_t one, int by) const {
-    std::uint64_t const sum = by > 0 ? one : 0 - one;
+    std::uint64_t const sum = one * static_cast<std::uint64_t>(by);
     if (shared)
       detail::atomic_add(edge.cells.all, sum);
     else
