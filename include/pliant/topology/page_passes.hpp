@@ -32,14 +32,22 @@ struct PageTables {
   }
 };
 
-/// Notes pages that loops are about to change, and lists those that are not the list's own yet, each once.
+/// Lists pages that loops are about to change and that are not the list's own yet, each once, and notes them.
 struct PageMarker {
-  ListOnce list;  // stamps: PageTables::own
-  std::uint8_t* noted;
+  ListOnce list;        // stamps: PageTables::own
+  std::uint8_t* noted;  // what is the list's own is noted
 
   PLIANT_HOST_DEVICE void operator()(std::size_t page) const {
-    atomic_set(noted[page], 1);
-    list(static_cast<Index>(page));
+    if (list(static_cast<Index>(page))) noted[page] = 1;
+  }
+};
+/// Notes nothing but what may change unnoticed.
+struct BeginNoting {
+  Index const* own;
+  Index now;
+  std::uint8_t* noted;
+  PLIANT_HOST_DEVICE void operator()(Index place) const {
+    noted[place] = own[place] == now ? 1 : 0;
   }
 };
 /// Tells how many were listed, and begins anew.

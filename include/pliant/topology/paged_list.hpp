@@ -93,7 +93,9 @@ class PagedList {
     return list;
   }
   /// Notes which pages change from now on, for that.
-  void begin_noting(B const& backend) { detail::clear_values(backend, noted_.data(), at(pages_)); }
+  void begin_noting(B const& backend) {
+    backend.for_each(pages_, detail::BeginNoting{own_.data(), now_, noted_.data()});
+  }
 
   /// For loops that mark pages which others are about to change. `count`: zero, in the backend's memory; how many they list.
   [[nodiscard]] detail::PageMarker marker(B const& backend, Index* count) {

@@ -23,8 +23,11 @@ struct ListOnce {
   Index* list;
   Index* count;
 
-  PLIANT_HOST_DEVICE void operator()(Index entry) const {
-    if (stamps_first(stamps[entry], now)) list[atomic_add(*count, 1)] = entry;
+  /// Whether it lists an entry now.
+  PLIANT_HOST_DEVICE bool operator()(Index entry) const {
+    bool const is_first = stamps_first(stamps[entry], now);
+    if (is_first) list[atomic_add(*count, 1)] = entry;
+    return is_first;
   }
 };
 

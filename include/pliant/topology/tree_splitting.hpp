@@ -53,11 +53,12 @@ struct ListSplittable {
   PLIANT_HOST_DEVICE void operator()(Index k) const {
     Index const c = marked[k];
     if (c < 0 || !can_be_split(c)) return;
-    if (kind(c) != CellKind::pyramid) return list(c);
-    Index const other = tree.across_base(c);
-    if (other < 0 || kind(other) != CellKind::pyramid || !can_be_split(other)) return;
+    if (kind(c) == CellKind::pyramid) {
+      Index const other = tree.across_base(c);
+      if (other < 0 || kind(other) != CellKind::pyramid || !can_be_split(other)) return;
+      list(other);
+    }
     list(c);
-    list(other);
   }
 
  private:
