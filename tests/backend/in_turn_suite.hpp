@@ -5,12 +5,14 @@
 
 #include <pliant/backend/array_copies.hpp>
 #include <pliant/backend/copy_values.hpp>
+#include <pliant/backend/host_values.hpp>
 #include <pliant/backend/in_turn.hpp>
 #include <pliant/backend/read_back.hpp>
 
 #include "support/formulations.hpp"
 
-// Loops, scans and sorts that are asked for at once, copies of several arrays, and values that loops write for the host.
+// Loops, scans and sorts that are asked for at once, copies of several arrays, and values that loops write for the host, or read
+// of it.
 namespace pliant::test::in_turn_suite {
 
 struct PutKeys {
@@ -86,6 +88,27 @@ TEMPLATE_LIST_TEST_CASE("the host reads what loops wrote before it waited", "[ba
   backend.for_each(3, detail::CopyValue<Index>{from.data(), none.data()});
   backend.synchronize();
   CHECK(none.all() == numbers);
+}
+
+TEMPLATE_LIST_TEST_CASE("loops read values of the host, several lists one behind the other",
+                        "[backend]", Backends<double>) {
+  TestType const backend;
+  auto const read = [&](Index const* values, std::size_t count) {
+    auto copy = unset<Index>(backend, count);
+    detail::copy_values<TestType, Index>(backend, values, copy.data(), count);
+    return download<Index>(copy);
+  };
+  HostValues<TestType, Index> there;
+  for (std::size_t const count : {3U, 0U, 5000U, 40U}) {
+    std::vector<Index> first(count), second(2 * count + 1);
+    std::iota(first.begin(), first.end(), 7);
+    std::iota(second.begin(), second.end(), -900);
+    there.begin(backend, first.size() + second.size());
+    auto const* const of_first = there.put(first);
+    auto const* const of_second = there.put(second);
+    CHECK(read(of_first, first.size()) == first);
+    CHECK(read(of_second, second.size()) == second);
+  }
 }
 
 TEMPLATE_LIST_TEST_CASE("copies of several arrays have their values, and zeros behind them",

@@ -184,4 +184,14 @@ TEST_CASE("lists in pages take back changes of most pages at once, and others be
   });
 }
 
+TEST_CASE("a list of many entries in pages holds them in their order", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    std::vector<Index> values(300 * Page<Index>::entries + 70);
+    std::iota(values.begin(), values.end(), 5);
+    PagedList<B, Index> list(backend, SharedList<Index>(values));
+    bool const are_same = list.download(backend) == values;
+    CHECK(are_same);
+  });
+}
+
 }  // namespace pliant::test::paged_list_suite
