@@ -26,7 +26,7 @@ class EnergySumsOn {
   using Table = std::tuple_element_t<I, decltype(Parts::layout_type::tables)>;
   static constexpr int dim = Parts::dim;
   static constexpr std::size_t types = std::tuple_size_v<decltype(Parts::layout_type::tables)>;
-  static constexpr std::size_t count = 4;
+  static constexpr std::size_t sums = 4;
   using Array = typename Parts::template Array<double>;
 
  public:
@@ -36,13 +36,13 @@ class EnergySumsOn {
     std::array<double, 2> strain, kinetic;
   };
 
-  /// `sums`: room in the backend's memory.
-  EnergySumsOn(B const& backend, Array& sums) : backend_(backend), sums_(sums) {
-    grow(backend, sums, count);
+  /// `room`: for them, in the backend's memory.
+  EnergySumsOn(B const& backend, Array& room) : backend_(backend), sums_(room) {
+    grow(backend, room, sums);
   }
   /// A step of loops (see in_turn) before all others.
   [[nodiscard]] LoopStep<FillValue<double>> clearing() {
-    return {static_cast<Index>(count), {sums_.data(), 0}};
+    return {static_cast<Index>(sums), {sums_.data(), 0}};
   }
 
   /// Of the elements of a body's type I at some places, (count); −1 for none.
@@ -74,7 +74,7 @@ class EnergySumsOn {
                      sums_.data() + 2 + time);
   }
   [[nodiscard]] Sums read() const {
-    std::array<double, count> s;
+    std::array<double, sums> s;
     sums_.download(s);
     return {{s[0], s[1]}, {s[2], s[3]}};
   }

@@ -142,16 +142,6 @@ struct CopyPageOf {
   }
 };
 
-/// Notes the pages that change where the list becomes again what it was.
-struct NoteTakenBack {
-  Index const* own;
-  Index now, count;  // of pages
-  std::uint8_t* noted;
-  PLIANT_HOST_DEVICE void operator()(Index place) const {
-    if (place >= count || own[place] == now) noted[place] = 1;
-  }
-};
-
 /// Puts free pages of new memory before the others of a ring, in one with more room.
 template <class V>
 struct MoveRing {

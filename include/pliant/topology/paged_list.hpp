@@ -11,6 +11,7 @@
 #include <pliant/backend/copy_values.hpp>
 #include <pliant/backend/grown_array.hpp>
 #include <pliant/backend/in_turn.hpp>
+#include <pliant/backend/value_at.hpp>
 #include <pliant/math/unset_vector.hpp>
 #include <pliant/topology/page_passes.hpp>
 #include <pliant/topology/pages.hpp>
@@ -167,7 +168,10 @@ class PagedList {
   }
   /// The list is what it was when it was kept.
   void take_back(B const& backend) {
-    backend.for_each(kept_pages_, detail::NoteTakenBack{own_.data(), now_, pages_, noted_.data()});
+    // Those that went come again; what else changed is the list's own, and noted.
+    if (pages_ < kept_pages_)
+      backend.for_each(kept_pages_ - pages_,
+                       detail::FillValue<std::uint8_t>{noted_.data() + pages_, 1});
     auto const capacity = at(reserved_);
     std::span const table(host_table_), ring(host_ring_), slots(host_slots_);
     table_.download(table.first(at(std::max(pages_, kept_pages_))));

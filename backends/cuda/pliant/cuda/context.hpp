@@ -12,8 +12,8 @@ namespace pliant::detail {
 /// which kinds are counted, tells sums from those of launches before.
 struct PartSums {
   enum Kind : unsigned { of_part = 1, known, kinds };  // over a part; over all up to its end
-  unsigned long long parts[most_list_blocks];           // the sum, and behind it number and kind
-  unsigned started, ended, next_tag;                    // blocks, of the launch that runs
+  unsigned long long parts[most_list_blocks];          // the sum, and behind it number and kind
+  unsigned started, ended, next_tag;                   // blocks, of the launch that runs
 };
 
 /// What all copies of one backend share: a stream, and room for reductions and lists.

@@ -81,8 +81,7 @@ __device__ inline Index sum_of_parts_before(unsigned part, unsigned long long co
     std::int64_t const own = last - lane;
     unsigned long long word = 0;
     unsigned kind = PartSums::known;
-    if (own >= 0)
-      do {
+    if (own >= 0) do {
         word = parts[own];
         kind = static_cast<unsigned>(word >> 32) - tag;
       } while (kind != PartSums::of_part && kind != PartSums::known);
@@ -122,8 +121,8 @@ __global__ void __launch_bounds__(list_threads)
   }
   Index const sum = scan_block(of_thread, total);
   auto const tell = [&](unsigned kind, Index known) {
-    atomicExch(&sums->parts[number], static_cast<unsigned long long>(tag + kind) << 32 |
-                                         static_cast<unsigned>(known));
+    atomicExch(&sums->parts[number],
+               static_cast<unsigned long long>(tag + kind) << 32 | static_cast<unsigned>(known));
   };
   if (threadIdx.x < warp_size) {
     Index before = 0;
