@@ -198,6 +198,25 @@ TEST_CASE("pages that went before a list began to note changes are noted when th
   });
 }
 
+TEST_CASE("pages that came and went before a list takes that back wait for others", "[topology]") {
+  on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
+    Pair<B> on(backend);
+    on.extend(1000);
+    on.keep();
+    on.begin_noting();
+    std::size_t bytes = 0;
+    for (int round = 0; round < 8; ++round) {
+      on.extend(3000);
+      on.replace_from(300, 3500);
+      on.replace_from(300, 100);
+      on.take_back();
+      on.check();
+      if (round == 0) bytes = on.list.bytes();
+    }
+    CHECK(on.list.bytes() == bytes);
+  });
+}
+
 TEST_CASE("a list of many entries in pages holds them in their order", "[topology]") {
   on_each_backend<DoubleBackends>([]<class B>(B const& backend) {
     std::vector<Index> values(300 * Page<Index>::entries + 70);
