@@ -204,7 +204,7 @@ class CellTree {
       lists_.converted.push_back(c);
   }
   void forget_old_conversions() {
-    lists_.converted = detail::each_once(std::move(lists_.converted));
+    lists_.converted = detail::each_once(std::move(lists_.converted), lists_.cells.size());
     std::erase_if(lists_.converted,
                   [&](Index c) { return lists_.cells[at(c)].has == lists_.cells[at(c)].had; });
   }

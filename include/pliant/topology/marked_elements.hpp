@@ -138,14 +138,14 @@ template <class M>
 std::vector<Index> lowered_cells(RefinementTree<M> const& old,
                                  std::vector<std::vector<Index>> const& marked) {
   check_conversion<M>("lower", 2, marked);
-  return each_once(cells_of(old, "lower", marked));
+  return each_once(cells_of(old, "lower", marked), old.tree->cells().size());
 }
 /// The cells of marked elements and of rings of neighbours that get such nodes, each once.
 template <class M>
 std::vector<CellConversion> raised_cells(RefinementTree<M> const& old,
                                          std::vector<std::vector<Index>> const& marked, int rings) {
   check_conversion<M>("raise", 1, marked);
-  auto cells = each_once(cells_of(old, "raise", marked));
+  auto cells = each_once(cells_of(old, "raise", marked), old.tree->cells().size());
   for (int ring = 0; ring < rings && !cells.empty(); ++ring)
     cells = TreeQueries(old.tree->tree()).with_neighbours(cells);
   std::vector<CellConversion> raised;
@@ -202,10 +202,10 @@ void check_splits(ListsOfTypes marked) {
 template <int Dim>
 std::vector<CellSplit> splits_of(Hierarchy<Dim> const& tree, std::vector<Index> cells,
                                  std::vector<Index> in_two) {
-  in_two = each_once(std::move(in_two));
+  in_two = each_once(std::move(in_two), tree.cells().size());
   cells.insert(cells.end(), in_two.begin(), in_two.end());
   std::vector<CellSplit> splits;
-  for (Index const c : each_once(std::move(cells))) {
+  for (Index const c : each_once(std::move(cells), tree.cells().size())) {
     auto const& cell = tree.cell(c);
     if (cell.kind == CellKind::pyramid)
       split_pair(tree, c, splits);
