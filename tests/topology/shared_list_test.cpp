@@ -8,14 +8,19 @@
 #include <new>
 #include <numeric>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include <pliant/error.hpp>
 #include <pliant/reference.hpp>
+#include <pliant/topology/hierarchy.hpp>
 #include <pliant/topology/paged_list.hpp>
 #include <pliant/topology/shared_list.hpp>
+#include <pliant/topology/tree_on.hpp>
 
 #include "support/catch.hpp"
+#include "support/formulations.hpp"
+#include "topology/tree_states.hpp"
 
 namespace {
 std::atomic<long> allocations_left{std::numeric_limits<long>::max()};
@@ -219,6 +224,50 @@ TEST_CASE("a list in pages takes back what did not end as memory ran out", "[top
   };
   check(replaced(70 * page));
   check(replaced(3 * page));
+}
+
+TEST_CASE("a tree in pages takes back a change that did not end as memory ran out", "[topology]") {
+  Reference<double> const backend;
+  Hierarchy<3> host(regular_mesh<Tet4>(5));
+  std::vector<Index> cells(host.leaf_count());
+  std::iota(cells.begin(), cells.end(), 0);
+  auto const first = [&] {
+    return TreeOn<Reference<double>>(backend, host.tree().lists(), *host.tree().cells_at_edges());
+  };
+  auto const lists = [](auto& tree) {
+    return std::tuple(listed(tree.cells()), listed(tree.edges()), listed(tree.sides()),
+                      listed(tree.rows()));
+  };
+  std::vector<Index> children(8 * cells.size());
+  std::iota(children.begin(), children.end(), static_cast<Index>(cells.size()));
+  auto const refine = [&](auto& tree) {
+    (void)tree.refine(cells.data(), static_cast<Index>(cells.size()));
+  };
+  auto const coarsen = [&](auto& tree) {
+    (void)tree.coarsen(children.data(), static_cast<Index>(children.size()));
+  };
+  auto const refined = [&] {
+    auto tree = first();
+    refine(tree);
+    tree.keep();
+    return tree;
+  };
+  auto const check = [&](auto const& make, auto const& change) {
+    auto kept = make(), changed = make();
+    auto const before = lists(kept);
+    change(changed);
+    auto const behind = lists(changed);
+    fail_each_allocation(make, change, [&](auto& tree, bool) {
+      tree.take_back();
+      bool const is_as_it_was = lists(tree) == before;
+      REQUIRE(is_as_it_was);
+      change(tree);
+      bool const is_changed = lists(tree) == behind;
+      REQUIRE(is_changed);
+    });
+  };
+  check(first, refine);
+  check(refined, coarsen);
 }
 
 }  // namespace pliant::test

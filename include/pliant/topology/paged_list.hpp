@@ -98,6 +98,20 @@ class PagedList {
     backend.for_each(pages_, detail::BeginNoting{own_.data(), now_, noted_.data()});
   }
 
+  // Memory for what comes: then own, extend and replace_from of so much throw nothing. Steps of what these give have to run, so that all
+  // that may throw comes before.
+
+  void reserve_own(B const& backend, Index count) { reserve(backend, count, pages_); }
+  void reserve_extend(B const& backend, std::size_t count) {
+    Index const needed = std::max(pages_, pages_for(size_ + count));
+    reserve(backend, needed - pages_, needed);
+  }
+  void reserve_replace(B const& backend, std::size_t first, std::size_t count) {
+    Index const needed = pages_for(first + count);
+    reserve(backend, needed - page_of(first), std::max(needed, pages_));
+    detail::grow(backend, table_before_, at(pages_));
+  }
+
   /// For loops that mark pages which others are about to change. `count`: zero, in the backend's memory; how many they list.
   [[nodiscard]] detail::PageMarker marker(B const& backend, Index* count) {
     detail::grow(backend, listed_, at(pages_));
@@ -110,7 +124,7 @@ class PagedList {
     std::size_t words;
   };
   [[nodiscard]] Own own(B const& backend, Index count) {
-    reserve(backend, count, pages_);
+    reserve_own(backend, count);
     free_ -= count;
     left_ += count;
     auto const tables = this->tables();
@@ -124,7 +138,7 @@ class PagedList {
   [[nodiscard]] PutPages extend(B const& backend, std::size_t count) {
     Index const before = pages_, needed = std::max(before, pages_for(size_ + count));
     Index const from = count > 0 ? page_of(size_) : needed;
-    reserve(backend, needed - before, needed);
+    reserve_extend(backend, count);
     Index const first = take_free(needed - before);
     pages_ = needed;
     size_ += count;
@@ -141,8 +155,7 @@ class PagedList {
   [[nodiscard]] Replaced replace_from(B const& backend, std::size_t first, std::size_t count) {
     Index const staying = page_of(first), needed = pages_for(first + count), before = pages_;
     Index const left = before - staying, now = std::min(needed, before) - staying;
-    reserve(backend, needed - staying, std::max(needed, before));
-    detail::grow(backend, table_before_, at(before));
+    reserve_replace(backend, first, count);
     auto const tables = this->tables();
     Index const more = std::max(needed - before, Index{0}), base = take_free(more);
     Index const slot = base_ + free_ - now, behind = base_ + free_ + left_;

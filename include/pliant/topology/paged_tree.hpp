@@ -119,6 +119,9 @@ struct PagedTree {
          LoopStep{3, TellListed{listed, told_.data()}});
     backend.synchronize();
     auto const counts = told_.template first<3>();
+    cells.reserve_own(backend, counts[0]);
+    edges.reserve_own(backend, counts[1]);
+    sides.reserve_own(backend, counts[2]);
     auto const c = cells.own(backend, counts[0]);
     auto const e = edges.own(backend, counts[1]);
     auto const s = sides.own(backend, counts[2]);

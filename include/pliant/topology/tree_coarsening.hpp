@@ -224,6 +224,12 @@ class TreeCoarsening {
                CompactionView const& view, KnowingCells const& knowing, Index told) {
     auto const &first = of.staying, &before = of.before, &now = of.now;
     auto const entries = [&](Index cells) { return tree.layout.entry(at(cells)); };
+    side_stamps_.begin(backend, at(first.sides));
+    edge_stamps_.begin(backend, at(first.edges));
+    tree.sides.reserve_replace(backend, at(first.sides), at(now.sides - first.sides));
+    tree.edges.reserve_replace(backend, at(first.edges), at(now.edges - first.edges));
+    tree.cells.reserve_replace(backend, at(first.cells), at(now.cells - first.cells));
+    tree.rows.reserve_replace(backend, entries(first.cells), entries(now.cells - first.cells));
     auto const sides =
         tree.sides.replace_from(backend, at(first.sides), at(now.sides - first.sides));
     auto const edges =
@@ -238,8 +244,6 @@ class TreeCoarsening {
       return LoopStep{count_before - numbers.first,
                       MoveUp<V>{by, numbers, old.before, list.pages()}};
     };
-    side_stamps_.begin(backend, at(first.sides));
-    edge_stamps_.begin(backend, at(first.edges));
     // Few cells leave threads to share them.
     bool const are_few = told <= TreeView::few;
     Index const each_side = are_few ? TellSides::most : 1,

@@ -43,11 +43,15 @@ class TreeDivision {
   }
   /// Makes it.
   void make(PagedTree<B>& lists) {
+    grow(backend_, made_, at(totals_[0]));
+    lists.edges.reserve_extend(backend_, at(totals_[1]));
+    lists.sides.reserve_extend(backend_, at(totals_[2]));
+    lists.cells.reserve_extend(backend_, at(totals_[3]));
+    lists.rows.reserve_extend(backend_, lists.layout.entry(at(totals_[3])));
     auto const edges = lists.edges.extend(backend_, at(totals_[1]));
     auto const sides = lists.sides.extend(backend_, at(totals_[2]));
     auto const cells = lists.cells.extend(backend_, at(totals_[3]));
     auto const rows = lists.rows.extend(backend_, lists.layout.entry(at(totals_[3])));
-    grow(backend_, made_, at(totals_[0]));
     auto const dividing = view(lists.view());
     in_turn(backend_, edges, sides, cells, rows, for_each_part(MakeOnEdges{dividing}),
             for_each_part(MakeOnSides{dividing}), LoopStep{count_, MakeInside{dividing}},

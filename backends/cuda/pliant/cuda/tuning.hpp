@@ -12,7 +12,7 @@ inline constexpr int node_threads = 256, reduce_threads = 256, visit_threads = 1
                      scatter_threads = 128, take_threads = 256;
 
 /// Loops over lists (scan.cuh, sort.cuh): threads per block, the most blocks, keys that a thread sorts at once, and how long a
-/// list one block takes alone, in one launch.
+/// list one block sorts alone, in one launch.
 inline constexpr int list_threads = 256, most_list_blocks = 1024, sort_keys = 8;
 inline constexpr Index short_list = 4096;
 /// The same of loops, scans and sorts that one launch does in turn (in_turn.cuh), by as many blocks as any GPU with clusters has
