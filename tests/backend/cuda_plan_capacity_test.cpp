@@ -19,7 +19,7 @@ PatchCounts capacity_after(int changes, PatchCounts needed, int patch_size) {
     auto const guess = detail::capacity_of_many<Planner>(capacity, changed, patch_size);
     CHECK(detail::holds(guess, needed));
     capacity = detail::may_keep(guess, needed) ? guess : detail::in_fours(needed);
-    changed = detail::larger(changed, needed);
+    changed = needed;
   }
   return capacity;
 }
@@ -38,6 +38,27 @@ TEST_CASE("patches of which many change again and again have little room to spar
       }
     }
   }
+}
+
+TEST_CASE(
+    "patches that were refined need what they did the last time, whatever they needed between",
+    "[cuda][patch plan]") {
+  PatchCounts const refined{340, 60, 190, 1900}, coarsened{300, 40, 190, 1700};
+  detail::LastNeeds needs;
+  auto const guess = [&](bool leaves_fewer) {
+    return detail::capacity_of_many<detail::FanPlanner>(coarsened, needs.behind(leaves_fewer), 768);
+  };
+  auto const usual = guess(false);
+  CHECK(usual.slots == guess(true).slots);
+  // Much was needed once.
+  needs.note(false, {500, 90, 200, 2200});
+  CHECK(guess(true).slots == usual.slots);
+  needs.note(false, refined);
+  needs.note(true, coarsened);
+  CHECK(detail::may_keep(guess(false), refined));
+  CHECK(detail::may_keep(guess(true), coarsened));
+  CHECK_FALSE(detail::may_keep(guess(false), coarsened));
+  CHECK_FALSE(detail::may_keep(guess(true), refined));
 }
 
 TEST_CASE("patches have more room where they needed more", "[cuda][patch plan]") {

@@ -21,8 +21,7 @@ struct PatchPlan {
   DeviceArray<PatchNode> nodes;               // (patches, node capacity)
   DeviceArray<std::uint16_t> diagonals;       // (patches, diagonal capacity)
   DeviceArray<PatchCounts> counts;            // (patches): what each has
-  PatchCounts
-      changed{};  // the most that any needed where many were planned again; zero: they never were
+  LastNeeds needs{};                          // of this table and those before changes
 };
 
 /// What a table was planned to before a change, with its patches as PatchRanges::first has them, and by the patch now the patch
@@ -40,12 +39,18 @@ bool many_change(KnownPatches<Planner> const& known) {
   auto const planned = std::ranges::count(known.patches, Index{-1});
   return known.plan != nullptr && 8 * planned >= std::ssize(known.patches);
 }
+/// Whether there are fewer patches than before.
+template <class Planner>
+bool leaves_fewer(KnownPatches<Planner> const& known) {
+  return known.plan != nullptr && known.patches.size() < known.plan->counts.size();
+}
 /// What to give patches room for before it is known what they need.
 template <class Planner>
 PatchCounts guessed_capacity(KnownPatches<Planner> const& known, int patch_size) {
   if (known.plan == nullptr) return Planner::usual(patch_size);
   if (!many_change(known)) return known.plan->capacity;
-  return capacity_of_many<Planner>(known.plan->capacity, known.plan->changed, patch_size);
+  return capacity_of_many<Planner>(known.plan->capacity,
+                                   known.plan->needs.behind(leaves_fewer(known)), patch_size);
 }
 
 }  // namespace pliant::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include <pliant/config.hpp>
 #include <pliant/cuda/slot_planner.hpp>
@@ -20,13 +21,20 @@ inline PatchCounts in_fours(PatchCounts const& counts) {
   return {rounded(counts.nodes), rounded(counts.diagonals), rounded(counts.fans),
           rounded(counts.slots)};
 }
-inline PatchCounts larger(PatchCounts const& a, PatchCounts const& b) {
-  return {std::max(a.nodes, b.nodes), std::max(a.diagonals, b.diagonals), std::max(a.fans, b.fans),
-          std::max(a.slots, b.slots)};
-}
+
+/// The most that any patch needed behind the last change that had many of them planned again, of those that left a table no fewer patches
+/// and of those that left it fewer: a mesh that is refined and coarsened by turns needs either again. Zero: there was none.
+class LastNeeds {
+ public:
+  [[nodiscard]] PatchCounts const& behind(bool leaves_fewer) const { return needs_[leaves_fewer]; }
+  void note(bool leaves_fewer, PatchCounts const& counts) { needs_[leaves_fewer] = counts; }
+
+ private:
+  std::array<PatchCounts, 2> needs_{};
+};
 
 /// What to give patches room for where a change has many of them planned again, so that few are planned twice: a little more than
-/// such patches ever needed (`changed`), and at first (zero) as much as any needs; of diagonals, about which little is
+/// such patches needed the last time (`changed`), and at first (zero) as much as any needs; of diagonals, about which little is
 /// known, twice as many. `before`: what they had room for before it.
 template <class Planner>
 PatchCounts capacity_of_many(PatchCounts const& before, PatchCounts const& changed,

@@ -205,8 +205,8 @@ template <class Planner>
 struct PlanInWork {
   PatchInput input;
   PatchPlan<Planner> plan;  // of a capacity that may be right
-  PatchCounts changed;      // what such a plan had before
-  bool changes_many;
+  LastNeeds needs;          // of the plan before
+  bool changes_many, leaves_fewer;
   DeviceArray<Index> known_and_planned;  // (patches), as KnownPatches::patches; and those of −1
   DeviceArray<PatchCounts> most;         // that any patch needs
 };
@@ -223,8 +223,9 @@ PlanInWork<Planner> begin_plan(B const& backend, PatchInput const& input, PatchC
   PlanInWork<Planner> work{
       input,
       room_for_plan<Planner>(backend, cuts, guessed_capacity(known, cuts.size())),
-      known.plan == nullptr ? PatchCounts{} : known.plan->changed,
+      known.plan == nullptr ? LastNeeds{} : known.plan->needs,
       many_change(known),
+      leaves_fewer(known),
       is_known ? backend.array(std::span<Index const>(lists)) : DeviceArray<Index>{},
       backend.template array<PatchCounts>(1)};
   auto const to = view_of(work.plan, input.first);
@@ -252,7 +253,8 @@ template <class Planner, class B, class Accepts>
 PatchPlan<Planner> end_plan(B const& backend, PlanInWork<Planner> work, PatchCounts const& counts,
                             PatchCuts const& cuts, Accepts const& accepts) {
   DeviceGuard const device(backend.device());
-  auto const changed = work.changes_many ? larger(work.changed, counts) : work.changed;
+  if (work.changes_many) work.needs.note(work.leaves_fewer, counts);
+  auto const needs = work.needs;
   PatchCounts const guess = work.plan.capacity;
   PatchPlan<Planner> plan;
   if (may_keep(guess, counts) && accepts(guess)) {
@@ -265,7 +267,7 @@ PatchPlan<Planner> end_plan(B const& backend, PlanInWork<Planner> work, PatchCou
            plan_patches_left<Planner>, work.input, view_of(work.plan, work.input.first),
            view_of(plan, work.input.first), work.most.data());
   }
-  plan.changed = changed;
+  plan.needs = needs;
   return plan;
 }
 
