@@ -36,6 +36,15 @@ PLIANT_HOST_DEVICE void atomic_set(U& number, std::type_identity_t<U> value) {
   std::atomic_ref(number).store(value, std::memory_order_relaxed);
 #endif
 }
+/// The number, or what it was before: a device asks its caches, so that calls that ask for one number do not wait for each other.
+template <class U>
+PLIANT_HOST_DEVICE U atomic_peek(U& number) {
+#ifdef __CUDA_ARCH__
+  return number;
+#else
+  return std::atomic_ref(number).load(std::memory_order_relaxed);
+#endif
+}
 /// Gives what the number was.
 PLIANT_HOST_DEVICE Index atomic_add(Index& number, Index by) {
 #ifdef __CUDA_ARCH__

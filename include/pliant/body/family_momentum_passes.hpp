@@ -18,6 +18,7 @@ struct TouchOnce {
   Index* count;
 
   PLIANT_HOST_DEVICE void operator()(Index row) const {
+    if (atomic_peek(place[row]) != 0) return;
     Index seen = atomic_load(place[row]);
     while (seen == 0)
       if (atomic_exchange(place[row], seen, 1)) {

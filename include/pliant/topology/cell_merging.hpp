@@ -11,20 +11,15 @@
 
 namespace pliant::detail {
 
-/// Puts another cell, or none, in the place of one at a side, on the other side of which another call may do the same.
-PLIANT_HOST_DEVICE void replace_at_side(TreeView const& tree, Index side, Index cell, Index other) {
-  auto& cells = tree.sides[static_cast<std::size_t>(side)].cells;
-  atomic_store(cells[atomic_load(cells[0]) == cell ? 0 : 1], other);
-}
-
 /// Whether a child of a refined cell may go, which it may not where a cell at one of its edges is refined.
 PLIANT_HOST_DEVICE bool may_go(TreeView const& tree, Index child) {
   auto const own = tree.row(child);
-  auto const edges =
-      static_cast<std::size_t>(tree.cells[static_cast<std::size_t>(child)].pattern().edges);
-  for (std::size_t e = 0; e < edges; ++e)
-    if (tree.edges[static_cast<std::size_t>(own.edges[e])].cells.refined() > 0) return false;
-  return true;
+  bool may = true;
+  visit_cell(tree.cells[static_cast<std::size_t>(child)].kind, [&]<class Cell>(Cell) {
+    for (std::size_t e = 0; e < Cell::edges().size(); ++e)
+      may = (tree.edges[static_cast<std::size_t>(own.edges[e])].cells.refined() <= 0) && may;
+  });
+  return may;
 }
 /// Whether the children of a divided cell are leaves of one degree, of a split one with corners only, for which
 /// is_child_ready(child).
@@ -48,20 +43,27 @@ PLIANT_HOST_DEVICE bool can_be_merged(TreeView const& tree, Index c) {
   return are_alike(tree, c, [&](Index child) { return is_split || may_go(tree, child); });
 }
 
-/// Child i of a divided cell, which is merged, is counted nowhere any more.
+/// Child i of a divided cell, which is merged, is counted nowhere any more. On the other side of its sides another call may do the same.
+/// All is read before anything is written, so that a device waits for memory seldom.
 PLIANT_HOST_DEVICE void leave_child_out(TreeView const& tree, Index c, Index i) {
   auto const at = [](Index k) { return static_cast<std::size_t>(k); };
   auto const& cell = tree.cells[at(c)];
   auto const& p = cell.divided();
-  TreeCell const child = tree.cells[at(cell.first_child + i)];
-  auto const own = tree.row(cell.first_child + i);
+  Index const number = cell.first_child + i;
+  TreeCell const child = tree.cells[at(number)];
+  auto const own = tree.row(number);
   visit_cell(child.kind, [&]<class Cell>(Cell) {
+    constexpr auto sides = std::size_t{sides_of<Cell>};
+    unsigned is_first = 0;  // a bit for each side
+    for (std::size_t s = 0; s < sides; ++s)
+      is_first |= unsigned{atomic_load(tree.sides[at(own.sides[s])].cells[0]) == number} << s;
     tree.count_child<Cell>(own.edges, p, at(i), child.has, -1);
-    for (int s = 0; s < sides_of<Cell>; ++s) {
-      auto const& of_parent = p.child_side[at(i)][at(s)];
+    for (std::size_t s = 0; s < sides; ++s) {
+      auto const& of_parent = p.child_side[at(i)][s];
       bool const is_whole = of_parent.home == RefinementPattern::Home::side && !p.halves &&
                             of_parent.number != p.halved_side;
-      replace_at_side(tree, own.sides[at(s)], cell.first_child + i, is_whole ? c : -1);
+      atomic_store(tree.sides[at(own.sides[s])].cells[(is_first >> s & 1) != 0 ? 0 : 1],
+                   is_whole ? c : -1);
     }
   });
 }

@@ -10,6 +10,7 @@ namespace pliant::detail {
 
 /// Whether a call is the first that gives an entry the stamp `now`.
 PLIANT_HOST_DEVICE bool stamps_first(Index& stamp, Index now) {
+  if (atomic_peek(stamp) == now) return false;
   Index seen = atomic_load(stamp);
   while (seen != now)
     if (atomic_exchange(stamp, seen, now)) return true;
