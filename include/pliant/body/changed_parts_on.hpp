@@ -64,7 +64,6 @@ class ChangedPartsOn {
     auto cells = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.leaves)));
     on_->hanging.find_after(on_->tree, done, energies_.clearing(),
                             LoopStep{done.leaves, CellOfSplit{done.cells, cells->data()}});
-    energies_.add_kinetic(Energies::before, parts_);
     follow_on_host(std::move(cells), ChangeOfCells::refine);
     on_->follow_order_of(backend_, *parts_.layout.first_order, done);
     on_->rows.extend(on_->tree, on_->order, done);
@@ -81,6 +80,7 @@ class ChangedPartsOn {
     auto layout = layout_.make(copies, topology_, [&](DirectionMask* held) {
       on_->held.refine(backend_, on_->tree, done, on_->rows.of_node(), rows_, held);
     });
+    energies_.add_kinetic(Energies::before, parts_);
     on_->points = std::move(points);
     on_->masses.extend(rows_);
     MassWeightsOn<B> const weights(backend_, layout.interpolation, rows_);
@@ -126,7 +126,6 @@ class ChangedPartsOn {
     auto parents = std::make_shared<Array<Index>>(unset<Index>(backend_, at(done.merged)));
     on_->hanging.find_after(on_->tree, done, energies_.clearing(),
                             LoopStep{done.merged, CopyValue<Index>{done.parents, parents->data()}});
-    energies_.add_kinetic(Energies::before, parts_);
     follow_on_host(std::move(parents), ChangeOfCells::coarsen);
     on_->follow_order_of(backend_, *parts_.layout.first_order, done);
     on_->rows.coarsen(done);
@@ -141,6 +140,7 @@ class ChangedPartsOn {
     auto layout = layout_.make(copies, topology_, [&](DirectionMask* held) {
       on_->held.hold(backend_, on_->tree, on_->rows.of_node(), rows_, held);
     });
+    energies_.add_kinetic(Energies::before, parts_);
     MassWeightsOn<B> const weights(backend_, layout.interpolation, rows_);
     return on_types<On::types>([&]<std::size_t... I>(TypeNumber<I>...) {
       std::tuple const families{merged_families<I>(*on_, parts_.layout, layout)...};

@@ -125,9 +125,12 @@ struct PagedTree {
     auto const c = cells.own(backend, counts[0]);
     auto const e = edges.own(backend, counts[1]);
     auto const s = sides.own(backend, counts[2]);
-    in_turn(backend, c.replace, e.replace, s.replace);
     for_each_piece(c.words + e.words + s.words, [&](std::size_t first, Index n) {
-      backend.for_each(n, CopyPagesOfTree{c.copy, e.copy, s.copy, c.words, e.words, first});
+      LoopStep const copy{n, CopyPagesOfTree{c.copy, e.copy, s.copy, c.words, e.words, first}};
+      if (first == 0)
+        in_turn(backend, c.replace, e.replace, s.replace, copy);
+      else
+        copy.run(backend);
     });
   }
 
