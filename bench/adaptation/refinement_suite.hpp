@@ -53,6 +53,7 @@ enum class Beside {
   memory,          // what quadrature points keep
   listener,        // a simulator's array, with a value for each node
   listener_there,  // the same in the backend's memory, and one with a value for each element
+  marks_there,     // nothing, and elements are marked in the backend's memory
   steps,  // nothing, and sixteen steps are counted, with what the first needs to know of the mesh
   local_steps,  // the same of local time steps
   sleep         // all patches sleep; steps until they do so again are counted
@@ -69,6 +70,8 @@ inline std::string in_words(Beside beside) {
       return ", and carry an array";
     case Beside::listener_there:
       return ", and carry arrays in the backend's memory";
+    case Beside::marks_there:
+      return ", marked in the backend's memory";
     case Beside::steps:
       return ", and 16 steps";
     case Beside::local_steps:
@@ -136,6 +139,17 @@ void time_change(benchmark::State& state, B const& backend, int cells,
   if (half > 0) refine(body, {first_elements(static_cast<std::size_t>(half))});
   Index const last = elements - half - 1;  // those that are not refined come first
   Lists const marked_lists{marked};
+  // change(lists) takes so many seconds, with what else is counted.
+  auto const seconds_of = [&](Lists const& lists, auto const& change) {
+    if (beside != Beside::marks_there)
+      return seconds(backend, [&] {
+        change(lists);
+        go_on();
+      });
+    auto const there = upload(backend, lists[0]);
+    std::vector<ElementsThere> const elements{{there.data(), static_cast<Index>(there.size())}};
+    return seconds(backend, [&] { change(elements); });
+  };
   auto const children = [&] {
     std::vector<Index> found;
     auto const levels = refinement_levels<E>(body);
@@ -152,15 +166,9 @@ void time_change(benchmark::State& state, B const& backend, int cells,
     refine(body, {{last}});
     auto const others = static_cast<std::ptrdiff_t>(children().size());
     go_on();
-    double const there = seconds(backend, [&] {
-      refine(body, marked_lists);
-      go_on();
-    });
+    double const there = seconds_of(marked_lists, [&](auto const& lists) { refine(body, lists); });
     Lists const made = behind(children(), others);
-    double const again = seconds(backend, [&] {
-      coarsen(body, made);
-      go_on();
-    });
+    double const again = seconds_of(made, [&](auto const& lists) { coarsen(body, lists); });
     coarsen(body, behind(children(), of_half));
     state.SetIterationTime(back ? again : there);
   }
@@ -241,6 +249,7 @@ inline void add_refinements() {
         change_beside.template operator()<Beside::memory>();
         change_beside.template operator()<Beside::listener>();
         change_beside.template operator()<Beside::listener_there>();
+        change_beside.template operator()<Beside::marks_there>();
         change_beside.template operator()<Beside::steps>();
         change_beside.template operator()<Beside::sleep>();
         change.template operator()<Beside::steps>("each ten thousandth", each_of(count, 10000));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <thread>
 
@@ -36,6 +37,77 @@ TEST_CASE("a body that is coarsened in its backend's memory is the one that the 
     check_both_ways<Formulation<Wedge6, Gauss<2>, NeoHookean>>(backend, 3, 12, 1);
   });
   check_both_ways<Formulation<Tri3, Gauss<1>, NeoHookean>>(KeepingFloat{}, 6, 5, 2);
+}
+
+/// Marked elements of one type, in the backend's memory.
+template <class TheBody>
+auto there(TheBody& body, std::vector<Index> const& marked, auto const& f) {
+  auto const list = upload(body.parts().backend, marked);
+  return f(body, std::vector{ElementsThere{list.data(), static_cast<Index>(marked.size())}});
+}
+
+TEST_CASE("elements are marked in the backend's memory", "[adaptation]") {
+  auto const refine_there = [](auto& body, auto const& lists) { return refine(body, lists, 3); };
+  auto const coarsen_there = [](auto& body, auto const& lists) { return coarsen(body, lists); };
+  on_each_backend<KeepingBackends>([&]<class B>(B const& backend) {
+    using F = Formulation<Tet4, Gauss<1>, NeoHookean>;
+    for (bool const on_host : {false, true}) {
+      CAPTURE(on_host);
+      auto body = body_of<F>(backend, on_host, 3), same = body_of<F>(backend, true, 3);
+      Random random(4);
+      CHECK_THROWS_WITH(there(body, {count(body)}, coarsen_there), says("coarsen: there is no"));
+      for (int round = 0; round < 3; ++round) {
+        auto const marked = some(same, 9, random);
+        auto const done = there(body, marked, refine_there);
+        auto const wanted = refine(same, {marked}, 3);
+        CHECK(done.refined == wanted.refined);
+        CHECK(done.new_nodes == wanted.new_nodes);
+        std::vector<Index> all;
+        for (Index e = 0; e < count(same); ++e)
+          if (random.below(6) > 0) all.push_back(e);
+        auto const merged = there(body, all, coarsen_there);
+        auto const wanted_merged = coarsen(same, {all});
+        CHECK(merged.merged == wanted_merged.merged);
+        CHECK(merged.gone_nodes == wanted_merged.gone_nodes);
+      }
+      CHECK(is_on_backend(body) != on_host);
+      CHECK(body.mesh().tables == same.mesh().tables);
+      CHECK(there(body, {}, refine_there).refined == 0);
+      CHECK_THROWS_WITH(there(body, {0, -3}, refine_there),
+                        says("refine: there is no Tet4 element -3"));
+      CHECK_THROWS_WITH(there(body, {count(body)}, coarsen_there), says("coarsen: there is no"));
+      CHECK(body.mesh().tables == same.mesh().tables);
+    }
+  });
+}
+
+TEST_CASE("lists in the backend's memory have an address and a length", "[adaptation]") {
+  auto body = body_of<Formulation<Tri3, Gauss<1>, NeoHookean>>(KeepingFloat{}, false, 3);
+  CHECK_THROWS_WITH(
+      refine(body, std::vector{ElementsThere{nullptr, 3}}),
+      says("refine: got a list of 3 marked elements in the backend's memory at null"));
+  CHECK_THROWS_WITH(coarsen(body, std::vector{ElementsThere{nullptr, -1}}),
+                    says("coarsen: got a list of -1 marked elements"));
+  CHECK_THROWS_WITH(refine(body, std::vector<ElementsThere>(2)),
+                    says("for 2 element types, but the mesh has 1"));
+  CHECK(refine(body, std::vector<ElementsThere>(1)).refined == 0);
+}
+
+TEST_CASE("listeners are told of elements that were marked in the backend's memory",
+          "[adaptation]") {
+  on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
+    TwoBodies<Formulation<Tri3, Gauss<1>, NeoHookean>, B> both(backend, 5);
+    std::size_t told = 0, wanted = 0;
+    both.body.on_change([&](auto const& change) { told += change.transfer.families().size(); });
+    both.host.on_change([&](auto const& change) { wanted += change.transfer.families().size(); });
+    both.refine_one_in(4);
+    auto const marked = some(both.host, 3, both.random);
+    there(both.body, marked, [](auto& body, auto const& lists) { return refine(body, lists); });
+    refine(both.host, {marked});
+    both.check_place();
+    CHECK(told == wanted);
+    both.check_all();
+  });
 }
 
 TEST_CASE("a refinement is refused where single precision cannot hold the masses behind it",
@@ -344,6 +416,7 @@ TEST_CASE("where a refinement on a backend fails, the body is as it was", "[adap
   on_each_backend<KeepingBackends>([]<class B>(B const& backend) {
     using F = Formulation<Quad4, Gauss<2>, NeoHookean>;
     auto body = body_of<F>(backend, false, 5), same = body_of<F>(backend, false, 5);
+    CHECK_THROWS_WITH(coarsen(body, {{0, 25}}), says("coarsen: there is no Quad4 element 25"));
     Random random(2);
     auto const marked = some(body, 4, random);
     refine(body, {marked});
@@ -356,8 +429,13 @@ TEST_CASE("where a refinement on a backend fails, the body is as it was", "[adap
     CHECK_THROWS_AS(refine(body, {{0, 1, 2, 3}}), Error);
     check_unchanged();
     set_mesh_limits(body, {});
-    CHECK_THROWS_AS(refine(body, {{0, count(body)}}), Error);
-    CHECK_THROWS_AS(refine(body, {{-1}}), Error);
+    auto const none = "there is no Quad4 element " + std::to_string(count(body));
+    CHECK_THROWS_WITH(refine(body, {{0, count(body)}}), says("refine: " + none));
+    CHECK_THROWS_WITH(refine(body, {{-1}}), says("refine: there is no Quad4 element -1"));
+    std::vector<Index> too_many(at(count(body)) + 1);
+    std::iota(too_many.begin(), too_many.end(), 0);
+    CHECK_THROWS_WITH(coarsen(body, {too_many}), says("coarsen: " + none));
+    check_unchanged();
     CHECK_THROWS_WITH(refine(body, {{0}}, most_levels + 1), says("at most 63"));
     check_unchanged();
     // Set past the body's own checks.

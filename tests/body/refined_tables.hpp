@@ -116,9 +116,24 @@ struct Tables {
   std::vector<Index> cells_now() const {
     std::vector<Index> list(at(on.count()));
     std::iota(list.begin(), list.end(), Index{0});
-    auto cells = upload(backend, list);
-    backend.for_each(
-        on.count(), detail::LookUpCells{numbers.of(mesh.order.view()), cells.data(), cells.data()});
+    // Numbers that no element has are noted, and go to the first one.
+    for (Index const number : {Index{-1}, on.count(), Index{-7}}) {
+      auto cells = looked_up({0, number});
+      CHECK(cells[2] != 0);
+      CHECK(cells[1] == cells[0]);
+    }
+    auto cells = looked_up(list);
+    CHECK(cells.back() == 0);
+    cells.pop_back();
+    return cells;
+  }
+  /// The cells of elements with these numbers, and behind them whether one was unknown.
+  std::vector<Index> looked_up(std::vector<Index> const& list) const {
+    auto const from = upload(backend, list);
+    auto cells = zeros<Index>(backend, list.size() + 1);
+    auto const count = static_cast<Index>(list.size());
+    backend.for_each(count, detail::LookUpCells{numbers.of(mesh.order.view()), on.count(),
+                                                from.data(), cells.data(), cells.data() + count});
     return download<Index>(cells);
   }
 

@@ -24,9 +24,8 @@ auto change_on_backend_by(Parts& parts, int max_level, FindMarked const& find_ma
     return std::nullopt;
   }
 }
-/// Of marked elements.
-template <class Parts>
-auto change_on_backend(Parts& parts, MarkedLists const& marked, int max_level) {
+template <class Parts, class List>
+auto change_on_backend_of(Parts& parts, MarkedLists<List> const& marked, int max_level) {
   return change_on_backend_by(parts, max_level, [&] {
     using M = typename Parts::mesh_type;
     check_conversion<M>("raise", 1, marked.raise);
@@ -34,22 +33,17 @@ auto change_on_backend(Parts& parts, MarkedLists const& marked, int max_level) {
     check_splits<M>(marked.split);
     check_splits<M>(marked.split_in_two);
     check_merges<M>(marked.merge);
-    using Marked = MarkedThere<typename Parts::backend_type>;
-    auto const there = [&](char const* verb, auto const& lists) {
-      std::size_t type = 0;
-      parts.for_each_type([&](auto const& table, auto const&) {
-        using E = typename std::remove_cvref_t<decltype(table)>::element;
-        if (type < lists.size())
-          check_numbers<E>(verb, lists[type], static_cast<std::size_t>(table.count()));
-        ++type;
-      });
-      return Marked::of(lists);
-    };
-    return Marked{there("refine", marked.refine), there("coarsen", marked.coarsen),
-                  there("raise", marked.raise),   there("lower", marked.lower),
-                  there("split", marked.split),   there("split", marked.split_in_two),
-                  there("merge", marked.merge),   marked.raised_rings};
+    return MarkedThere<typename Parts::backend_type>::of(marked);
   });
+}
+/// Of marked elements.
+template <class Parts>
+auto change_on_backend(Parts& parts, MarkedLists<> const& marked, int max_level) {
+  return change_on_backend_of(parts, marked, max_level);
+}
+template <class Parts>
+auto change_on_backend(Parts& parts, MarkedLists<ElementsThere> const& marked, int max_level) {
+  return change_on_backend_of(parts, marked, max_level);
 }
 /// Of those that rules mark.
 template <class Parts>

@@ -50,8 +50,11 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     // Listeners there cannot be told where tetrahedra come from that pyramids have for children.
     if (On::has_pyramids && !parts_.backend_listeners.empty()) return std::nullopt;
     if (!parts_.topology_on && !parts_.state.topology->tree && Marked::none_in(marked.refine) &&
-        !marked.converts() && !marked.splits())
+        !marked.converts() && !marked.splits()) {
+      check("coarsen", marked.coarsen);
+      check("merge", marked.merge);
       return Done{};  // nothing to merge
+    }
     if (!follow_body()) return std::nullopt;
     if (on().is_too_far_ahead()) (void)*parts_.state.topology;
     bool const tells = !parts_.listeners.empty();
@@ -59,27 +62,54 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
       if (auto done = make(marked, marked.coarsen)) return done;
     if (converts) return std::nullopt;
     // The host knows what conditions forbid to merge.
-    plan_ = plan_change(std::as_const(parts_), marked.lists(), limits_.max_level);
+    plan_ = plan_change(std::as_const(parts_), marked.lists(backend()), limits_.max_level);
     if (!plan_) return Done{};
     planned_ = mesh_behind(*plan_, *parts_.state.prescribed);
     auto const merged = merged_by(*plan_);
-    auto done = make(marked, Marked::of(merged));
+    auto done = make(marked, Marked::of(ListsOfTypes<std::vector<Index>>(merged)));
     if (done && tells) done->to_tell.plan = std::move(plan_);
     return done;
   }
 
  private:
   static Index size(auto const& list) { return static_cast<Index>(list.size()); }
-  Cells cells_of(Lists const& lists) {
+  /// Throws Error for an element that there is not.
+  void check(char const* verb, Lists const& lists) const {
+    std::size_t type = 0;
+    parts_.for_each_type([&](auto const& table, auto const&) {
+      using E = typename std::remove_cvref_t<decltype(table)>::element;
+      if (type < lists.size())
+        lists[type].visit(parts_.backend, [&](auto numbers) {
+          check_numbers<E>(verb, numbers, static_cast<std::size_t>(table.count()));
+        });
+      ++type;
+    });
+  }
+  /// The same of all, where one of those that were looked up is none, once the backend was waited for.
+  void check_looked_up() const {
+    if (parts_.topology_on->unknown.template first<1>()[0] == 0) return;
+    check("coarsen", marked_->coarsen);
+    check("merge", marked_->merge);
+    check("lower", marked_->lower);
+    check("refine", marked_->refine);
+    check("raise", marked_->raise);
+    check("split", marked_->split);
+    check("split", marked_->split_in_two);
+  }
+  Cells cells_of(char const* verb, Lists const& lists) {
     std::size_t count = 0;
     for (auto const& list : lists) count += static_cast<std::size_t>(list.count);
     auto cells = unset<Index>(backend(), count);
     Index* to = cells.data();
     for (std::size_t type = 0; type < lists.size(); to += lists[type++].count) {
       auto const& list = lists[type];
+      if (list.count == 0) continue;
+      Index const elements = on().leaves(type).count;
+      if (elements == 0) check(verb, lists);
       Index const* const numbers =
-          list.on_host.empty() ? list.numbers.data() : on().from_host.put(list.on_host);
-      backend().for_each(list.count, LookUpCells{on().element_numbers(type), numbers, to});
+          list.on_host.empty() ? list.there() : on().from_host.put(list.on_host);
+      backend().for_each(list.count, LookUpCells{on().element_numbers(type), elements, numbers, to,
+                                                 on().unknown.data()});
     }
     return cells;
   }
@@ -128,13 +158,12 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
                               &marked.split, &marked.split_in_two})
       on_host += Marked::count_on_host(*lists);
     on().from_host.begin(backend(), on_host);
-    CellsToChange<B> cells{cells_of(coarsen),
-                           cells_of(marked.merge),
-                           cells_of(marked.lower),
-                           cells_of(marked.refine),
-                           cells_of(marked.raise),
-                           cells_of(marked.split),
-                           cells_of(marked.split_in_two)};
+    on().unknown.set_all(0);
+    marked_ = &marked;
+    CellsToChange<B> cells{cells_of("coarsen", coarsen),          cells_of("merge", marked.merge),
+                           cells_of("lower", marked.lower),       cells_of("refine", marked.refine),
+                           cells_of("raise", marked.raise),       cells_of("split", marked.split),
+                           cells_of("split", marked.split_in_two)};
     if (marked.raised_rings > 0 && cells.raise.size() > 0) {
       auto const [n, with_rings] =
           on().tree.with_neighbours(cells.raise.data(), size(cells.raise), marked.raised_rings);
@@ -153,8 +182,8 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
         cells.renumber(backend(), merged);
         bool const is_all = plan_ && plan_->counts.refined == 0;
         auto parents = plan_ && !is_all ? this->parents_of(merged) : std::vector<Index>{};
-        this->commit("coarsen", counts.coarsened, merged, is_all,
-                     [&](auto& parts) { return parts.coarsened(merged); });
+        commit("coarsen", counts.coarsened, merged, is_all,
+               [&](auto& parts) { return parts.coarsened(merged); });
         merged_ = std::move(parents);
       }
     }
@@ -167,8 +196,8 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
       if (refined.leaves > 0) {
         counts.refined = static_cast<std::size_t>(refined.leaves);
         done.new_nodes += static_cast<std::size_t>(refined.new_nodes);
-        this->commit("refine", counts.refined, refined, plan_.has_value(),
-                     [&](auto& parts) { return parts.refined(refined); });
+        commit("refine", counts.refined, refined, plan_.has_value(),
+               [&](auto& parts) { return parts.refined(refined); });
         merged_.clear();
       }
     }
@@ -176,9 +205,15 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
       if (cells.raise.size() > 0) raise(cells.raise, done);
     if constexpr (splits_on_backend<Parts>)
       if (cells.splits()) split(cells, done);
+    check_looked_up();
     this->enter_as_one(counts);
     done.to_tell.there = there_.take();
     return done;
+  }
+  template <class... Arguments>
+  void commit(Arguments const&... arguments) {
+    check_looked_up();
+    Base::commit(arguments...);
   }
   /// False where a node has to stay; then nothing has changed.
   bool lower(Cells const& cells, Done& done) {
@@ -187,8 +222,8 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     if (!may_be(lowered)) return false;
     done.counts.lowered = static_cast<std::size_t>(lowered.lowered);
     done.gone_nodes += static_cast<std::size_t>(lowered.before.nodes - lowered.now.nodes);
-    this->commit("lower", done.counts.lowered, lowered, false,
-                 [&](auto& parts) { return parts.changed(lowered); });
+    commit("lower", done.counts.lowered, lowered, false,
+           [&](auto& parts) { return parts.changed(lowered); });
     return true;
   }
   void raise(Cells const& cells, Done& done) {
@@ -196,16 +231,16 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     if (raised.raised == 0) return;
     done.counts.raised = static_cast<std::size_t>(raised.raised);
     done.new_nodes += static_cast<std::size_t>(raised.new_nodes);
-    this->commit("raise", done.counts.raised, raised, false,
-                 [&](auto& parts) { return parts.changed(raised); });
+    commit("raise", done.counts.raised, raised, false,
+           [&](auto& parts) { return parts.changed(raised); });
   }
   void split(CellsToChange<B> const& cells, Done& done) {
     auto const split = on().tree.split(cells.to_split(), nodes_at_rest(), limits_);
     if (split.leaves == 0) return;
     done.counts.split = static_cast<std::size_t>(split.leaves);
     done.new_nodes += static_cast<std::size_t>(split.new_nodes);
-    this->commit("split", done.counts.split, split, false,
-                 [&](auto& parts) { return parts.changed(split); });
+    commit("split", done.counts.split, split, false,
+           [&](auto& parts) { return parts.changed(split); });
   }
   /// False where a node has to stay; then nothing has changed.
   bool merge(CellsToChange<B>& cells, Done& done) {
@@ -215,8 +250,8 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
     done.counts.merged = static_cast<std::size_t>(merged.merged);
     done.gone_nodes += static_cast<std::size_t>(merged.before.nodes - merged.now.nodes);
     cells.renumber(backend(), merged);
-    this->commit("merge", done.counts.merged, merged, false,
-                 [&](auto& parts) { return parts.changed(merged); });
+    commit("merge", done.counts.merged, merged, false,
+           [&](auto& parts) { return parts.changed(merged); });
     return true;
   }
   [[nodiscard]] NodesAtRest<Parts::dim> nodes_at_rest() {
@@ -230,6 +265,7 @@ class ChangesOnBackend : CommitsOnBackend<Parts> {
   }
   using Base::parts_, Base::plan_, Base::planned_, Base::merged_, Base::there_;
   RefinementLimits limits_;
+  Marked const* marked_ = nullptr;  // of the change that is made
 };
 
 }  // namespace pliant::detail

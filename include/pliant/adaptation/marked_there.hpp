@@ -6,33 +6,52 @@
 #include <vector>
 
 #include <pliant/backend/backend.hpp>
+#include <pliant/backend/copy_values.hpp>
 #include <pliant/topology/marked_elements.hpp>
 
 namespace pliant::detail {
 
-/// MarkedElements that loops take: for each type the user's numbers, in the backend's memory or on the host, where they stay while
-/// these are in use. Lists of no types mark none.
+/// MarkedElements that loops take: for each type the user's numbers, in the backend's memory or on the host. Those of a user stay where they
+/// are while these are in use. Lists of no types mark none.
 template <Backend B>
 struct MarkedThere {
   struct List {
     std::span<Index const> on_host{};             // (count); or empty, and
+    Index const* given = nullptr;                 // (count), a user's; or null, and
     typename B::template Array<Index> numbers{};  // (count), and room
     Index count = 0;
 
-    [[nodiscard]] std::vector<Index> values() const {
-      if (!on_host.empty()) return {on_host.begin(), on_host.end()};
-      std::vector<Index> values(static_cast<std::size_t>(count));
-      numbers.download(values);
-      return values;
+    /// In the backend's memory, where they are there.
+    [[nodiscard]] Index const* there() const { return given != nullptr ? given : numbers.data(); }
+    /// f(all of them, on the host)
+    template <class F>
+    void visit(B const& backend, F const& f) const {
+      if (on_host.size() > 0 || count == 0) return f(on_host);
+      auto const size = static_cast<std::size_t>(count);
+      auto copy = unset<Index>(backend, size);
+      copy_values<B, Index>(backend, there(), copy.data(), size);
+      auto const values = download<Index>(copy);
+      f(std::span(values));
     }
   };
   std::vector<List> refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{}, merge{};
   int raised_rings = 0;
 
-  static std::vector<List> of(ListsOfTypes lists) {
+  static std::vector<List> of(ListsOfTypes<std::vector<Index>> lists) {
     std::vector<List> there;
-    for (auto const& list : lists) there.push_back({list, {}, static_cast<Index>(list.size())});
+    for (auto const& list : lists)
+      there.push_back({list, nullptr, {}, static_cast<Index>(list.size())});
     return there;
+  }
+  static std::vector<List> of(ListsOfTypes<ElementsThere> lists) {
+    std::vector<List> there;
+    for (auto const& list : lists) there.push_back({{}, list.numbers, {}, list.count});
+    return there;
+  }
+  template <class L>
+  static MarkedThere of(MarkedLists<L> const& marked) {
+    return {of(marked.refine), of(marked.coarsen),      of(marked.raise), of(marked.lower),
+            of(marked.split),  of(marked.split_in_two), of(marked.merge), marked.raised_rings};
   }
   static std::size_t count_on_host(std::vector<List> const& lists) {
     std::size_t count = 0;
@@ -51,14 +70,16 @@ struct MarkedThere {
     return !none_in(refine) + !none_in(coarsen) + !none_in(raise) + !none_in(lower) + splits() +
            merges();
   }
-  /// Those to refine and to coarsen, on the host.
-  [[nodiscard]] MarkedElements lists() const {
-    auto const values_of = [](std::vector<List> const& from) {
+  /// On the host.
+  [[nodiscard]] MarkedElements lists(B const& backend) const {
+    auto const values_of = [&](std::vector<List> const& from) {
       std::vector<std::vector<Index>> to;
-      for (auto const& list : from) to.push_back(list.values());
+      for (auto const& list : from)
+        list.visit(backend, [&](auto values) { to.emplace_back(values.begin(), values.end()); });
       return to;
     };
-    return {.refine = values_of(refine), .coarsen = values_of(coarsen)};
+    return {values_of(refine), values_of(coarsen),      values_of(raise), values_of(lower),
+            values_of(split),  values_of(split_in_two), values_of(merge), raised_rings};
   }
 };
 

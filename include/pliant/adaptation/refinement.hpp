@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <pliant/adaptation/change_on_backend.hpp>
+#include <pliant/adaptation/change_mesh.hpp>
 #include <pliant/adaptation/lists_on.hpp>
 #include <pliant/adaptation/rule.hpp>
 
@@ -46,7 +46,9 @@ struct MergingReport {
 
 /// Divides elements of a body: triangles and quadrilaterals into four, tetrahedra, hexahedra and wedges into eight, pyramids
 /// into ten (see RefinementPattern). `marked` has, for each element type in the order of the
-/// mesh, the elements to split by the user's number. Neighbours differ by one level at most, across edges and sides;
+/// mesh, the elements to split by the user's number: each a list on the host, or ElementsThere in the memory of the body's
+/// backend, written by what is done or was queued on its stream, and read before this returns.
+/// Neighbours differ by one level at most, across edges and sides;
 /// hanging nodes become slaves. New nodes take displacement and velocity from the parent's shape functions,
 /// nodes that stay keep theirs and their number; each family then gets back the momentum that
 /// lumping its mass anew took, so that linear momentum is kept to rounding and rigid translation
@@ -56,21 +58,11 @@ struct MergingReport {
 /// Throws Error, with the body as it was, where an element is unknown, max_level is negative or above most_levels, the body's
 /// limits would be exceeded, or a user's force term cannot be made anew. Listeners are told last: the body is refined whatever
 /// they throw.
-template <DeformableBody TheBody>
-RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& marked,
-                        int max_level = 30) {
-  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+template <DeformableBody TheBody, detail::MarkedList List = std::vector<Index>>
+RefinementReport refine(TheBody& body, std::vector<List> const& marked, int max_level = 30) {
   detail::check_lists<typename TheBody::mesh_type>("refine", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.refine = marked}, max_level)) {
-    tell_listeners(body.parts(), done->to_tell);
-    return {done->counts.refined, done->new_nodes};
-  }
-  auto const plan = plan_change(body.parts(), {.refine = marked}, max_level);
-  if (!plan) return {};
-  commit(body.parts(), *plan);
-  tell_listeners(body.parts(), *plan);
-  return {plan->counts.refined, plan->transfer.new_nodes().size()};
+  auto const done = detail::change_mesh<TheBody, List>(body, {.refine = marked}, max_level);
+  return {done.counts.refined, done.new_nodes};
 }
 
 /// Undoes refinement: where all children of an element are marked (as for refine), and none is refined itself,
@@ -80,20 +72,11 @@ RefinementReport refine(TheBody& body, std::vector<std::vector<Index>> const& ma
 /// initial mesh; nodes that go hand their loads to those they lay between, and each family keeps its momentum. Merged
 /// elements are in the group that most of their children were in (the first of equals), have the mean of their values
 /// by volume, and the internal variables of the nearest points. Errors as of refine.
-template <DeformableBody TheBody>
-CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& marked) {
-  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+template <DeformableBody TheBody, detail::MarkedList List = std::vector<Index>>
+CoarseningReport coarsen(TheBody& body, std::vector<List> const& marked) {
   detail::check_lists<typename TheBody::mesh_type>("coarsen", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.coarsen = marked}, most_levels)) {
-    tell_listeners(body.parts(), done->to_tell);
-    return {done->counts.coarsened, done->gone_nodes};
-  }
-  auto const plan = plan_change(body.parts(), {.coarsen = marked});
-  if (!plan) return {};
-  commit(body.parts(), *plan);
-  tell_listeners(body.parts(), *plan);
-  return {plan->counts.coarsened, plan->transfer.gone().size()};
+  auto const done = detail::change_mesh<TheBody, List>(body, {.coarsen = marked});
+  return {done.counts.coarsened, done.gone_nodes};
 }
 
 /// Gives linear elements of a body the degree two: they become elements of the mesh's quadratic type on the same cell (Tri3
@@ -105,44 +88,25 @@ CoarseningReport coarsen(TheBody& body, std::vector<std::vector<Index>> const& m
 /// displacement and velocity there; each element keeps its momentum. Facets get the nodes between their corners.
 /// Throws Error, with the body as it was, as refine, for elements that are quadratic, and where the mesh has no
 /// quadratic type on their cell.
-template <DeformableBody TheBody>
-RaisingReport raise(TheBody& body, std::vector<std::vector<Index>> const& marked,
-                    RaiseOptions options = {}) {
-  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+template <DeformableBody TheBody, detail::MarkedList List = std::vector<Index>>
+RaisingReport raise(TheBody& body, std::vector<List> const& marked, RaiseOptions options = {}) {
   detail::check_lists<typename TheBody::mesh_type>("raise", marked);
   if (options.ring < 0)
     throw Error("raise: a ring of ", options.ring, "; give the number of rings, 0 or more");
-  if (auto const done = detail::change_on_backend(
-          body.parts(), {.raise = marked, .raised_rings = options.ring}, most_levels)) {
-    tell_listeners(body.parts(), done->to_tell);
-    return {done->counts.raised, done->new_nodes};
-  }
-  auto const plan = plan_change(body.parts(), {.raise = marked, .raised_rings = options.ring});
-  if (!plan) return {};
-  commit(body.parts(), *plan);
-  tell_listeners(body.parts(), *plan);
-  return {plan->counts.raised, plan->transfer.new_nodes().size()};
+  auto const done =
+      detail::change_mesh<TheBody, List>(body, {.raise = marked, .raised_rings = options.ring});
+  return {done.counts.raised, done.new_nodes};
 }
 
 /// Undoes raising, and gives quadratic elements of the initial mesh corners only. Nodes between corners go where no other
 /// element has them, and hand their loads to those they lay between; those of the initial mesh stay with their numbers
 /// and move with the corners. Elements with nodes that a condition on nodes names stay as they are. Groups, momentum and
 /// errors as of raise.
-template <DeformableBody TheBody>
-LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marked) {
-  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+template <DeformableBody TheBody, detail::MarkedList List = std::vector<Index>>
+LoweringReport lower(TheBody& body, std::vector<List> const& marked) {
   detail::check_lists<typename TheBody::mesh_type>("lower", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.lower = marked}, most_levels)) {
-    tell_listeners(body.parts(), done->to_tell);
-    return {done->counts.lowered, done->gone_nodes};
-  }
-  auto const plan = plan_change(body.parts(), {.lower = marked});
-  if (!plan) return {};
-  commit(body.parts(), *plan);
-  tell_listeners(body.parts(), *plan);
-  return {plan->counts.lowered, plan->transfer.gone().size()};
+  auto const done = detail::change_mesh<TheBody, List>(body, {.lower = marked});
+  return {done.counts.lowered, done.gone_nodes};
 }
 
 /// Puts elements of another shape in the place of linear ones, of which no edge or side is divided: a Quad4 becomes four
@@ -154,48 +118,26 @@ LoweringReport lower(TheBody& body, std::vector<std::vector<Index>> const& marke
 /// A new node takes the displacement and velocity of the middle; each element keeps its momentum. Groups as of raise.
 /// Throws Error, with the body as it was, as refine, for elements of other types, where the mesh has not the type that
 /// they become, and for another number of triangles.
-template <DeformableBody TheBody>
-SplittingReport split(TheBody& body, std::vector<std::vector<Index>> const& marked,
-                      SplitOptions options = {}) {
-  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+template <DeformableBody TheBody, detail::MarkedList List = std::vector<Index>>
+SplittingReport split(TheBody& body, std::vector<List> const& marked, SplitOptions options = {}) {
   detail::check_lists<typename TheBody::mesh_type>("split", marked);
   if (options.triangles != 2 && options.triangles != 4)
     throw Error("split: into ", options.triangles, " triangles; give 2 or 4");
-  bool const in_two = options.triangles == 2;
-  detail::MarkedLists lists;
-  (in_two ? lists.split_in_two : lists.split) = marked;
-  if (auto const done = detail::change_on_backend(body.parts(), lists, most_levels)) {
-    tell_listeners(body.parts(), done->to_tell);
-    return {done->counts.split, done->new_nodes};
-  }
-  MarkedElements wanted;
-  (in_two ? wanted.split_in_two : wanted.split) = marked;
-  auto const plan = plan_change(body.parts(), wanted);
-  if (!plan) return {};
-  commit(body.parts(), *plan);
-  tell_listeners(body.parts(), *plan);
-  return {plan->counts.split, plan->transfer.new_nodes().size()};
+  detail::MarkedLists<List> lists;
+  (options.triangles == 2 ? lists.split_in_two : lists.split) = marked;
+  auto const done = detail::change_mesh(body, lists);
+  return {done.counts.split, done.new_nodes};
 }
 
 /// Undoes splitting: where all elements that one was split into are marked, and none is refined itself or of degree two, it
 /// takes their place; of two pyramids that share a base both or none. The node in its middle goes, unless a condition on nodes names it; then it stays split. Groups,
 /// values of elements, internal variables, momentum and loads as of coarsen. Throws Error as refine, and for elements
 /// of types that nothing is split into.
-template <DeformableBody TheBody>
-MergingReport merge(TheBody& body, std::vector<std::vector<Index>> const& marked) {
-  static_assert(detail::can_be_refined<typename TheBody::mesh_type>,
-                "meshes change that are of the catalogue's elements, with Tet4 beside Pyramid5");
+template <DeformableBody TheBody, detail::MarkedList List = std::vector<Index>>
+MergingReport merge(TheBody& body, std::vector<List> const& marked) {
   detail::check_lists<typename TheBody::mesh_type>("merge", marked);
-  if (auto const done = detail::change_on_backend(body.parts(), {.merge = marked}, most_levels)) {
-    tell_listeners(body.parts(), done->to_tell);
-    return {done->counts.merged, done->gone_nodes};
-  }
-  auto const plan = plan_change(body.parts(), {.merge = marked});
-  if (!plan) return {};
-  commit(body.parts(), *plan);
-  tell_listeners(body.parts(), *plan);
-  return {plan->counts.merged, plan->transfer.gone().size()};
+  auto const done = detail::change_mesh<TheBody, List>(body, {.merge = marked});
+  return {done.counts.merged, done.gone_nodes};
 }
 
 /// How often each element of a type was refined, by the user's number.

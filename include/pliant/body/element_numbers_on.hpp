@@ -120,12 +120,18 @@ struct PutNumbers {
     numbers[i] = of.number(places == nullptr ? i : places[i]);
   }
 };
-/// The cells of elements with some numbers.
+/// The cells of elements with some numbers; of a number that none has, the first one's, and *unknown is set.
 struct LookUpCells {
   ElementNumbersView of;
+  Index count;  // of elements, not 0
   Index const* numbers;
-  Index* cells;
-  PLIANT_HOST_DEVICE void operator()(Index i) const { cells[i] = of.cell(numbers[i]); }
+  Index *cells, *unknown;
+  PLIANT_HOST_DEVICE void operator()(Index i) const {
+    Index const number = numbers[i];
+    bool const is_known = number >= 0 && number < count;
+    if (!is_known) *unknown = 1;
+    cells[i] = of.cell(is_known ? number : 0);
+  }
 };
 
 }  // namespace detail

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pliant/backend/host_values.hpp>
+#include <pliant/backend/read_back.hpp>
 #include <pliant/body/acting_on.hpp>
 #include <pliant/body/converted_elements_on.hpp>
 #include <pliant/body/element_numbers_on.hpp>
@@ -93,6 +94,7 @@ struct TopologyOn<Mesh<Es...>, B> {
   ActingOn<dim, B> acting;
   WhenAsked<Prescribed<dim>> prescribed{};  // that these are of
   HostValues<B, Index> from_host{};         // marked elements
+  ReadBack<B, Index> unknown;               // (1): not 0 where a marked one is none
   OnHost<M> on_host;
 
   /// Of a body as it is. Takes a look at all of it.
@@ -227,6 +229,7 @@ struct TopologyOn<Mesh<Es...>, B> {
         masses(parts.backend, by_row(parts), parts.layout.mass_unit, parts.material.density),
         momentum(parts.backend),
         gone(parts.backend),
+        unknown(parts.backend, 1),
         on_host{.known = {parts.state.topology.shared(), parts.state.prescribed.shared()},
                 .tree = first.tree} {
     std::vector<double> values(node_stride * static_cast<std::size_t>(rows.count()));

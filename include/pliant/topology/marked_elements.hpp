@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <iterator>
 #include <memory>
@@ -17,14 +18,27 @@
 // From marks on elements to changes of the cells that they are.
 namespace pliant {
 
+/// Elements of one type by the user's numbers, in the memory of a body's backend.
+struct ElementsThere {
+  Index const* numbers = nullptr;  ///< (count)
+  Index count = 0;
+
+  [[nodiscard]] bool empty() const { return count == 0; }
+};
+
 namespace detail {
 
-/// Elements by their numbers, for each element type.
-using ListsOfTypes = std::span<std::vector<Index> const>;
+/// Elements of one type by their numbers, on the host or in a backend's memory.
+template <class List>
+concept MarkedList = std::same_as<List, std::vector<Index>> || std::same_as<List, ElementsThere>;
+/// The same for each element type.
+template <MarkedList List>
+using ListsOfTypes = std::span<List const>;
 
 /// MarkedElements that stay where they are while these are in use.
+template <MarkedList List = std::vector<Index>>
 struct MarkedLists {
-  ListsOfTypes refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{}, merge{};
+  ListsOfTypes<List> refine{}, coarsen{}, raise{}, lower{}, split{}, split_in_two{}, merge{};
   int raised_rings = 0;
 };
 
@@ -37,7 +51,7 @@ struct MarkedElements {
       merge{};
   int raised_rings = 0;  ///< so many rings of neighbours across edges are raised along
 
-  operator detail::MarkedLists() const {
+  operator detail::MarkedLists<>() const {
     return {refine, coarsen, raise, lower, split, split_in_two, merge, raised_rings};
   }
   bool none() const {
@@ -112,17 +126,23 @@ std::vector<Index> cells_of(RefinementTree<M> const& old, char const* verb,
 }
 
 template <class M>
-void check_lists(char const* verb, ListsOfTypes marked) {
+void check_lists(char const* verb, auto const& marked) {
   constexpr std::size_t types = TypesOf<M>::count;
   if (marked.size() != types)
     throw Error(verb, ": got lists of marked elements for ", marked.size(),
                 " element types, but the mesh has ", types,
                 "; give one list per type, empty where none is marked");
+  if constexpr (std::same_as<std::remove_cvref_t<decltype(marked[0])>, ElementsThere>)
+    for (auto const& list : marked)
+      if (list.count < 0 || (list.count > 0 && list.numbers == nullptr))
+        throw Error(verb, ": got a list of ", list.count,
+                    " marked elements in the backend's memory", list.count < 0 ? "" : " at null",
+                    "; give the address of as many numbers as are counted");
 }
 
 /// Throws Error where elements are marked to be of another degree than `from` that no type of the mesh is of.
 template <class M>
-void check_conversion(char const* verb, int from, ListsOfTypes marked) {
+void check_conversion(char const* verb, int from, auto const& marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if (E::degree != from)
@@ -185,7 +205,7 @@ void split_pair(Hierarchy<Dim> const& tree, Index pyramid, std::vector<CellSplit
 
 /// Throws Error where elements are marked that cannot be split.
 template <class M>
-void check_splits(ListsOfTypes marked) {
+void check_splits(auto const& marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (marked.empty() || marked[type].empty()) return;
     if constexpr (std::is_void_v<SplitInto<E>>)
@@ -248,7 +268,7 @@ std::vector<Index> merged_splits(Hierarchy<Dim> const& tree, std::vector<Index> 
 }
 /// Throws Error where elements are marked that nothing is split into.
 template <class M>
-void check_merges(ListsOfTypes marked) {
+void check_merges(auto const& marked) {
   for_each_type_of<M>([&]<Element E>(E, std::size_t type) {
     if (!is_part<E> && !marked.empty() && !marked[type].empty())
       throw Error("merge: no element is split into ", E::name(),
