@@ -46,7 +46,7 @@ TEMPLATE_LIST_TEST_CASE("steps see what those before them wrote, few or many", "
   auto const at = [](Index i) { return static_cast<std::size_t>(i); };
   // Keys of few bits, of many, and of so many that a word has no room for a number beside them.
   for (int const shift : {0, 30, 48})
-    for (Index const n : {0, 1, 2, 33, 255, 257, 2047, 2048, 2049, 9000}) {
+    for (Index const n : {0, 1, 2, 33, 255, 257, 2047, 2048, 2049, 9000, 60000}) {
       CAPTURE(n, shift);
       auto keys = zeros<std::uint64_t>(backend, at(n) + 1);
       auto values = zeros<Index>(backend, at(n) + 1), sums = zeros<Index>(backend, at(n) + 2),
@@ -69,6 +69,48 @@ TEMPLATE_LIST_TEST_CASE("steps see what those before them wrote, few or many", "
       CHECK(download<Index>(to) == wanted);
       CHECK(download<Index>(sums)[at(n)] == sum);
     }
+}
+
+struct Remainder {
+  Index by;
+  Index const* of;
+  PLIANT_HOST_DEVICE Index operator()(Index i) const { return of[i] % by; }
+};
+struct Reverse {
+  Index n;
+  Index const* from;
+  Index* to;
+  PLIANT_HOST_DEVICE void operator()(Index i) const { to[n - 1 - i] = from[i]; }
+};
+
+TEMPLATE_LIST_TEST_CASE("steps of different lengths see what those before them wrote", "[backend]",
+                        Backends<double>) {
+  TestType const backend;
+  for (Index const n : {2500, 100'003, (1 << 18) - 1, 1 << 18, (1 << 18) + 1, 700'000}) {
+    CAPTURE(n);
+    auto const size = static_cast<std::size_t>(n);
+    std::vector<Index> numbers(size);
+    std::iota(numbers.begin(), numbers.end(), Index{5});
+    auto const from = upload(backend, numbers);
+    auto first = zeros<Index>(backend, size + 1), reversed = zeros<Index>(backend, size),
+         second = zeros<Index>(backend, size + 1), none = upload(backend, std::vector<Index>{7}),
+         few = zeros<Index>(backend, 4);
+    // A scan that writes nothing of an empty list but its sum, and one that reads the end of a long list.
+    detail::in_turn(backend, detail::ScanStep{n, Remainder{3, from.data()}, first.data()},
+                    detail::ScanStep{Index{0}, Read{from.data()}, none.data()},
+                    detail::LoopStep{n, Reverse{n, first.data(), reversed.data()}},
+                    detail::ScanStep{n, Remainder{2, reversed.data()}, second.data()},
+                    detail::ScanStep{Index{3}, Remainder{100, second.data() + n - 2}, few.data()});
+    std::vector<Index> wanted(size + 1), turned(size + 1);
+    for (std::size_t i = 0; i < size; ++i) wanted[i + 1] = wanted[i] + numbers[i] % 3;
+    for (std::size_t i = 0; i < size; ++i) turned[i + 1] = turned[i] + wanted[size - 1 - i] % 2;
+    CHECK(download<Index>(first) == wanted);
+    CHECK(download<Index>(second) == turned);
+    CHECK(download<Index>(none) == std::vector<Index>{0});
+    std::vector<Index> last{0, 0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) last[k + 1] = last[k] + turned[size - 2 + k] % 100;
+    CHECK(download<Index>(few) == last);
+  }
 }
 
 TEMPLATE_LIST_TEST_CASE("the host reads what loops wrote before it waited", "[backend]",
@@ -99,7 +141,7 @@ TEMPLATE_LIST_TEST_CASE("loops read values of the host, several lists one behind
     return download<Index>(copy);
   };
   HostValues<TestType, Index> there;
-  for (std::size_t const count : {3U, 0U, 5000U, 40U}) {
+  for (std::size_t const count : {3U, 0U, 5000U, 70000U, 40U}) {  // the last but one: many
     std::vector<Index> first(count), second(2 * count + 1);
     std::iota(first.begin(), first.end(), 7);
     std::iota(second.begin(), second.end(), -900);
